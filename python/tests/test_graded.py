@@ -41,10 +41,12 @@ def test_a_history_that_is_not_consistent_is_not_trusted() -> None:
     own = pc.simulate(problem, end=13e-6, courant=0.9)
     late = np.concatenate([own.reaction[:1], own.reaction[:-1]])
     history = pc.History.from_arrays(problem, own.time, own.displacement, reaction=late)
-    with pytest.raises(pc.InputError):
+    with pytest.raises(pc.InputError) as refused:
         pc.estimate(history)
     estimate = pc.estimate(history, force=True)
-    assert estimate.trust == "low" and "not consistent" in estimate.verdict
+    # The figure and the cause are those of the refusal.
+    figure, cause = re.search(r"(the history is not consistent: .*)\. Likely cause: (.*); .*force=True", str(refused.value)).groups()  # type: ignore[union-attr]
+    assert estimate.trust == "low" and figure in estimate.verdict and f"likely cause: {cause}" in estimate.verdict
     correct = pc.History.from_arrays(problem, own.time, own.displacement, reaction=own.reaction)
     assert pc.estimate(correct).trust == pc.estimate(own).trust
 
@@ -58,6 +60,21 @@ def test_remedies_of_a_history_that_is_not_consistent_are_its_own() -> None:
     told = [str(warning.message) for warning in warned]
     assert any("relative error" in message for message in told)
     assert all(message.endswith("the history is not consistent: correct it first") for message in told), told
+
+
+@pytest.mark.filterwarnings("ignore:no contact force acted:percute.SimulationWarning")
+def test_a_history_that_goes_through_its_plane_is_refused() -> None:
+    """It is in balance: a rigid flight."""
+    problem = block()
+    time = np.linspace(0.0, 13e-6, 60)
+    flight = problem.initial_velocity * time[:, None, None]
+    with pytest.raises(pc.InputError, match="no contact force acts; the penetration.*nodes go through their plane without contact"):
+        pc.estimate(pc.History.from_arrays(problem, time, flight))
+    # Until it has gone too deep, as a penalty does before its first force.
+    short = time[: 1 + int(np.searchsorted(time, 1.2e-6))]
+    with pytest.warns(pc.InputWarning, match="the last instant"):
+        estimate = pc.estimate(pc.History.from_arrays(problem, short, flight[: len(short)]))
+    assert 0.0 < (estimate.consistency or {})["penetration"] < 0.1
 
 
 def test_three_components_are_told(block_history: pc.History) -> None:

@@ -42,6 +42,19 @@ def test_the_report_says_what_is_not_seen(history: pc.History) -> None:
     assert estimate.consistency is not None and (estimate.consistency["balance"] or 0) < 1e-11
 
 
+@pytest.mark.parametrize("every", [2, 4])
+def test_correct_samples_are_not_called_inconsistent(every: int) -> None:
+    """Velocities of samples are not those of their displacements."""
+    stated, end = problem("block")
+    own = pc.simulate(stated, end=end, courant=0.9)
+    steps = {name: getattr(own, name)[::every] for name in ("displacement", "velocity", "acceleration", "reaction")}
+    with pytest.warns(pc.InputWarning, match="critical steps apart"):
+        estimate = pc.estimate(pc.History.from_arrays(stated, own.time[::every], **steps))
+    assert (estimate.consistency or {})["velocity"] > 0.01
+    assert estimate.trust == "limited" and "not consistent" not in estimate.verdict
+    assert not json.loads(estimate.to_json())["accepted_inconsistent"]
+
+
 def test_samples_without_motion_are_refused(history: pc.History) -> None:
     arrays = {name: getattr(history, name)[::10] for name in ("displacement", "reaction", "touching")}
     said = (

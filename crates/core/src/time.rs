@@ -15,6 +15,8 @@ const AGREES: f64 = 1e-9;
 /// Steps that differ by less than this, relatively, are equal but for rounding. Differences of 1e-6 at each of 5 000
 /// steps still amplify vibrations by less than 1 %.
 const EQUAL: f64 = 1e-9;
+/// So are steps that differ by less than this part of the end: two instants, each rounded twice.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Whether a step (s) is at most the critical one (s), but for the digits that a printed one lacks.
 #[must_use]
@@ -190,7 +192,8 @@ impl TimeGrid {
     #[must_use]
     pub fn varies(&self) -> bool {
         let first = self.step(0);
-        (1..self.step_count()).any(|n| (self.step(n) - first).abs() > EQUAL * first)
+        let equal = (EQUAL * first).max(ROUNDING * self.end());
+        (1..self.step_count()).any(|n| (self.step(n) - first).abs() > equal)
     }
 
     /// Longest step (s).
@@ -232,6 +235,19 @@ mod tests {
         let grid = TimeGrid::from_steps(&[1.0, 2.0]).unwrap();
         assert_eq!(grid.instants(), [0.0, 1.0, 3.0]);
         assert_eq!([0, 1, 2].map(|n| grid.velocity_step(n)), [0.5, 1.5, 2.0]);
+    }
+
+    #[test]
+    fn equal_steps_do_not_vary_however_many() {
+        // The last instants are rounded to 1e-9 of a step.
+        let end = 1.3 / 7.0;
+        assert!(!TimeGrid::uniform(end, 20_000_003).unwrap().varies());
+        let step = end / 1e4;
+        for difference in [1e-8, -1e-8] {
+            let mut steps = vec![step; 10_000];
+            steps[9_000] += difference * step;
+            assert!(TimeGrid::from_steps(&steps).unwrap().varies());
+        }
     }
 
     #[test]

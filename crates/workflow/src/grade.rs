@@ -2,7 +2,7 @@
 //! filled.
 
 use crate::failure::Failure;
-use crate::foreign::{Between, Checked, Completed, Found, Lacks, Origin, Refusal, check, started};
+use crate::foreign::{Between, Checked, Completed, Contradiction, Found, Lacks, Origin, Refusal, check, started};
 use crate::run::{self, Analysis, Results};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, StepSource};
@@ -37,11 +37,11 @@ pub fn estimate<const D: usize, const N: usize>(
     let complete = Completed::new(problem, source, origin.lacks).map_err(unread)?;
     let derived = [complete.derived(), &origin.derived].concat();
     let critical = critical_time_step(problem);
-    let Found { consistency, samples, shifted, accepted } =
+    let Found { consistency, samples, shifted, contradiction } =
         check(problem, &complete, critical, &derived, origin.accept).map_err(|refusal| refused(refusal, origin))?;
     let program = origin.program.clone();
     let mut checked =
-        Checked { program, derived, left_out: complete.left_out(), consistency, samples, shifted, accepted };
+        Checked { program, derived, left_out: complete.left_out(), consistency, samples, shifted, contradiction };
     let last = complete.times().step_count();
     let between = samples.map(|_| Between::new(&complete, critical)).transpose();
     let between = between.map_err(|error| unread(error.into()))?.filter(|all| all.times().step_count() > last);
@@ -69,7 +69,9 @@ fn requested(analysis: &Analysis, step: impl Fn(usize) -> usize) -> Analysis {
 fn refused(refusal: Refusal, origin: &Origin) -> Failure {
     match refusal {
         Refusal::Unread(cause) => unread(cause),
-        Refusal::Inconsistent { figure, cause } => Failure::Inconsistent { file: origin.file.clone(), figure, cause },
+        Refusal::Inconsistent(Contradiction { figure, cause }) => {
+            Failure::Inconsistent { file: origin.file.clone(), figure, cause }
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The likely cause of an inconsistency.
 
 use super::complete::Derived;
-use super::limits::{BALANCE, Excess, PLACE};
+use super::limits::{BALANCE, Excess, PLACE, THROUGH_PLANES};
 use super::nearness::NEAR;
 use super::suspect::Suspect;
 use super::tried::FALL;
@@ -56,9 +56,14 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         if let Some(text) = self.evidence.rates.cause().filter(|_| over("velocity")) {
             return Some(text);
         }
-        let told: [(&str, &dyn Fn() -> String); 8] = [
+        let told: [(&str, &dyn Fn() -> String); 9] = [
             ("initial_velocity", &|| self.velocity_at_start()),
             ("energy", &|| self.unstable()),
+            (THROUGH_PLANES, &|| {
+                "nodes go through their plane without contact: it is left out of the simulation or of the history, or \
+                 the `point` of the plane is not that of the history"
+                    .to_string()
+            }),
             ("opposite", &|| self.evidence.contact.not_opposite()),
             ("plane", &|| planes::place(self, false).unwrap_or_default()),
             ("touching", &|| self.touching()),

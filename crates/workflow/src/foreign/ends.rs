@@ -13,7 +13,7 @@ pub(super) struct Ends<const D: usize> {
     /// Velocity of the first step without its forces, over v₀, at nodes without contact force: the best factor; none if
     /// none of them moves.
     pub(super) speed: Option<f64>,
-    /// Means of v₀ as it is given, else of that velocity, and of the stated v₀ (m/s).
+    /// Means over these nodes, of v₀ as it is given over all: of that velocity, and of the stated v₀ (m/s).
     pub(super) start: [[f64; D]; 2],
     /// The factor of the stated v₀ that gives the velocity at the start, as it is given, else as above; none if the
     /// two have different directions.
@@ -73,7 +73,8 @@ impl<const D: usize> Ends<D> {
         let [difference, most] = pairs.fold([0.0_f64; 2], |[d, m], (v, v0)| [d.max((v - v0).abs()), m.max(v.abs())]);
         let largest = stated.iter().flatten().fold(most, |most, v| most.max(v.abs()));
         found.initial_velocity = ratio(difference, largest);
-        self.start = [mean(&started), mean(stated)];
+        let quiet: Vec<usize> = (0..stated.len()).filter(|node| counts(*node)).collect();
+        self.start = [&started[..], stated].map(|field| mean(field, &quiet));
     }
 
     /// Compares the end with the start, as in a history that runs backwards.
@@ -131,6 +132,6 @@ fn multiple<const D: usize>(field: &[[f64; D]], stated: &[[f64; D]], at: impl Fn
     (apart(factor) <= FALL * apart(1.0)).then_some(factor)
 }
 
-fn mean<const D: usize>(field: &[[f64; D]]) -> [f64; D] {
-    std::array::from_fn(|c| field.iter().map(|v| v[c]).sum::<f64>() / field.len() as f64)
+fn mean<const D: usize>(field: &[[f64; D]], nodes: &[usize]) -> [f64; D] {
+    std::array::from_fn(|c| nodes.iter().map(|&node| field[node][c]).sum::<f64>() / nodes.len().max(1) as f64)
 }

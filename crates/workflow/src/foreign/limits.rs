@@ -27,6 +27,9 @@ pub(super) const CONE: f64 = 1e-2;
 /// Limit of `gap_under_force` and `penetration`, in elements. The softest penalty of docs/recipes.md has 0.35, which
 /// the estimate grades; more is a plane at another place, or another unit of length.
 pub(super) const GAP: f64 = 1.0;
+/// The same without any contact force. A penalty that meets its first penetration with the next step has at most the
+/// way of a step, 0.1 at a tenth of the wave speed.
+const THROUGH: f64 = 0.1;
 /// Limit of `touching`: a status that is shifted by a step has 1.
 pub(super) const TOUCHING: f64 = 0.05;
 /// Penetration and gap under a force, over the element size, of Lagrange multipliers: histories of percute have less
@@ -59,9 +62,18 @@ pub(crate) fn by_a_penalty(found: &Consistency) -> bool {
     is_off_contact(found) && found.plane == 0.0 && found.penalty.is_some_and(|fit| fit > PENALTY)
 }
 
+/// The name of what is over its limit where nodes go through their plane without a contact force.
+pub(super) const THROUGH_PLANES: &str = "through_planes";
+
 /// The figures over their limits, the most telling first.
 pub(crate) fn exceeded(found: &Consistency) -> Vec<Excess> {
     of_motion(found).into_iter().chain(of_contact(found)).flatten().collect()
+}
+
+/// The penetration of a history in which no contact force acts.
+pub(crate) fn through_planes(found: &Consistency) -> Option<Excess> {
+    let what = "no contact force acts; the penetration, over the element size,";
+    excess(found.penetration, THROUGH, THROUGH_PLANES, what)
 }
 
 /// A figure over its limit.

@@ -47,7 +47,8 @@ pub(crate) use start::started;
 use crate::through::Through;
 pub(crate) use causes::REVERSED;
 pub(crate) use ends::runs_backwards;
-pub(crate) use limits::{by_a_penalty, exceeded, is_off_contact, off_contact};
+use limits::{Excess, exceeded, through_planes};
+pub(crate) use limits::{by_a_penalty, is_off_contact, off_contact};
 use measure::measure;
 use percute_core::dynamics::{Balancing, Evaluation};
 use percute_core::history::{SinkError, StateSink, StepSource};
@@ -86,8 +87,17 @@ pub struct Checked {
     pub samples: Option<Samples>,
     /// That its contact forces fit another step better, if they do.
     pub shifted: Option<String>,
-    /// Whether it would have been refused if it had not been accepted as it is.
-    pub accepted: bool,
+    /// Why it would have been refused if it had not been accepted as it is.
+    pub contradiction: Option<Contradiction>,
+}
+
+/// A history that contradicts itself or its problem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contradiction {
+    /// The figure over its limit.
+    pub figure: String,
+    /// Its likely cause.
+    pub cause: Option<String>,
 }
 
 /// What a check found.
@@ -96,18 +106,14 @@ pub(crate) struct Found {
     pub(crate) samples: Option<Samples>,
     /// That contact forces fit another step better, if they do.
     pub(crate) shifted: Option<String>,
-    /// Whether it is accepted although it is refused otherwise.
-    pub(crate) accepted: bool,
+    /// Why it is refused, unless it is to be accepted.
+    pub(crate) contradiction: Option<Contradiction>,
 }
 
 /// Why a history cannot be graded.
 pub(crate) enum Refusal {
     Unread(SinkError),
-    /// A figure over its limit, with the likely cause.
-    Inconsistent {
-        figure: String,
-        cause: Option<String>,
-    },
+    Inconsistent(Contradiction),
 }
 
 impl From<SinkError> for Refusal {
@@ -140,25 +146,34 @@ pub(crate) fn check<const D: usize, const N: usize>(
     exceeded.retain(|excess| samples.is_none() || !of_steps.contains(&excess.name));
     let touches = evidence.contact.forced.contains(&true);
     let lacking = lacking(source, &found, (evidence.given, [touches, evidence.contact.slides()]), critical);
-    if accept {
-        let accepted = lacking.is_some() || !exceeded.is_empty();
-        return Ok(Found { consistency: found, samples, shifted: None, accepted });
-    }
-    let balance = exceeded.iter().find(|excess| excess.name == "balance");
+    exceeded.extend(through_planes(&found).filter(|_| !touches));
     let suspect = Suspect { problem, source, derived, found: &found, evidence: &evidence };
+    let contradiction = contradiction(&suspect, lacking, &exceeded)?;
+    if let Some(contradiction) = contradiction.clone().filter(|_| !accept) {
+        return Err(Refusal::Inconsistent(contradiction));
+    }
+    let complete = samples.is_none() && contradiction.is_none();
+    let shifted = if complete { of_balance::shifted(&suspect)? } else { None };
+    Ok(Found { consistency: found, samples, shifted, contradiction })
+}
+
+/// The figure over its limit that tells most, with its likely cause. What is `lacking` comes with a way out.
+fn contradiction<const D: usize, const N: usize>(
+    suspect: &Suspect<'_, D, N>,
+    lacking: Option<(String, String)>,
+    exceeded: &[Excess],
+) -> Result<Option<Contradiction>, SinkError> {
+    let balance = exceeded.iter().find(|excess| excess.name == "balance");
     if let Some((figure, way_out)) = lacking {
-        let changed = balance.map(|_| of_balance::changed(&suspect)).transpose()?.flatten();
+        let changed = balance.map(|_| of_balance::changed(suspect)).transpose()?.flatten();
         let figure = balance.filter(|_| changed.is_some()).map_or(figure, |excess| excess.what.clone());
-        return Err(Refusal::Inconsistent { figure, cause: changed.or(Some(way_out)) });
+        return Ok(Some(Contradiction { figure, cause: changed.or(Some(way_out)) }));
     }
-    if let Some(first) = exceeded.first() {
-        let cause = suspect.cause(&exceeded)?;
-        let place = if cause.is_none() && balance.is_some() { of_balance::place(&suspect) } else { String::new() };
-        let cause = cause.or_else(|| of_balance::hint(&suspect).filter(|_| balance.is_some()));
-        return Err(Refusal::Inconsistent { figure: format!("{}{place}", balance.unwrap_or(first).what), cause });
-    }
-    let shifted = if samples.is_none() { of_balance::shifted(&suspect)? } else { None };
-    Ok(Found { consistency: found, samples, shifted, accepted: false })
+    let Some(first) = exceeded.first() else { return Ok(None) };
+    let cause = suspect.cause(exceeded)?;
+    let place = if cause.is_none() && balance.is_some() { of_balance::place(suspect) } else { String::new() };
+    let cause = cause.or_else(|| of_balance::hint(suspect).filter(|_| balance.is_some()));
+    Ok(Some(Contradiction { figure: format!("{}{place}", balance.unwrap_or(first).what), cause }))
 }
 
 /// a/b, and 0 where both are.

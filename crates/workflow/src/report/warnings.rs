@@ -56,6 +56,8 @@ pub(super) struct Facts<'a> {
     pub(super) interrupted: bool,
     pub(super) reconstruction: Reconstruction,
     pub(super) kept_impulse: Option<f64>,
+    /// Whether a contact force acts at any instant.
+    pub(super) touches: bool,
     pub(super) own_contacts: usize,
     /// The farthest that pairs of nodes slip, over their shortest edge.
     pub(super) slip: f64,
@@ -71,7 +73,7 @@ pub(super) struct Facts<'a> {
 
 /// What only the results of a run show.
 pub(super) fn found(facts: &Facts<'_>) -> Vec<Warning> {
-    let accepted = facts.checked.is_some_and(|checked| checked.accepted);
+    let accepted = facts.checked.is_some_and(|checked| checked.contradiction.is_some());
     let of_motion = [
         drift(facts.drift, facts.steps_vary),
         relative_error(facts.relative),
@@ -296,12 +298,14 @@ fn kept_impulse(facts: &Facts<'_>) -> Option<Symptom> {
 fn no_contact(facts: &Facts<'_>) -> Option<Symptom> {
     let foreseen =
         facts.plausibility_warnings.iter().any(|plausibility_warning| plausibility_warning.name == "never_touches");
-    if facts.problem.obstacles.is_empty() || facts.kept_impulse.is_some() || foreseen {
+    if facts.problem.obstacles.is_empty() || facts.touches || foreseen {
         return None;
     }
     let when = if facts.interrupted { "before it was interrupted" } else { "before `end`" };
     let figure = format!("no contact force acted {when}");
-    symptom("no_contact", format!("no contact {when}"), figure, "check the gap, the velocity and `[time] end`")
+    let end = if facts.checked.is_some() { "the end of the history" } else { "`[time] end`" };
+    let remedy = format!("check the gap, the velocity and {end}");
+    symptom("no_contact", format!("no contact {when}"), figure, remedy)
 }
 
 /// Pairs of nodes that are no longer opposite each other.

@@ -1,7 +1,7 @@
 //! The facts that a verdict follows from.
 
 use super::touches::Contact;
-use crate::foreign::{Checked, by_a_penalty, exceeded, is_off_contact, off_contact};
+use crate::foreign::{Checked, Contradiction, by_a_penalty, is_off_contact, off_contact};
 use crate::report::flat::FlatElements;
 use crate::report::rebound::Rebound;
 use percute_core::contact::ContactResults;
@@ -59,7 +59,7 @@ pub(in crate::report) struct Facts {
     pub(super) kept_impulse: Option<f64>,
     pub(super) expected: Option<Expected>,
     /// Of a history of another program: its first figure over a limit.
-    pub(super) inconsistent: Option<String>,
+    pub(super) inconsistent: Option<Contradiction>,
     /// Of a history of another program: the residual of its balance over the largest term.
     pub(super) unbalanced: f64,
     /// Whether the contact of another program is by a penalty.
@@ -136,7 +136,7 @@ impl Facts {
             // A node with a contact of its own touches at other instants in the admissible fields.
             kept_impulse: estimate.kept_impulse.filter(|_| estimate.own_contacts == 0),
             expected: expected(estimate),
-            inconsistent: figures.and_then(|found| exceeded(found).into_iter().next()).map(|excess| excess.what),
+            inconsistent: beside.checked.and_then(|checked| checked.contradiction.clone()),
             unbalanced: figures.map_or(0.0, |found| found.balance),
             by_a_penalty: figures.is_some_and(by_a_penalty),
             off_contact: figures.filter(|found| is_off_contact(found)).map(off_contact),

@@ -4,10 +4,13 @@ use super::Shares;
 use super::facts::Facts;
 use super::rules::{self, Rule};
 use super::touches::Touches;
+use crate::foreign::Contradiction;
 use crate::message::{change, short, whole_percent};
 
 /// A relative error above this is as large as the solution: it cannot exceed 1/√2 by much.
 const AS_LARGE: f64 = 0.5;
+/// Less of the squared error is not told.
+const LEAST: f64 = 5e-3;
 /// A larger drift of the energy balance is a reason for doubt.
 const DRIFT: f64 = 0.1;
 /// So is an admissible contact force with less or more of the impulse.
@@ -25,7 +28,10 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
     if !facts.admissible {
         doubts.push("a residual shows that the fields are not admissible".to_string());
     }
-    doubts.extend(facts.inconsistent.iter().map(|figure| format!("the history is not consistent: {figure}")));
+    doubts.extend(facts.inconsistent.iter().map(|Contradiction { figure, cause }| {
+        let cause = cause.as_ref().map_or(String::new(), |cause| format!(" (likely cause: {cause})"));
+        format!("the history is not consistent: {figure}{cause}")
+    }));
     // A drift that is no number must not pass.
     if facts.energy_drift.is_nan() || facts.energy_drift > DRIFT {
         doubts.push(format!("the energy balance is off by {}", whole_percent(facts.energy_drift)));
@@ -91,7 +97,9 @@ fn situation(facts: &Facts, rule: &Rule, untested: &[String]) -> String {
 fn place(facts: &Facts, shares: Shares) -> String {
     let [contact, kinetic, elastic] = [shares.contact, shares.kinetic, shares.elastic].map(whole_percent);
     if facts.contact.touches == Touches::None {
-        return format!("The squared largest error is {kinetic} kinetic, {elastic} elastic.");
+        // Contact forces that only pull.
+        let contact = if shares.contact < LEAST { String::new() } else { format!("{contact} contact, ") };
+        return format!("The squared largest error is {contact}{kinetic} kinetic, {elastic} elastic.");
     }
     let near = whole_percent(facts.at_contact);
     format!(
