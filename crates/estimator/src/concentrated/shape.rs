@@ -121,13 +121,9 @@ impl<'a> ShapeCosts<'a> {
     }
 
     /// The shape of least gap energy and stress energy under a normal force (N). On an axis of symmetry two mirrored
-    /// shapes may cost the same: rounding must not choose between them, and the best symmetric one is taken.
-    pub(crate) fn shape(&self, normal: f64) -> TractionShape {
-        self.shape_within(normal, [0; 2])
-    }
-
-    /// The same of hats with so many halvings at least on each edge.
-    pub(crate) fn shape_within(&self, normal: f64, least: [usize; 2]) -> TractionShape {
+    /// shapes may cost the same: rounding must not choose between them, and the best symmetric one is taken. Hats have
+    /// so many halvings at least on each edge.
+    pub(crate) fn shape(&self, normal: f64, least: [usize; 2]) -> TractionShape {
         let halvings = |edge: usize| least[edge]..=HATS;
         if self.gaps.len() == 1 {
             return self.cheapest(halvings(0).map(TractionShape::of_one), normal).1;
@@ -226,8 +222,8 @@ mod tests {
     fn flat_edges_keep_their_density() {
         let (energy, _) = corner(0.0);
         let wide = Hat { share: 0.5, halvings: 0 };
-        assert_eq!(costs(&energy, &[0.0, 0.0]).shape(1e5)[..], [wide, wide]);
-        let shape = costs(&energy, &[0.0, 1e-3]).shape(1e3);
+        assert_eq!(costs(&energy, &[0.0, 0.0]).shape(1e5, [0; 2])[..], [wide, wide]);
+        let shape = costs(&energy, &[0.0, 1e-3]).shape(1e3, [0; 2]);
         assert!(shape[0].share > 0.999 && shape[0].halvings == 0, "{shape:?}");
     }
 
@@ -236,7 +232,7 @@ mod tests {
     fn width_follows_the_force() {
         let (energy, gaps) = corner(10_f64.to_radians());
         let width = |force: f64| {
-            let shape = costs(&energy, &gaps).shape(force);
+            let shape = costs(&energy, &gaps).shape(force, [0; 2]);
             assert!((shape[0].share + shape[1].share - 1.0).abs() < 1e-15);
             shape[0].halvings
         };
@@ -251,7 +247,7 @@ mod tests {
         let (energy, gaps) = corner(0.3);
         let costs = costs(&energy, &gaps);
         for force in [1e2, 1e4, 1e6] {
-            let best = costs.cost(&costs.shape(force), force);
+            let best = costs.cost(&costs.shape(force, [0; 2]), force);
             for a in 0..=HATS {
                 for b in 0..=HATS {
                     let shape = |share: f64| TractionShape::of_two([share, 1.0 - share], [a, b]);
@@ -272,7 +268,7 @@ mod tests {
         let costs = costs(&energy, &gaps);
         for force in [1e2, 1e5, 1e8] {
             for least in [[1, 0], [0, 3], [2, 5], [HATS, HATS]] {
-                let shape = costs.shape_within(force, least);
+                let shape = costs.shape(force, least);
                 assert!(shape.iter().zip(least).all(|(hat, least)| hat.halvings >= least), "{shape:?}");
                 let pairs = (least[0]..=HATS).flat_map(|a| (least[1]..=HATS).map(move |b| [a, b]));
                 let cost = |pair| {
@@ -292,7 +288,7 @@ mod tests {
         for k in 0..60 {
             let gap = 1e-7 * 1.2_f64.powi(k);
             for gaps in [[gap, gap], [gap * (1.0 + 1e-13), gap], [gap, gap * (1.0 + 1e-13)]] {
-                let shape = costs(&energy, &gaps).shape(1e4);
+                let shape = costs(&energy, &gaps).shape(1e4, [0; 2]);
                 assert_eq!(shape[0].halvings, shape[1].halvings, "{gap}");
                 assert!((shape[0].share - 0.5).abs() < 1e-9, "{gap}");
             }

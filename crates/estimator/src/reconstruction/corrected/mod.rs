@@ -7,6 +7,7 @@ mod lumping_difference;
 mod moment_correction;
 mod motions;
 mod sliding;
+mod sliding_motion;
 mod traction_minimisation;
 
 use super::{BalancedFields, ReconstructionMethod, SimulatedStep, StepDensities, SurfaceSteps, friction};
@@ -23,11 +24,11 @@ use crate::residual::worse;
 use crate::time_level::{ForcesKnown, MotionKnown, SurfaceStep};
 use crate::traction::{EquilibratedLevels, Equilibration, Then};
 pub(crate) use concentration::Concentration;
-use concentration::OwnForces;
-use impulse_smoothing::ImpulseSmoothing;
+use concentration::{Faced, Known, OwnForces};
+use impulse_smoothing::{ImpulseSmoothing, Stopped};
 use lumping_difference::lumping_difference;
 use moment_correction::MomentCorrection;
-use motions::{AuxiliaryLevel, Motions, Shares, SimulatedLevel};
+use motions::{Approach, AuxiliaryLevel, FreeMotion, Motions, Shares, SimulatedLevel};
 use percute_core::contact::{ContactNode, Coupling};
 use percute_core::dynamics::Dynamics;
 use percute_core::history::{State, Step};
@@ -35,6 +36,7 @@ use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 use percute_core::time::TimeGrid;
 use sliding::SlidingForces;
+use sliding_motion::SlidingMotion;
 use std::borrow::Cow;
 use std::sync::Arc;
 use traction_minimisation::TractionMinimisation;
@@ -92,6 +94,31 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         }
     }
 
+    /// Replaces the forces (N) at nodes that touch alone, from the motions of all contact nodes over the step n.
+    fn replace_own(
+        &mut self,
+        (n, free): (usize, &[FreeMotion<D>]),
+        stopped: &[Option<Stopped>],
+        around: &Around<'_>,
+        [contact, arresting]: [&mut [[f64; D]]; 2],
+    ) {
+        let (problem, surface, length) = (self.problem, self.problem.surface(), self.times.step(n));
+        let Some(concentration) = &self.concentration else { return };
+        let time = |at: usize| {
+            let own = || self.impulse_smoothing.as_ref().map_or(length, |smoothing| smoothing.time(at));
+            stopped.get(at).copied().flatten().map_or_else(own, |stopped| stopped.time)
+        };
+        let steps = |at: usize| length / time(at);
+        let mut known = Known { problem, concentration, gap: around.gap, steps: &steps, contact, arresting };
+        self.own_forces.replace(&mut known, |at| Approach::new(problem, at, free));
+        for (sliding, coupling) in surface.sliding().iter().zip(around.couplings) {
+            let nodes = sliding.positions().filter(|&at| surface.nodes()[at].free);
+            let nodes = nodes.filter_map(|at| Some((at, around.faced[at]?))).collect();
+            let mut motion = SlidingMotion::new((sliding, coupling), free, known.contact);
+            self.own_forces.replace_in_turn(nodes, &mut known, |at, forces| motion.approach(at, forces));
+        }
+    }
+
     /// The fields of the simulation, where there is no auxiliary solution.
     fn balance_simulation(
         &self,
@@ -114,6 +141,16 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         BalancedFields { displacement, force, contact, densities: Some(densities), lumping_difference }
     }
 
+    fn around<'a>(&self, gap: &'a [f64], couplings: &'a [Arc<Coupling>]) -> Around<'a> {
+        let surface = self.problem.surface();
+        let stands = |at: usize| surface.sliding_of(at).is_none().then_some(Faced::WHOLE);
+        let mut faced: Vec<_> = (0..surface.nodes().len()).map(stands).collect();
+        if let Some(concentration) = &self.concentration {
+            self.sliding.add_faced(concentration, couplings, &mut faced);
+        }
+        Around { gap, couplings, faced }
+    }
+
     /// The densities of an instant: of the forces of F_DA, and of the reactions of which the normal work is measured.
     fn level(&self, [acting, sudden]: [&[[f64; D]]; 2], around: &Around<'_>) -> LevelDensities<D> {
         LevelDensities { acting: self.at(acting, around), sudden: self.at(sudden, around) }
@@ -122,8 +159,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     /// The densities of a level: those that were kept, or those of its forces and reactions without surfaces that
     /// slide.
     fn kept<'a>(&self, step: &'a SurfaceStep<D>) -> Cow<'a, LevelDensities<D>> {
-        let around = Around { gap: &step.gap, couplings: &[] };
-        let made = || Cow::Owned(self.level([&step.force, &step.reaction], &around));
+        let made = || Cow::Owned(self.level([&step.force, &step.reaction], &self.around(&step.gap, &[])));
         step.densities.as_ref().map_or_else(made, Cow::Borrowed)
     }
 
@@ -143,14 +179,10 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         for (at, force) in reaction.iter().enumerate() {
             // The traction on the other one of two nodes that touch is the same, reversed.
             let facing = nodes[at].opposite.filter(|_| !surface.leads(at));
-            let concentration = concentration.filter(|_| surface.sliding_of(at).is_none());
             shapes.push(concentration.and_then(|concentration| match facing {
                 Some(first) => Some(concentration.facing(problem, [first, at], shapes[first].as_ref()?)),
-                None => concentration.shape(problem, at, (force, 1.0), around.gap),
+                None => concentration.shape(problem, at, around.faced[at].as_ref()?, force, around.gap),
             }));
-        }
-        if let Some(concentration) = concentration {
-            self.sliding.add_shapes(concentration, around.couplings, (around.gap, &reaction), &mut shapes);
         }
         let shaped = |at: usize| concentration.zip(shapes[at].as_ref());
         if let Some(correction) = &self.moment_correction {
@@ -183,12 +215,14 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     }
 }
 
-/// What the nodes of the contact surface face at an instant.
+/// The nodes of the contact surface at an instant.
 struct Around<'a> {
     /// Gaps of the simulation (m).
     gap: &'a [f64],
     /// Those of surfaces that slide.
     couplings: &'a [Arc<Coupling>],
+    /// What each node faces, if its traction may be hats.
+    faced: Vec<Option<Faced>>,
 }
 
 impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_, D, N> {
@@ -232,28 +266,21 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let couplings: Vec<Arc<Coupling>> =
             surface.sliding().iter().map(|sliding| Arc::new(sliding.coupling(surface, step.displacement))).collect();
         let mut arresting = self.sliding.of(self.times, state);
+        let acceleration = |node| state.acceleration_of(node);
+        let stopped = self.sliding.stopped(&couplings, acceleration);
         let mut contact = match &mut self.impulse_smoothing {
-            Some(smoothing) => {
-                let acceleration = |node| state.acceleration_of(node);
-                let stopped = self.sliding.stopped(&couplings, acceleration);
-                smoothing.advance(problem, self.times, step.index, &arresting, acceleration, &stopped)
-            }
+            Some(smoothing) => smoothing.advance(problem, self.times, step.index, &arresting, acceleration, &stopped),
             None => arresting.clone(),
         };
         [&mut arresting, &mut contact].into_iter().for_each(|forces| self.sliding.gather(&couplings, forces));
         let gap = surface.gaps(step.displacement);
-        let around = Around { gap: &gap, couplings: &couplings };
+        let around = self.around(&gap, &couplings);
         let Some(mut motions) = self.motions.take() else {
             return self.balance_simulation(dynamics, state, [contact, arresting], &around, pool);
         };
         motions.begin(dynamics, step.index);
-        if let Some(concentration) = &self.concentration {
-            let approaches = motions.approaches(dynamics, step.index);
-            let (step, smoothing) = (self.times.step(step.index), self.impulse_smoothing.as_ref());
-            let steps = |at: usize| smoothing.map_or(1.0, |smoothing| step / smoothing.time(at));
-            let fields = [contact.as_mut_slice(), arresting.as_mut_slice()];
-            self.own_forces.apply(problem, concentration, &gap, |at| approaches[at], steps, fields);
-        }
+        let free = motions.free_motions(dynamics, step.index);
+        self.replace_own((step.index, free), &stopped, &around, [&mut contact, &mut arresting]);
         let densities = self.level([&contact, &arresting], &around);
         self.halvings = halvings(&contact, &densities.acting);
         let pull = driving_forces(problem, &densities.acting);

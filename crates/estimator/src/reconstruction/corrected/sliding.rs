@@ -4,7 +4,7 @@
 //! such a node is R_k = w_k λ_k; its density has the same resultant on both surfaces, and the moment of the reactions
 //! by a correction over all nodes that act. Where edges of the slave leave the master, the density of a node is hats.
 
-use super::concentration::{Concentration, Reach};
+use super::concentration::{Concentration, Faced, Reach};
 use super::impulse_smoothing::Stopped;
 use super::moment_correction::{CorrectedNode, Group};
 use crate::concentrated::TractionShape;
@@ -87,8 +87,9 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
             let inward = |side: &Side, k: usize| along(&acceleration(node(side, k)), sliding.frame().normal());
             for k in (0..coupling.len()).filter(|&k| coupling.is_active(k)) {
                 let weight = coupling.weight(k);
-                let moved = weight * weight
-                    / mobility(coupling, k, [sliding.slave(), sliding.master()], |side, k| mass[node(side, k)]);
+                let inverse = |side, k| 1.0 / mass[node(side, k)];
+                let mobility = mobility(coupling, k, |k| inverse(sliding.slave(), k), |k| inverse(sliding.master(), k));
+                let moved = weight * weight / mobility;
                 let relative = coupling.difference(k, |k| inward(sliding.slave(), k), |k| inward(sliding.master(), k));
                 stopped[sliding.slave().position(k)] = Some(Stopped {
                     mass: moved,
@@ -116,23 +117,22 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
         }
     }
 
-    /// Adds the shapes of the tractions of the nodes of slaves to those of all nodes of the contact surface. There is
-    /// none where the density over whole edges is best. Beside the end of the master, hats are within the part of the
-    /// edge that it faces.
-    pub(super) fn add_shapes(
+    /// Adds what the nodes of slaves face, if their tractions may be hats, to that of all nodes of the contact surface.
+    /// Beside the end of the master, hats are within the part of the edge that it faces.
+    pub(super) fn add_faced(
         &self,
         concentration: &Concentration<D>,
         couplings: &[Arc<Coupling>],
-        (gap, forces): (&[f64], &[[f64; D]]),
-        shapes: &mut [Option<TractionShape>],
+        faced: &mut [Option<Faced>],
     ) {
-        let (problem, surface) = (self.problem, self.problem.surface());
-        for ((sliding, coupling), compliance) in surface.sliding().iter().zip(couplings).zip(&self.compliance) {
+        for ((sliding, coupling), compliance) in
+            self.problem.surface().sliding().iter().zip(couplings).zip(&self.compliance)
+        {
             let slave = sliding.slave();
-            for k in 0..slave.len() {
+            for k in (0..slave.len()).filter(|&k| coupling.is_active(k)) {
                 let (at, Some([before, after])) = (slave.position(k), reaches(slave, coupling, k)) else { continue };
                 let reach = |far: usize| if slave.node_at(far).is_some_and(|far| far < k) { before } else { after };
-                shapes[at] = concentration.shape_within(problem, at, (&forces[at], *compliance), gap, reach);
+                faced[at] = Some(concentration.faced(at, *compliance, reach));
             }
         }
     }
@@ -179,12 +179,17 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
     }
 }
 
-/// A_kk = Σ D_ki²/m_i + Σ M_kj²/m_j (m²/kg).
-fn mobility(coupling: &Coupling, k: usize, sides: [&Side; 2], mass: impl Fn(&Side, usize) -> f64) -> f64 {
-    let slave = coupling.slave_row(k).into_iter().enumerate().filter(|(_, value)| *value != 0.0);
-    let own: f64 = slave.map(|(at, value)| value * value / mass(sides[0], k + at - 1)).sum();
+/// A_kk = Σ D_ki²/m_i + Σ M_kj²/m_j (m²/kg), from 1/m of the nodes of slave and master.
+pub(super) fn mobility(
+    coupling: &Coupling,
+    k: usize,
+    slave: impl Fn(usize) -> f64,
+    master: impl Fn(usize) -> f64,
+) -> f64 {
+    let acts = coupling.slave_row(k).into_iter().enumerate().filter(|(_, value)| *value != 0.0);
+    let own: f64 = acts.map(|(at, value)| value * value * slave(k + at - 1)).sum();
     let (first, row) = coupling.master_row(k);
-    let other = row.iter().enumerate().map(|(at, value)| value * value / mass(sides[1], first + at));
+    let other = row.iter().enumerate().map(|(at, value)| value * value * master(first + at));
     own + other.sum::<f64>()
 }
 

@@ -4,6 +4,8 @@
 //! the gap under it is linear in the force, while the square of the true error is quadratic: at low speed, the estimate
 //! of a corner or a curve would be many times too large.
 
+mod faced;
+mod own_contact;
 mod own_forces;
 mod star;
 
@@ -11,7 +13,9 @@ use crate::concentrated::{HATS, HatStress, LoadedStar, ShapeCosts, StarResiduals
 use crate::contact_density::NarrowHat;
 use crate::residual::{Residuals, worse};
 use crate::stress::StressResiduals;
-pub(super) use own_forces::OwnForces;
+use faced::NodeCosts;
+pub(super) use faced::{Faced, Reach};
+pub(super) use own_forces::{Known, OwnForces};
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::problem::Problem;
@@ -29,25 +33,6 @@ pub(crate) struct Concentration<const D: usize> {
     tolerance: f64,
 }
 
-/// The part of an edge of a node that faces the obstacle, from the node on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Reach {
-    /// The part of its length.
-    pub(super) faces: f64,
-    /// Where the gap of the other node is taken, as a part of its length.
-    pub(super) known: f64,
-}
-
-impl Reach {
-    /// All of an edge.
-    pub(super) const WHOLE: Self = Self { faces: 1.0, known: 1.0 };
-
-    /// How often the edge is halved until a hat is within this part.
-    fn halvings(&self) -> usize {
-        (0..=HATS).find(|&k| 0.5_f64.powi(k as i32) <= self.faces).unwrap_or(HATS + 1)
-    }
-}
-
 impl<const D: usize> Concentration<D> {
     pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
         let nodes = NodeStar::all(problem);
@@ -58,49 +43,31 @@ impl<const D: usize> Concentration<D> {
     /// About how much memory the stresses take (bytes) of the stars of which an edge leaves the plane at the beginning.
     pub(super) fn memory<const N: usize>(&self, problem: &Problem<D, N>) -> usize {
         let gap = problem.surface().gaps(problem.initial_displacement());
-        let needed = (0..self.nodes.len()).filter(|&at| self.gaps(at, &gap).is_some());
+        let needed = (0..self.nodes.len()).filter(|&at| self.gaps(at, &Faced::WHOLE, &gap).is_some());
         let stars: BTreeSet<usize> = needed.map(|at| self.nodes[at].alike).collect();
         let memory = |star: &NodeStar| StarStress::memory(star.elements.len(), star.sides.len());
         stars.into_iter().map(|at| memory(&self.nodes[at])).sum()
     }
 
-    /// The shape of the traction of one node on edges that face their obstacle as a whole, see [`Self::shape_within`].
+    /// The shape of the traction of one node under a force (N). None where its tributary density is best: where no edge
+    /// leaves the plane, where a hat as wide as a part that is faced is best, or where rounding spoils the stress of
+    /// hats.
     pub(super) fn shape<const N: usize>(
         &self,
         problem: &Problem<D, N>,
         at: usize,
-        force: (&[f64; D], f64),
+        faced: &Faced,
+        force: &[f64; D],
         gap: &[f64],
-    ) -> Option<TractionShape> {
-        self.shape_within(problem, at, force, gap, |_| Reach::WHOLE)
-    }
-
-    /// The shape of the traction of one node under a force (N), where what it touches makes its compliance so many
-    /// times larger, on the edges to other nodes, of which these parts face the obstacle. None where its tributary
-    /// density is best: where no edge leaves the plane, where a hat as wide as a part is best, or where rounding spoils
-    /// the stress of hats.
-    pub(super) fn shape_within<const N: usize>(
-        &self,
-        problem: &Problem<D, N>,
-        at: usize,
-        (force, compliance): (&[f64; D], f64),
-        gap: &[f64],
-        reach: impl Fn(usize) -> Reach,
     ) -> Option<TractionShape> {
         let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
         let normal = frame.split(force).0;
-        let mut gaps = self.gaps(at, gap).filter(|_| normal > 0.0)?;
-        let edges = &self.nodes[at].edges;
-        gaps.iter_mut().zip(edges).for_each(|(gap, edge)| *gap /= reach(edge.far).known);
-        let least = std::array::from_fn(|k| edges.get(k).map_or(0, |edge| reach(edge.far).halvings()));
-        if least.into_iter().any(|least| least > HATS) {
-            return None;
-        }
-        let costs = self.costs(problem, at, &force.map(|f| f / normal), &gaps)?;
-        let shape = costs.shape_within(compliance * normal, least);
+        let gaps = self.gaps(at, faced, gap).filter(|_| normal > 0.0)?;
+        let costs = self.costs(problem, at, faced, &force.map(|f| f / normal), &gaps)?;
+        let shape = costs.shape(normal);
         // The density over a part is as good as a hat that is as wide: flat surfaces keep it.
-        let mut hats = shape.iter().zip(least).filter(|(hat, least)| *least > 0 && hat.share > 0.0);
-        hats.all(|(hat, least)| hat.halvings > least).then_some(shape)
+        let mut hats = shape.iter().zip(costs.widest).filter(|(hat, widest)| *widest > 0 && hat.share > 0.0);
+        hats.all(|(hat, widest)| hat.halvings > widest).then_some(shape)
     }
 
     /// The shape at the other one of two nodes that touch.
@@ -113,23 +80,36 @@ impl<const D: usize> Concentration<D> {
         shape.reordered(self.facing_edges(problem, opposite, at))
     }
 
+    /// What a node faces on the edges to other nodes, of which these parts face it; its compliance makes that of the
+    /// node so many times larger.
+    pub(super) fn faced(&self, at: usize, compliance: f64, reach: impl Fn(usize) -> Reach) -> Faced {
+        let edges = &self.nodes[at].edges;
+        Faced { compliance, reach: std::array::from_fn(|k| edges.get(k).map_or(Reach::WHOLE, |edge| reach(edge.far))) }
+    }
+
     /// Gaps at the far ends of the edges of a node less its own; none where no edge leaves the plane.
-    fn gaps(&self, at: usize, gap: &[f64]) -> Option<Vec<f64>> {
+    fn gaps(&self, at: usize, faced: &Faced, gap: &[f64]) -> Option<Vec<f64>> {
         let open = |k: usize| gap[k].max(0.0);
         let gaps: Vec<f64> = self.nodes[at].edges.iter().map(|edge| open(edge.far) - open(at)).collect();
-        gaps.iter().any(|gap| *gap > self.tolerance).then_some(gaps)
+        let leaves = gaps.iter().any(|gap| *gap > self.tolerance);
+        leaves.then(|| gaps.iter().zip(faced.reach).map(|(gap, reach)| gap / reach.known).collect())
     }
 
     /// The cost of shapes under a force with this direction, its normal part 1; none if rounding spoils the stress of
-    /// hats.
+    /// hats, or hats would be narrower than any.
     fn costs<'a, const N: usize>(
         &'a self,
         problem: &Problem<D, N>,
         at: usize,
+        faced: &Faced,
         direction: &[f64; D],
         gaps: &'a [f64],
-    ) -> Option<ShapeCosts<'a>> {
+    ) -> Option<NodeCosts<'a>> {
         let (nodes, star) = (problem.surface().nodes(), &self.nodes[at]);
+        let widest = faced.reach.map(|reach| reach.halvings());
+        if widest.into_iter().any(|widest| widest > HATS) {
+            return None;
+        }
         let (mut stars, mut compliance) = (Vec::with_capacity(2), 0.0);
         for node in [Some(at), nodes[at].opposite].into_iter().flatten() {
             let (other, stress) = (&self.nodes[node], self.stress(problem, node));
@@ -140,7 +120,8 @@ impl<const D: usize> Concentration<D> {
             let edges = if node == at { star.own_places() } else { self.facing_edges(problem, at, node) };
             stars.push(LoadedStar { energy: &stress.energy, frame: other.frame, edges });
         }
-        Some(ShapeCosts::new([direction[0], direction[D - 1]], compliance, gaps, &star.tributary, stars))
+        let shapes = ShapeCosts::new([direction[0], direction[D - 1]], compliance, gaps, &star.tributary, stars);
+        Some(NodeCosts { shapes, compliance: faced.compliance, widest })
     }
 
     /// The position of the edge of another node that faces each edge of a node.

@@ -1,6 +1,6 @@
 //! Shapes of the tractions of a block on its corner, and the own force of a node that touches alone.
 
-use super::own_forces::OwnForces;
+use super::own_forces::{Known, OwnForces};
 use super::star::CandidateEdge;
 use super::*;
 use crate::contact_density::{Densities, nodal_forces};
@@ -64,7 +64,7 @@ fn tractions_have_the_force_and_its_centroid() {
     let (at, force) = corner(&problem);
     for scale in [1e-3, 1.0, 1e3] {
         let force = force.map(|f| scale * f);
-        let shape = concentration.shape(&problem, at, (&force, 1.0), &gaps(&problem)).unwrap();
+        let shape = concentration.shape(&problem, at, &Faced::WHOLE, &force, &gaps(&problem)).unwrap();
         let hats: Vec<_> = concentration.hats(at, &shape, &force).collect();
         let values = |f: usize, k: usize| if k == at { concentration.wide(k, f, &shape, &force) } else { [0.0; 2] };
         let densities = Densities::with_hats(&problem, |f, facet| facet.nodes.map(|k| values(f, k)), hats);
@@ -91,7 +91,7 @@ fn congruent_stars_share_their_stress() {
     let alike: BTreeSet<_> = concentration.nodes.iter().map(|star| star.alike).collect();
     assert!(alike.len() <= 5 && concentration.nodes.len() == 13, "{} of {}", alike.len(), concentration.nodes.len());
     let flat = vec![0.0; concentration.nodes.len()];
-    assert!((0..flat.len()).all(|at| concentration.shape(&problem, at, (&[0.0, 1e6], 1.0), &flat).is_none()));
+    assert!((0..flat.len()).all(|at| concentration.shape(&problem, at, &Faced::WHOLE, &[0.0, 1e6], &flat).is_none()));
     assert!(concentration.stresses.iter().all(|stress| stress.get().is_none()));
 }
 
@@ -156,6 +156,19 @@ fn own_force(
     after(problem, concentration, own, 1.0, step)
 }
 
+/// Replaces the first of two fields, with these gaps (m) and a step so long, over τ.
+fn replace(
+    problem: &TriangleProblem,
+    concentration: &Concentration<2>,
+    own: &mut OwnForces<2>,
+    (gap, steps): (&[f64], f64),
+    approach: impl Fn(usize) -> Approach<2>,
+    [contact, arresting]: [&mut [[f64; 2]]; 2],
+) {
+    let mut known = Known { problem, concentration, gap, steps: &|_| steps, contact, arresting };
+    own.replace(&mut known, approach);
+}
+
 /// The same after a step of another length, over τ.
 fn after(
     problem: &TriangleProblem,
@@ -170,7 +183,7 @@ fn after(
     let mut arresting = contact.clone();
     let away = Approach { gap: 1.0, ..approach };
     let of = |k: usize| if k == at { approach } else { away };
-    own.apply(problem, concentration, &gap, of, |_| steps, [&mut contact, &mut arresting]);
+    replace(problem, concentration, own, (&gap, steps), of, [&mut contact, &mut arresting]);
     // The work of the reaction of a node with a force of its own is not measured.
     assert_eq!(arresting[at], [0.0; 2]);
     assert!((0..gap.len()).all(|k| k == at || contact[k] == [0.0; 2]));
@@ -191,8 +204,8 @@ fn own_forces_close_the_gap() {
     let mut own = OwnForces::new(&problem);
     let found = apply(&mut own, force, -6e-5);
     let size = found[0] * normal[0] + found[1] * normal[1];
-    let (gaps, largest) = (concentration.gaps(at, &gap).unwrap(), 6e7);
-    let costs = concentration.costs(&problem, at, &normal, &gaps).unwrap();
+    let (gaps, largest) = (concentration.gaps(at, &Faced::WHOLE, &gap).unwrap(), 6e7);
+    let costs = concentration.costs(&problem, at, &Faced::WHOLE, &normal, &gaps).unwrap();
     let remaining = |size: f64| -6e-5 + 1e-12 * size + costs.approach(&costs.shape(size), normal, size);
     assert!(size > 0.0 && size < 0.1 * largest, "{size}");
     // 40 bisections of the force that stops the node.
@@ -203,7 +216,9 @@ fn own_forces_close_the_gap() {
     }
     // Under this reaction the node would not be alone; it keeps its own force.
     let large = force.map(|f| 1e5 * f);
-    assert!(concentration.shape(&problem, at, (&large, 1.0), &gap).unwrap().iter().any(|hat| hat.halvings == 0));
+    assert!(
+        concentration.shape(&problem, at, &Faced::WHOLE, &large, &gap).unwrap().iter().any(|hat| hat.halvings == 0)
+    );
     assert_eq!(apply(&mut own.clone(), large, -6e-5), apply(&mut own.clone(), [0.0; 2], -6e-5));
 }
 
@@ -267,7 +282,7 @@ fn a_flat_zone_has_no_own_force() {
     contact[at] = force;
     let mut arresting = contact.clone();
     let of = |k: usize| onto(if k == at { -6e-5 } else { 1.0 });
-    OwnForces::new(&problem).apply(&problem, &concentration, &gap, of, |_| 1.0, [&mut contact, &mut arresting]);
+    replace(&problem, &concentration, &mut OwnForces::new(&problem), (&gap, 1.0), of, [&mut contact, &mut arresting]);
     assert_eq!([contact[at], arresting[at]], [force; 2]);
 }
 
@@ -277,7 +292,7 @@ fn a_hat_outside_the_cone_shows() {
     let problem = tilted();
     let concentration = Concentration::new(&problem);
     let (at, force) = corner(&problem);
-    let shape = concentration.shape(&problem, at, (&force, 1.0), &gaps(&problem)).unwrap();
+    let shape = concentration.shape(&problem, at, &Faced::WHOLE, &force, &gaps(&problem)).unwrap();
     let step = free_step(&problem);
     let cone = |force: [f64; 2]| {
         let hats: Vec<_> = concentration.hats(at, &shape, &force).collect();
@@ -299,7 +314,7 @@ fn the_residuals_of_stars_are_reported() {
     let problem = tilted();
     let concentration = Concentration::new(&problem);
     let (at, force) = corner(&problem);
-    concentration.shape(&problem, at, (&force, 1.0), &gaps(&problem)).unwrap();
+    concentration.shape(&problem, at, &Faced::WHOLE, &force, &gaps(&problem)).unwrap();
     let mut residuals = Residuals::default();
     concentration.add_residuals(&mut residuals);
     let made = [residuals.hat_resultants, residuals.hat_stress];
@@ -313,7 +328,7 @@ fn shares_that_are_none_show() {
     let concentration = Concentration::new(&problem);
     let (at, force) = corner(&problem);
     let gap = gaps(&problem);
-    let shape = concentration.shape(&problem, at, (&force, 1.0), &gap).unwrap();
+    let shape = concentration.shape(&problem, at, &Faced::WHOLE, &force, &gap).unwrap();
     let hats: Vec<_> = concentration.hats(at, &shape, &force).collect();
     let residual = |hats: &[NarrowHat<2>]| concentration.share_residual(at, &shape, &force, hats);
     assert!(hats.len() == 2 && residual(&hats) < 1e-15, "{hats:?}");

@@ -1,7 +1,7 @@
 use super::MomentCorrection;
 use crate::contact_density::nodal_forces;
 use crate::options::Options;
-use crate::reconstruction::corrected::{Around, Corrected};
+use crate::reconstruction::corrected::Corrected;
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
@@ -43,11 +43,8 @@ fn balance(problem: &TriangleProblem, forces: &[[f64; 2]]) -> [[f64; 3]; 2] {
 /// The nodal forces that `corrected` makes of reactions.
 fn made(problem: &TriangleProblem, reaction: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let times = TimeGrid::uniform(1.0, 1).unwrap();
-    nodal_forces(
-        problem,
-        &Corrected::new(problem, &times, &Options::default())
-            .at(reaction, &Around { gap: &vec![0.0; reaction.len()], couplings: &[] }),
-    )
+    let (corrected, gap) = (Corrected::new(problem, &times, &Options::default()), vec![0.0; reaction.len()]);
+    nodal_forces(problem, &corrected.at(reaction, &corrected.around(&gap, &[])))
 }
 
 /// Reactions in the cone: normal parts up to `range` times each other, friction up to a part of what the cone allows.

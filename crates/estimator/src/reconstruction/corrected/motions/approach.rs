@@ -7,7 +7,7 @@ use super::pairs::{Moduli, Pair, Pairs};
 use super::surface::SurfaceForces;
 use super::sweeps::subtract_stiffness;
 use crate::simd::{Registers, Task, run_task};
-use percute_core::contact::Frame;
+use percute_core::contact::{ContactNode, Frame};
 use percute_core::dynamics::Dynamics;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -25,7 +25,35 @@ pub(in crate::reconstruction::corrected) struct Approach<const D: usize> {
     pub(in crate::reconstruction::corrected) mobility: f64,
 }
 
+/// The motion of a contact node over the next step without a contact force.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::reconstruction::corrected) struct FreeMotion<const D: usize> {
+    /// Displacement now and at the next instant (m).
+    pub(in crate::reconstruction::corrected) displacements: [[f64; D]; 2],
+    /// Displacement that a unit force adds until then (m/N).
+    pub(in crate::reconstruction::corrected) mobility: f64,
+}
+
 impl<const D: usize> Approach<D> {
+    /// That of a node to its obstacle or to the node that it faces, from the motions of all contact nodes.
+    pub(in crate::reconstruction::corrected) fn new<const N: usize>(
+        problem: &Problem<D, N>,
+        at: usize,
+        free: &[FreeMotion<D>],
+    ) -> Self {
+        let contact = &problem.surface().nodes()[at];
+        let FreeMotion { mut displacements, mut mobility } = free[at];
+        if let Some(opposite) = contact.opposite {
+            let other = &free[opposite];
+            let both = displacements.as_flattened_mut().iter_mut().zip(other.displacements.as_flattened());
+            both.for_each(|(own, other)| *own -= other);
+            mobility += other.mobility;
+        }
+        let frame = problem.obstacles()[contact.obstacle].flat_frame();
+        let [gap_now, gap] = displacements.map(|place| problem.surface().gap(at, &place));
+        Self { gap_now, gap, along: displacements.map(|place| frame.split(&place).1), mobility }
+    }
+
     /// The same under a force (N) beside that of the obstacle.
     pub(in crate::reconstruction::corrected) fn under(mut self, frame: &Frame<D>, force: &[f64; D]) -> Self {
         let (normal, along) = frame.split(force);
@@ -56,7 +84,7 @@ pub(super) struct NearElements<const D: usize> {
     nodes: Vec<u32>,
     displacement: Vec<Nodal>,
     forces: Vec<Nodal>,
-    approaches: Vec<Approach<D>>,
+    free: Vec<FreeMotion<D>>,
 }
 
 impl<const D: usize> NearElements<D> {
@@ -77,16 +105,16 @@ impl<const D: usize> NearElements<D> {
         }
         let count = nodes.len();
         let (displacement, forces) = (vec![Nodal::ZERO; count], vec![Nodal::ZERO; count]);
-        Self { pairs, nodes, displacement, forces, approaches: Vec::with_capacity(problem.surface().nodes().len()) }
+        Self { pairs, nodes, displacement, forces, free: Vec::with_capacity(problem.surface().nodes().len()) }
     }
 
     /// The motions of all contact nodes until t_{n+1}, corrections left out.
-    pub(super) fn approaches<const N: usize>(
+    pub(super) fn motions<const N: usize>(
         &mut self,
         dynamics: &Dynamics<'_, D, N>,
         (times, n): (&TimeGrid, usize),
         before: &BeforePass<'_, D>,
-    ) -> &[Approach<D>] {
+    ) -> &[FreeMotion<D>] {
         let (problem, BeforePass { laws, surface, fields, external, due }) = (dynamics.problem(), *before);
         let each = self.nodes.iter().zip(&mut self.displacement).zip(&mut self.forces);
         for ((node, displacement), force) in each {
@@ -97,31 +125,19 @@ impl<const D: usize> NearElements<D> {
         }
         run_task(Sweep { laws, pairs: &self.pairs, displacement: &self.displacement, forces: &mut self.forces });
         let (step, length) = (times.step(n), times.velocity_step(n));
-        let contacts = problem.surface().nodes();
-        let moving = |at: usize| {
-            let node = contacts[at].node.index();
+        let moving = |contact: &ContactNode| {
+            let node = contact.node.index();
             let own = self.nodes.partition_point(|known| (*known as usize) < node);
             let (now, velocity) = (self.displacement[own].of::<D>(0), fields.half_step[node].of::<D>(0));
             let mut force: [f64; D] = self.forces[own].of(0);
             surface.supports_of(node as u32).for_each(|(c, needed)| force[c] = needed);
             let mobility = step * length * dynamics.inverse_mass()[node];
             let next: [f64; D] = std::array::from_fn(|c| now[c] + step * velocity[c] + mobility * force[c]);
-            ([now, next], mobility)
+            FreeMotion { displacements: [now, next], mobility }
         };
-        let approach = |at: usize| {
-            let (mut places, mut mobility) = moving(at);
-            if let Some(opposite) = contacts[at].opposite {
-                let (others, other) = moving(opposite);
-                places.iter_mut().flatten().zip(others.as_flattened()).for_each(|(place, other)| *place -= other);
-                mobility += other;
-            }
-            let frame = problem.obstacles()[contacts[at].obstacle].flat_frame();
-            let [gap_now, gap] = places.map(|place| problem.surface().gap(at, &place));
-            Approach { gap_now, gap, along: places.map(|place| frame.split(&place).1), mobility }
-        };
-        self.approaches.clear();
-        self.approaches.extend((0..contacts.len()).map(approach));
-        &self.approaches
+        self.free.clear();
+        self.free.extend(problem.surface().nodes().iter().map(moving));
+        &self.free
     }
 }
 

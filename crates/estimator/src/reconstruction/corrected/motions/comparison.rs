@@ -144,7 +144,8 @@ fn compare<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Time
         let simulated = [1.0, 1.0].map(|scale| random_field::<D>(count, scale, &mut random));
         let [mut displacement, mut force, mut lumping] = [0; 3].map(|_| vec![[0.0; D]; count]);
         motions.begin(&dynamics, n);
-        let approaches = motions.approaches(&dynamics, n).to_vec();
+        let free = motions.free_motions(&dynamics, n);
+        let approaches: Vec<_> = (0..free.len()).map(|at| Approach::new(problem, at, free)).collect();
         let level = AuxiliaryLevel {
             displacement: &mut displacement,
             force: &mut force,

@@ -42,7 +42,7 @@ mod weights;
 use crate::difference::Difference;
 use crate::element::Element;
 use crate::simd::run_task;
-pub(super) use approach::Approach;
+pub(super) use approach::{Approach, FreeMotion};
 use approach::{BeforePass, NearElements};
 use blocks::Blocks;
 use energies::Energies;
@@ -206,10 +206,10 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
 
     /// The motion of the auxiliary solution at all contact nodes until t_{n+1} without a contact force, corrections
     /// left out.
-    pub(super) fn approaches(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize) -> &[Approach<D>] {
+    pub(super) fn free_motions(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize) -> &[FreeMotion<D>] {
         let Self { times, pairs, surface, near, fields, external, due, .. } = self;
         let before = BeforePass { laws: &pairs.laws, surface, fields, external, due: *due };
-        near.approaches(dynamics, (times, n), &before)
+        near.motions(dynamics, (times, n), &before)
     }
 
     /// Takes in a level: forces of the density on the nodes of the contact surface (N). Goes on to the next half step
