@@ -1,6 +1,7 @@
 //! What the user should look at before trusting a result.
 
 use super::flat::FlatElements;
+use super::symptoms::symptoms;
 use super::{LargestResidual, ProblemSummary};
 use crate::foreign::{Checked, Samples};
 use crate::message::{counted, percent, short, trimmed};
@@ -9,27 +10,8 @@ use percute_core::problem::PlausibilityWarning;
 use percute_estimator::{Reconstruction, Sampling};
 use serde::Serialize;
 
-/// Energy that appears or goes by more than this, relatively, is a warning.
-const DRIFT: f64 = 0.1;
-/// A relative error above this is a warning. η is half the squared norm of the difference of two fields, and d the sum
-/// of their squared norms: e/D is 1/√2 where they are orthogonal.
-const NEAR_CEILING: f64 = 0.6;
-/// So is a contact impulse of which less than the one or more than the other is kept.
-const KEPT: [f64; 2] = [0.9, 1.1];
-/// Pairs of nodes that slip by more edges leave the range of the method.
-pub(super) const SLIP: f64 = 0.1;
-/// Nodes of surfaces that slide that are deeper in the other body, over their edge, are outside of the evidence: there,
-/// up to 200 m/s, corners and curves are at most 0.021 of it inside.
-pub(super) const DEPTH: f64 = 0.05;
-/// The largest mean rotation of a body (rad) that is not warned of.
-const ROTATION: f64 = 0.02;
 /// Resampling of tables below this is rounding.
 const RESAMPLED: f64 = 1e-12;
-
-/// The remedy for all figures of a history that contradicts itself or its problem.
-const INCONSISTENT: &str = "the history is not consistent: correct it first";
-/// A gain of the time step by more than this is told.
-const LONGER: f64 = 1.1;
 
 /// A warning.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -74,48 +56,10 @@ pub(super) struct Facts<'a> {
 /// What only the results of a run show.
 pub(super) fn found(facts: &Facts<'_>) -> Vec<Warning> {
     let accepted = facts.checked.is_some_and(|checked| checked.contradiction.is_some());
-    let of_motion = [
-        drift(facts.drift, facts.steps_vary),
-        relative_error(facts.relative),
-        flat_elements(facts),
-        kept_impulse(facts),
-        no_contact(facts),
-        slipped(facts.slip),
-        entered(facts.depth),
-        turned(facts.rotation),
-    ];
     let mut found = [not_admissible(facts), last_instant(facts), samples(facts), shifted(facts)].to_vec();
-    found.extend(of_motion.map(|symptom| Some(symptom?.warning(accepted))));
+    found.extend(symptoms(facts).map(|symptom| Some(symptom.warning(accepted))));
     found.extend([resampled(facts), reoriented(facts)]);
     found.into_iter().flatten().collect()
-}
-
-/// A figure of the motion that is outside of its range.
-#[derive(Debug, PartialEq)]
-struct Symptom {
-    name: &'static str,
-    brief: String,
-    figure: String,
-    /// The remedy for a simulation.
-    remedy: String,
-}
-
-impl Symptom {
-    /// A history that is `accepted` although it is not consistent needs another remedy than a simulation.
-    fn warning(self, accepted: bool) -> Warning {
-        let Self { name, brief, figure, remedy } = self;
-        let remedy = if accepted { INCONSISTENT } else { &remedy };
-        Warning { name, brief, message: format!("{figure}; {remedy}") }
-    }
-}
-
-fn symptom(
-    name: &'static str,
-    brief: impl Into<String>,
-    figure: impl Into<String>,
-    remedy: impl Into<String>,
-) -> Option<Symptom> {
-    Some(Symptom { name, brief: brief.into(), figure: figure.into(), remedy: remedy.into() })
 }
 
 impl Warning {
@@ -209,147 +153,6 @@ pub fn left_out(time: f64) -> String {
     )
 }
 
-/// A warning of the energy balance of a simulation that is off.
-#[must_use]
-pub fn drifted(energy_drift: f64, steps_vary: bool) -> Option<Warning> {
-    drift(energy_drift, steps_vary).map(|symptom| symptom.warning(false))
-}
-
-fn drift(drift: f64, steps_vary: bool) -> Option<Symptom> {
-    // A drift that is no number must not pass.
-    if drift <= DRIFT {
-        return None;
-    }
-    let drift = percent(drift);
-    let remedy = match steps_vary {
-        true => "take equal time steps, since changes of the step amplify vibrations, or refine the mesh",
-        false => "reduce the time step or refine the mesh",
-    };
-    let figure = format!("the energy balance is off by {drift} of the largest energy");
-    symptom("energy_drift", format!("energy balance off by {drift}"), figure, remedy)
-}
-
-/// A relative error that says no more than that it is large.
-fn relative_error(relative: [f64; 2]) -> Option<Symptom> {
-    let largest = relative[0].max(relative[1]);
-    if largest <= NEAR_CEILING {
-        return None;
-    }
-    let shown = percent(largest);
-    let figure = format!(
-        "the relative error is {shown}: fields that have nothing in common have 70.7 % (1/√2), whatever their true \
-         error"
-    );
-    let remedy = "refine the mesh, and look for elements that are nearly flat";
-    symptom("relative_error", format!("relative error {shown}, near its ceiling of 71 %"), figure, remedy)
-}
-
-fn flat_elements(facts: &Facts<'_>) -> Option<Symptom> {
-    let FlatElements { count, flattest, share, step_without } = facts.flat?;
-    let each = |&(element, angle, own): &(usize, f64, f64)| {
-        format!("element {element} ({}°, {})", trimmed(angle, 4), percent(own))
-    };
-    let named = flattest.iter().map(each).collect::<Vec<_>>().join(", ");
-    let more = if *count > flattest.len() { format!(" and {} more", count - flattest.len()) } else { String::new() };
-    let (share, longer) = (percent(*share), step_without / facts.critical_step);
-    let step = match longer > LONGER {
-        true => format!("; without them, steps could be {} times as long", short(longer, 2)),
-        false => String::new(),
-    };
-    let figure = format!(
-        "the mesh has elements that are nearly flat, with an angle above 150°: {named}{more}. They and the elements \
-         around them have {share} of the squared mean error, and in tests the estimate was then 1.4 to 45 times the \
-         true error{step}"
-    );
-    let remedy = "move their nodes, or mesh again";
-    symptom("flat_elements", format!("nearly flat elements have {share} of the estimate"), figure, remedy)
-}
-
-fn kept_impulse(facts: &Facts<'_>) -> Option<Symptom> {
-    let [least, most] = KEPT;
-    // A node with a contact of its own touches at other instants in the admissible fields than in the simulation.
-    let kept = facts.kept_impulse.filter(|kept| facts.own_contacts == 0 && !(least..=most).contains(kept))?;
-    let shown = percent(kept);
-    let advice = match facts.reconstruction {
-        // It drops nothing, but what stops a node goes on for a few steps, and what no contact force can be is cut off.
-        Reconstruction::Corrected if kept < 1.0 => "the run ends during the onset of contact: use a later end",
-        Reconstruction::Corrected => {
-            "reactions of the history are tensile or outside Coulomb's cone: is `friction` that of the simulation?"
-        }
-        Reconstruction::Consistent | Reconstruction::Published => {
-            "refine the mesh or the steps where contact begins, or take `reconstruction = \"corrected\"`"
-        }
-    };
-    if kept > most {
-        let figure = format!(
-            "the admissible contact force has {shown} of the simulated impulse, and above 110 % it is not the force of \
-             the simulation"
-        );
-        let brief = format!("{shown} of the contact impulse in the admissible force");
-        return symptom("kept_impulse", brief, figure, advice);
-    }
-    let figure = format!(
-        "the admissible contact force keeps {shown} of the simulated impulse, and below 90 % the estimate is \
-         pessimistic"
-    );
-    symptom("kept_impulse", format!("only {shown} of the contact impulse kept"), figure, advice)
-}
-
-fn no_contact(facts: &Facts<'_>) -> Option<Symptom> {
-    let foreseen =
-        facts.plausibility_warnings.iter().any(|plausibility_warning| plausibility_warning.name == "never_touches");
-    if facts.problem.obstacles.is_empty() || facts.touches || foreseen {
-        return None;
-    }
-    let when = if facts.interrupted { "before it was interrupted" } else { "before `end`" };
-    let figure = format!("no contact force acted {when}");
-    let end = if facts.checked.is_some() { "the end of the history" } else { "`[time] end`" };
-    let remedy = format!("check the gap, the velocity and {end}");
-    symptom("no_contact", format!("no contact {when}"), figure, remedy)
-}
-
-/// Pairs of nodes that are no longer opposite each other.
-fn slipped(slip: f64) -> Option<Symptom> {
-    if slip <= SLIP {
-        return None;
-    }
-    let edges = short(slip, 2);
-    let figure = format!(
-        "pairs of nodes of two bodies slip by up to {edges} edges, but stay pairs; above {SLIP} the forces act beside \
-         their place, and at one edge the true error is 5 % larger"
-    );
-    let remedy = "use longer edges there, or an earlier end";
-    symptom("slip", format!("pairs of nodes slip by {edges} edges"), figure, remedy)
-}
-
-/// Nodes inside the other body, of which only mean gaps are known.
-fn entered(depth: f64) -> Option<Symptom> {
-    if depth <= DEPTH {
-        return None;
-    }
-    let edges = short(depth, 2);
-    let figure = format!(
-        "a node of surfaces that slide was up to {edges} of its edge inside the other body: its gap is a mean over \
-         edges, and its contact force is missing or acts too late"
-    );
-    let brief = format!("a node was {edges} of its edge inside the other body");
-    symptom("depth", brief, figure, "use shorter edges on both surfaces")
-}
-
-/// Bodies that turn farther than small rotations.
-fn turned(rotation: f64) -> Option<Symptom> {
-    if rotation <= ROTATION {
-        return None;
-    }
-    let [angle, strain] = [rotation, 0.5 * rotation * rotation].map(|value| short(value, 2));
-    let figure = format!(
-        "a body turns by up to {angle} rad, but rotations are small by assumption, up to {ROTATION} rad: this one \
-         counts as a strain of {strain}, which is no part of the error measure"
-    );
-    let brief = format!("a body turns by {angle} rad: too far for small rotations");
-    symptom("rotation", brief, figure, "take an earlier end")
-}
-
 fn resampled(facts: &Facts<'_>) -> Option<Warning> {
     let error = facts.problem.resampling_error;
     if error <= RESAMPLED {
@@ -389,23 +192,4 @@ pub fn reported<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> impl Itera
         let (brief, message) = (brief.clone(), message.clone());
         Warning { name, brief, message }
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn errors_near_the_ceiling_and_drifts_are_told() {
-        assert_eq!(relative_error([0.6, 0.5]), None);
-        let error = || relative_error([0.1, 0.61]).expect("near its ceiling");
-        let told = error().warning(false);
-        assert!(told.message.contains("61") && told.message.contains("refine the mesh") && told.doubts_result());
-        let told = error().warning(true);
-        assert!(told.message.contains("61") && !told.message.contains("refine"));
-        assert!(told.message.ends_with("correct it first"));
-        assert_eq!(drifted(0.1, false), None);
-        assert!(drifted(f64::NAN, false).is_some_and(|told| told.message.contains("reduce the time step")));
-        assert!(drifted(0.86, true).is_some_and(|told| told.message.contains("take equal time steps")));
-    }
 }

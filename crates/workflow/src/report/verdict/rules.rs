@@ -4,7 +4,7 @@
 use super::facts::Facts;
 use super::touches::Touches;
 use crate::message::percent;
-use crate::report::warnings::{DEPTH, SLIP};
+use crate::report::symptoms::{DEPTH, SLIP};
 use percute_estimator::{Acceleration, Reconstruction};
 
 /// A situation that the evidence has, and its effectivity indices.
