@@ -78,7 +78,9 @@ impl<'o> View<'o> {
                     }
                 } else {
                     let xi = 0.5 * (seen.xi[0] + seen.xi[1]);
-                    if self.in_front((pair[k], *at), seen, xi, &towards[k]).is_none() {
+                    // A side of the other body that is too steep to count may be in front, as above a corner.
+                    let third = |(body, _): &(usize, f64)| *body != pair[1 - k];
+                    if self.in_front((pair[k], *at), seen, xi, &towards[k]).filter(third).is_none() {
                         facing.beside.push((*at, aside));
                     }
                 }

@@ -54,6 +54,33 @@ fn a_block_may_have_any_angle() {
     }
 }
 
+/// A corner that slides either way stays on the other surface, also below its own side, which leans over that surface
+/// and is too steep to touch it.
+#[test]
+fn surfaces_go_on_below_a_side_that_leans_over() {
+    let plate = Mesh::<2, 3>::rectangle(0.06, 0.02, 30, 4).unwrap();
+    let block = Mesh::<2, 3>::rectangle(0.02, 0.02, 4, 4).unwrap();
+    for degrees in [10.0, 20.0, -10.0, -20.0] {
+        // The corner is above the inside of an edge of 2 mm.
+        let turned = block.placed(&[0.0, 0.0], degrees).unwrap();
+        let least = |points: &[[f64; 2]], c: usize| points.iter().map(|point| point[c]).fold(f64::INFINITY, f64::min);
+        let low = least(turned.points(), 1);
+        let corner = turned.points().iter().find(|point| point[1] == low).unwrap();
+        let block = turned.placed(&[0.0301 - corner[0], 0.0201 - low], 0.0).unwrap();
+        let problem = problem(&[("plate", &plate, [0.0; 2]), ("block", &block, [0.0, -20.0])]).unwrap();
+        let surface = problem.surface();
+        let on_plate: Vec<_> = surface.nodes().iter().map(|node| problem.mesh().points()[node.node.index()]).collect();
+        let on_plate: Vec<f64> = on_plate.iter().filter(|point| point[1] < 0.02001).map(|point| point[0]).collect();
+        let [left, right] = [
+            on_plate.iter().copied().fold(f64::INFINITY, f64::min),
+            on_plate.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        ];
+        // Half of the face of the block, which is nearly 20 mm wide, beyond the corner.
+        assert!(left < 0.0301 - 0.008 && right > 0.0301 + 0.008, "{degrees}°: {left} {right}");
+        assert_eq!(on_plate.len(), ((right - left) / 0.002).round() as usize + 1, "{degrees}°: {on_plate:?}");
+    }
+}
+
 /// Discs that are nearer to each other than the sagitta of their edges.
 #[test]
 fn discs_apart_do_not_overlap() {
