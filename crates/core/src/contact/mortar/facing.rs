@@ -1,6 +1,7 @@
 //! What the nodes of the contact surface face at an instant.
 
 use super::coupling::Coupling;
+use super::dual::DualShape;
 use super::side::Side;
 use super::surfaces::SlidingSurfaces;
 use crate::contact::frame::dot;
@@ -96,11 +97,12 @@ impl<'a, const D: usize> Facing<'a, D> {
         (-gap).max(0.0)
     }
 
-    /// Whether a node of a slave faces nothing.
+    /// Whether a node of a slave faces nothing, or is a corner that faces so little of its edge that its gap is a mean.
     #[must_use]
-    pub fn is_beside(&self, at: usize) -> bool {
+    pub fn is_at_end(&self, at: usize) -> bool {
         self.place(at).is_some_and(|(sliding, coupling, place)| {
-            matches!(place, Place::Slave(_)) && !faces(sliding, coupling, place)
+            let Place::Slave(node) = place else { return false };
+            !faces(sliding, coupling, place) || is_short_at_corner(sliding.slave(), coupling, node)
         })
     }
 
@@ -147,6 +149,15 @@ impl<'a, const D: usize> Facing<'a, D> {
         let place = slave.or_else(|| sliding.master().node_at(at).map(Place::Master))?;
         Some((sliding, &self.couplings[index], place))
     }
+}
+
+/// Whether a node of a slave is a corner, and one of its edges has one multiplier, that of the node.
+fn is_short_at_corner(slave: &Side, coupling: &Coupling, node: usize) -> bool {
+    let short = |first: usize, end: usize| {
+        let edge = slave.edges().binary_search(&first);
+        edge.is_ok_and(|edge| slave.corners(edge)[end] && coupling.shape(edge) == DualShape::One(end))
+    };
+    short(node, 0) || node.checked_sub(1).is_some_and(|first| short(first, 1))
 }
 
 /// Whether a node faces the other surface.

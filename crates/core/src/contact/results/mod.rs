@@ -37,8 +37,9 @@ pub struct ContactResults<const D: usize> {
     /// The deepest that a node of two surfaces that slide was inside the other body at its own place, along the normal,
     /// over the length of its shortest edge: its gap is a mean. 0 without such nodes.
     pub depth: f64,
-    /// Whether a node of a slave slid off its master: it touched, and faced nothing later.
-    pub slid_off: bool,
+    /// Whether a node of a slave that has touched is at the end of its master: it faces nothing, or is a corner that
+    /// faces so little of its edge that its gap is a mean.
+    pub at_end: bool,
     /// The largest mean rotation of a plane body at each 64th instant and the last one (rad); 0 on bars.
     pub rotation: f64,
     /// All nodes at all instants, if requested.

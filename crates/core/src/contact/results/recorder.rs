@@ -64,7 +64,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             obstacles: vec![Vec::new(); problem.obstacles().len()],
             slip: 0.0,
             depth: 0.0,
-            slid_off: false,
+            at_end: false,
             rotation: 0.0,
             steps: None,
             nodes,
@@ -116,7 +116,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
         summary.at(step.time, step.touching[at], normal_force, area);
         let mut sliding = [0.0; D];
         let before = std::mem::replace(&mut self.now[at], NodeState { relative, force, status });
-        self.results.slid_off |= summary.first_touch.is_some() && self.facing.is_beside(at);
+        self.results.at_end |= summary.first_touch.is_some() && self.facing.is_at_end(at);
         if step.index > 0 {
             let dt = self.times.step(step.index - 1);
             let path = std::array::from_fn(|c| relative[c] - before.relative[c]);

@@ -46,8 +46,8 @@ pub(super) fn write<const D: usize>(
     write("impulse", "N s", &[nodes, D], &vectors(summary, |s| s.impulse))?;
     write("time", "s", &[instants], &results.instants)?;
     let largest = [("slip", "", results.slip), ("depth", "", results.depth), ("rotation", "rad", results.rotation)];
-    let slid_off = ("slid_off", "", f64::from(u8::from(results.slid_off)));
-    for (name, of, value) in largest.into_iter().chain([slid_off]).filter(|(.., value)| *value > 0.0) {
+    let at_end = ("at_end", "", f64::from(u8::from(results.at_end)));
+    for (name, of, value) in largest.into_iter().chain([at_end]).filter(|(.., value)| *value > 0.0) {
         write(name, of, &[1], &[value])?;
     }
     write("force", "N", &[instants, nodes, D], steps.force.as_flattened())?;

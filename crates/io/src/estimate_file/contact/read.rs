@@ -55,7 +55,7 @@ impl Reader<'_, '_> {
         Ok(ContactResults {
             slip: self.one("slip")?,
             depth: self.one("depth")?,
-            slid_off: self.one("slid_off")? > 0.0,
+            at_end: self.one("at_end")? > 0.0,
             rotation: self.one("rotation")?,
             nodes: self.places(&node, of_obstacles.len())?,
             summary: self.summary(count, &steps)?,

@@ -49,7 +49,7 @@ pub(in crate::report) struct Facts {
     /// The deepest that a node of surfaces that slide was inside the other body, over its shortest edge.
     pub(super) depth: f64,
     /// Whether a node of surfaces that slide touched and faced nothing later.
-    pub(super) slid_off: bool,
+    pub(super) at_end: bool,
     pub(super) supported: bool,
     /// Part of the squared mean error in elements with a node that touches.
     pub(super) at_contact: f64,
@@ -127,7 +127,7 @@ impl Facts {
             slides: !problem.surface().sliding().is_empty(),
             slip: results.slip,
             depth: results.depth,
-            slid_off: results.slid_off,
+            at_end: results.at_end,
             supported: !problem.prescribed().is_empty(),
             at_contact: at_contact(problem, estimate, results),
             error: estimate.error,

@@ -123,10 +123,11 @@ pub(super) const RULES: [Rule; 28] = [
         situation: "several contact phases",
         doubt: Some("after several contacts, simulation and solution are no longer in step"),
     },
-    // python/percute/verification/struck.py has 1.13 to 3.72, and with μ = 1 up to 3.9.
+    // python/percute/verification/struck.py has 0.90 to 1.66. In 88 cases of random tilts, sizes, materials, meshes and
+    // frictions, 4e-5 to 5e-2 of the wave speed, it is 0.97 to 1.76.
     Rule {
         applies: Facts::slides_on_little,
-        range: [0.83, 4.0],
+        range: [0.83, 2.2],
         situation: "corners, curves and parts of an edge on surfaces that slide",
         doubt: None,
     },
@@ -275,7 +276,7 @@ pub(super) fn outside(facts: &Facts) -> Option<&'static str> {
         // python/percute/verification/penalties.py: 1.02 to 2.97 in flat and tilted impacts.
         () if facts.by_a_penalty => Some(PENALTY),
         () if facts.acts_late() => Some(LATE),
-        () if facts.slid_off && touches_at_a_point => Some(SLID_OFF),
+        () if facts.at_end && touches_at_a_point => Some(AT_END),
         () => None,
     }
 }
@@ -285,8 +286,10 @@ const PENALTY: &str = "contact by a penalty";
 /// The gap of a slave is a mean over its edges: a corner enters them first.
 const LATE: &str = "corners and curves that enter the edges that they strike";
 
-/// Corners that slide off a plate at 100 to 400 m/s: 0.7 to 6.4.
-const SLID_OFF: &str = "corners and curves that slide off the end of the other surface";
+/// Corners that slide off a plate at 100 to 400 m/s: 1.2 to 24; that strike within a 16th of their edge from its end: up
+/// to 9.
+const AT_END: &str =
+    "corners and curves that slide off the end of the other surface, or strike within a 16th of an edge of it";
 
 /// The properties of a run that no case of the evidence has.
 pub(super) fn untested(facts: &Facts) -> Vec<String> {
