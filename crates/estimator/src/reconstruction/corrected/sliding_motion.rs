@@ -78,3 +78,83 @@ impl<'a, const D: usize> SlidingMotion<'a, D> {
         row.iter().zip(&mut other[first..]).for_each(|(value, motion)| push(motion, -value));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_core::contact::Interface;
+    use percute_core::material::Elastic;
+    use percute_core::mesh::TriangleMesh;
+    use percute_core::problem::TriangleProblem;
+    use percute_testkit::Random;
+
+    /// A narrow block that sticks out of a wide one, with other nodes.
+    fn blocks() -> TriangleProblem {
+        let block = |width: f64, cells: usize, place: [f64; 2]| {
+            let mesh = TriangleMesh::rectangle(width, 0.2, cells, 2).unwrap();
+            mesh.mapped(|p| [p[0] + place[0], p[1] + place[1]]).unwrap()
+        };
+        let both = [("upper", &block(0.2, 3, [0.13, 0.21])), ("lower", &block(0.3, 5, [0.0; 2]))];
+        TriangleProblem::builder(TriangleMesh::joined(&both).unwrap())
+            .material(Elastic::plane_strain(70e9, 0.3, 2700.0, 0.7).unwrap())
+            .interface(Interface::sliding::<2>("upper.bottom", "lower.top", 0.4).unwrap())
+            .build()
+            .unwrap()
+    }
+
+    /// The gaps under all forces are those of the mesh whose nodes the nodal forces Dᵀλ and −Mᵀλ have moved. Along the
+    /// normal only: other motions change D and M.
+    #[test]
+    fn gaps_are_those_of_the_moved_mesh() {
+        let (problem, mut random) = (blocks(), Random::new(7));
+        let (surface, sliding) = (problem.surface(), &problem.surface().sliding()[0]);
+        let coupling = sliding.coupling_at(&[0.0]);
+        let active: Vec<usize> = (0..coupling.len()).filter(|&k| coupling.is_active(k)).collect();
+        assert!(active.len() > 2);
+        let mut any =
+            |low: f64, high: f64| -> Vec<f64> { surface.nodes().iter().map(|_| random.between(low, high)).collect() };
+        let [now, next, mobility, push] = [any(-1e-3, 1e-3), any(-1e-3, 1e-3), any(1e-9, 2e-9), any(0.0, 1e5)];
+        let normal = *sliding.frame().normal();
+        let across = |value: f64| normal.map(|n| value * n);
+        let motion = |at: usize| FreeMotion { displacements: [now[at], next[at]].map(across), mobility: mobility[at] };
+        let free: Vec<FreeMotion<2>> = (0..surface.nodes().len()).map(motion).collect();
+        let (slave, master) = (sliding.slave(), sliding.master());
+        let mut forces = vec![[0.0; 2]; free.len()];
+        active.iter().for_each(|&k| forces[slave.position(k)] = across(push[k]));
+
+        let mut moved = vec![[0.0; 2]; problem.mesh().node_count()];
+        let mut move_node = |at: usize, force: f64| {
+            let node = surface.nodes()[at].node.index();
+            (0..2).for_each(|c| moved[node][c] += mobility[at] * force * normal[c]);
+        };
+        for (at, from) in next.iter().enumerate() {
+            move_node(at, from / mobility[at]);
+        }
+        for &k in &active {
+            let multiplier = push[k] / coupling.weight(k);
+            for (before, value) in coupling.slave_row(k).into_iter().enumerate().filter(|(_, value)| *value != 0.0) {
+                move_node(slave.position(k + before - 1), multiplier * value);
+            }
+            let (first, row) = coupling.master_row(k);
+            row.iter().enumerate().for_each(|(j, value)| move_node(master.position(first + j), -multiplier * value));
+        }
+        let gaps = surface.gaps(&moved);
+
+        let mut sliding_motion = SlidingMotion::new((sliding, &coupling), &free, &forces);
+        for &k in &active {
+            let at = slave.position(k);
+            let approach = sliding_motion.approach(at, &forces);
+            let under_all = approach.gap + approach.mobility * push[k];
+            // Rounding of some ten terms of 1e-3.
+            assert!((under_all - gaps[at]).abs() < 1e-15, "{k}: {under_all} {}", gaps[at]);
+            assert!(approach.along.as_flattened().iter().all(|along| along.abs() < 1e-18));
+        }
+        // A force that has changed since the last question moves the others, and not its own node.
+        let [one, other] = [active[0], active[1]].map(|k| slave.position(k));
+        let before = [one, other].map(|at| sliding_motion.approach(at, &forces).gap);
+        sliding_motion.approach(one, &forces);
+        forces[one] = [0.0; 2];
+        let after = [one, other].map(|at| sliding_motion.approach(at, &forces).gap);
+        assert!((after[0] - before[0]).abs() < 1e-15 && (after[1] - before[1]).abs() > 1e-7, "{before:?} {after:?}");
+    }
+}
