@@ -289,7 +289,7 @@ const LATE: &str = "corners and curves that enter the edges that they strike";
 /// Corners that slide off a plate at 100 to 400 m/s: 1.2 to 24; that strike within a 16th of their edge from its end: up
 /// to 9.
 const AT_END: &str =
-    "corners and curves that slide off the end of the other surface, or strike within a 16th of an edge of it";
+    "corners and curves that slide off the end of the other surface, or strike within 1/16 of an edge of it";
 
 /// The properties of a run that no case of the evidence has.
 pub(super) fn untested(facts: &Facts) -> Vec<String> {
