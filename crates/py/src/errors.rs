@@ -139,9 +139,8 @@ pub(crate) fn run(py: Python<'_>, error: &Failure) -> PyErr {
     match error {
         Failure::Run(error) => estimate(py, error),
         Failure::File(error) => file(py, error),
-        Failure::Inconsistent { file, figure, cause } => {
-            let told = inconsistency(file.as_deref(), figure, cause.as_deref());
-            input(py, format!("{told}; to estimate it as it is, give force=True"))
+        Failure::Inconsistent { file, contradiction } => {
+            input(py, inconsistency(file.as_deref(), contradiction, "force=True"))
         }
         other => input(py, other.to_string()),
     }

@@ -1,6 +1,7 @@
 //! Why something could not be done.
 
 use crate::case::{CaseError, NotRepresentable};
+use crate::foreign::Contradiction;
 use percute_core::contact::ContactMemoryError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::SinkError;
@@ -44,17 +45,11 @@ pub enum Failure {
     #[error("{file}: {cause}", file = .file.display())]
     History { file: PathBuf, cause: EstimateError },
     /// A history of another program that contradicts itself or its problem.
-    #[error(
-        "{}; to estimate it as it is, give --accept-inconsistent",
-        inconsistency(file.as_deref(), figure, cause.as_deref())
-    )]
+    #[error("{}", inconsistency(file.as_deref(), contradiction, "--accept-inconsistent"))]
     Inconsistent {
         /// Its file, if it is in one.
         file: Option<PathBuf>,
-        /// The figure over its limit.
-        figure: String,
-        /// Its likely cause.
-        cause: Option<String>,
+        contradiction: Contradiction,
     },
     /// A reference that does not fit.
     #[error(transparent)]
@@ -84,15 +79,20 @@ pub enum Failure {
     Output(#[from] std::io::Error),
 }
 
-/// An inconsistency of a history, in a file or not, and its likely cause.
+/// An inconsistency of a history, in a file or not, its likely cause, and the option that accepts it.
 #[must_use]
-pub fn inconsistency(file: Option<&Path>, figure: &str, cause: Option<&str>) -> String {
+pub fn inconsistency(file: Option<&Path>, contradiction: &Contradiction, option: &str) -> String {
+    let Contradiction { figure, cause, can_be_accepted } = contradiction;
     let file = file.map_or(String::new(), |file| format!("{}: ", file.display()));
     let cause = match cause {
         Some(cause) => format!("Likely cause: {cause}"),
         None => "No single cause was found; compare mesh, materials, units, times and loads".to_string(),
     };
-    format!("{file}the history is not consistent: {figure}. {cause}")
+    let accept = match can_be_accepted {
+        true => format!("; to estimate it as it is, give {option}"),
+        false => String::new(),
+    };
+    format!("{file}the history is not consistent: {figure}. {cause}{accept}")
 }
 
 impl Failure {

@@ -2,7 +2,7 @@
 //! filled.
 
 use crate::failure::Failure;
-use crate::foreign::{Between, Checked, Completed, Contradiction, Found, Lacks, Origin, Refusal, check, started};
+use crate::foreign::{Between, Checked, Completed, Found, Lacks, Origin, Refusal, check, started};
 use crate::run::{self, Analysis, Results};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, StepSource};
@@ -69,9 +69,7 @@ fn requested(analysis: &Analysis, step: impl Fn(usize) -> usize) -> Analysis {
 fn refused(refusal: Refusal, origin: &Origin) -> Failure {
     match refusal {
         Refusal::Unread(cause) => unread(cause),
-        Refusal::Inconsistent(Contradiction { figure, cause }) => {
-            Failure::Inconsistent { file: origin.file.clone(), figure, cause }
-        }
+        Refusal::Inconsistent(contradiction) => Failure::Inconsistent { file: origin.file.clone(), contradiction },
     }
 }
 

@@ -98,6 +98,8 @@ pub struct Contradiction {
     pub figure: String,
     /// Its likely cause.
     pub cause: Option<String>,
+    /// Whether it can be estimated as it is: it starts from the displacement of its problem.
+    pub can_be_accepted: bool,
 }
 
 /// What a check found.
@@ -164,16 +166,18 @@ fn contradiction<const D: usize, const N: usize>(
     exceeded: &[Excess],
 ) -> Result<Option<Contradiction>, SinkError> {
     let balance = exceeded.iter().find(|excess| excess.name == "balance");
+    let can_be_accepted = exceeded.iter().all(|excess| excess.name != "initial_displacement");
     if let Some((figure, way_out)) = lacking {
         let changed = balance.map(|_| of_balance::changed(suspect)).transpose()?.flatten();
         let figure = balance.filter(|_| changed.is_some()).map_or(figure, |excess| excess.what.clone());
-        return Ok(Some(Contradiction { figure, cause: changed.or(Some(way_out)) }));
+        return Ok(Some(Contradiction { figure, cause: changed.or(Some(way_out)), can_be_accepted }));
     }
     let Some(first) = exceeded.first() else { return Ok(None) };
     let cause = suspect.cause(exceeded)?;
     let place = if cause.is_none() && balance.is_some() { of_balance::place(suspect) } else { String::new() };
     let cause = cause.or_else(|| of_balance::hint(suspect).filter(|_| balance.is_some()));
-    Ok(Some(Contradiction { figure: format!("{}{place}", balance.unwrap_or(first).what), cause }))
+    let figure = format!("{}{place}", balance.unwrap_or(first).what);
+    Ok(Some(Contradiction { figure, cause, can_be_accepted }))
 }
 
 /// a/b, and 0 where both are.

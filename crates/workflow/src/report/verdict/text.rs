@@ -28,7 +28,7 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
     if !facts.admissible {
         doubts.push("a residual shows that the fields are not admissible".to_string());
     }
-    doubts.extend(facts.inconsistent.iter().map(|Contradiction { figure, cause }| {
+    doubts.extend(facts.inconsistent.iter().map(|Contradiction { figure, cause, .. }| {
         let cause = cause.as_ref().map_or(String::new(), |cause| format!(" (likely cause: {cause})"));
         format!("the history is not consistent: {figure}{cause}")
     }));
