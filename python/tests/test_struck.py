@@ -94,6 +94,24 @@ def test_a_corner_that_slides_off_has_no_range() -> None:
         assert found["effectivity"] == effectivity and estimate.trust != "high"
 
 
+@pytest.mark.parametrize(("beyond", "effectivity"), [(-1e-3, STRUCK), (-1e-4, None), (1e-7, None), (1e-3, STRUCK)])
+def test_a_corner_at_the_very_end_has_no_range(beyond: float, effectivity: list[float] | None) -> None:
+    """Of its edge of 5 mm less than a 16th faces the plate, or all but a rounding."""
+    law = pc.Elastic(**ALUMINIUM, plane="stress")
+    plate = pc.Body(name="plate", mesh=pc.Mesh.rectangle(0.024, 0.025, nx=5, ny=5), material=law)
+    mesh = pc.Mesh.rectangle(0.04, 0.025, nx=8, ny=5)
+    # The block leans over the plate where its corner is beyond the end, else away from it.
+    angle = -10.0 if beyond > 0.0 else 28.0
+    cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    points = mesh.points @ [[cos, sin], [-sin, cos]]
+    corner = points[np.argmin(points[:, 1])]
+    gap = 2e-6 - max(beyond, 0.0) * np.tan(np.radians(10.0))
+    turned = pc.Mesh(points - corner + [0.024 + beyond, 0.025 + gap], mesh.cells)
+    block = pc.Body(name="block", mesh=turned, material=law, velocity=(0.0, -2.0))
+    problem = pc.Problem(bodies=[plate, block], contacts=[pc.Interface(friction=0.2)])
+    assert verdict(problem, 3e-5)[1]["effectivity"] == effectivity
+
+
 @pytest.mark.parametrize("angle", [3.0, 45.0])
 def test_a_corner_may_rest_on_the_end_of_a_plate(angle: float) -> None:
     """A node of the plate below the edge of the block touches, as a multiplier acts on it, although its own gap is not 0."""

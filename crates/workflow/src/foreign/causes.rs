@@ -59,11 +59,7 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         let told: [(&str, &dyn Fn() -> String); 9] = [
             ("initial_velocity", &|| self.velocity_at_start()),
             ("energy", &|| self.unstable()),
-            (THROUGH_PLANES, &|| {
-                "nodes go through their plane without contact: it is left out of the simulation or of the history, or \
-                 the `point` of the plane is not that of the history"
-                    .to_string()
-            }),
+            (THROUGH_PLANES, &|| self.without_contact()),
             ("opposite", &|| self.evidence.contact.not_opposite()),
             ("plane", &|| planes::place(self, false).unwrap_or_default()),
             ("touching", &|| self.touching()),
@@ -102,6 +98,17 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
             "the contact is unstable, and the energy drifts by {}: is a penalty too stiff for the steps? Otherwise the \
              `point` of a plane is not that of the history",
             percent(self.found.energy)
+        )
+    }
+
+    fn without_contact(&self) -> String {
+        let [through, or] = match self.problem.statement().interfaces.is_empty() {
+            true => ["their plane", "the `point` of the plane is not that"],
+            false => ["another body", "the places of the bodies are not those"],
+        };
+        format!(
+            "nodes go through {through} without contact: it is left out of the simulation or of the history, or {or} of \
+             the history"
         )
     }
 

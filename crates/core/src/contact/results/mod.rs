@@ -38,7 +38,7 @@ pub struct ContactResults<const D: usize> {
     /// over the length of its shortest edge: its gap is a mean. 0 without such nodes.
     pub depth: f64,
     /// Whether a node of a slave that has touched is at the end of its master: it faces nothing, or is a corner that
-    /// faces so little of its edge that its gap is a mean.
+    /// faces so little of its edge that its gap is a mean, or that is beyond the end by less than 1e-3 of its edge.
     pub at_end: bool,
     /// The largest mean rotation of a plane body at each 64th instant and the last one (rad); 0 on bars.
     pub rotation: f64,

@@ -112,8 +112,13 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         let mut known = Known { problem, concentration, gap: around.gap, steps: &steps, contact, arresting };
         self.own_forces.replace(&mut known, |at| Approach::new(problem, at, free));
         for (sliding, coupling) in surface.sliding().iter().zip(around.couplings) {
-            let nodes = sliding.positions().filter(|&at| surface.nodes()[at].free);
-            let nodes = nodes.filter_map(|at| Some((at, around.faced[at]?))).collect();
+            let mut nodes = Vec::new();
+            for at in sliding.positions().filter(|&at| surface.nodes()[at].free) {
+                match around.faced[at] {
+                    Some(faced) => nodes.push((at, faced)),
+                    None => self.own_forces.release(at),
+                }
+            }
             let mut motion = SlidingMotion::new((sliding, coupling), free, known.contact);
             self.own_forces.replace_in_turn(nodes, &mut known, |at, forces| motion.approach(at, forces));
         }

@@ -48,7 +48,7 @@ pub(in crate::report) struct Facts {
     pub(super) slip: f64,
     /// The deepest that a node of surfaces that slide was inside the other body, over its shortest edge.
     pub(super) depth: f64,
-    /// Whether a node of surfaces that slide touched and faced nothing later.
+    /// Whether a node of surfaces that slide that has touched was at the end of the other surface, or beyond it.
     pub(super) at_end: bool,
     pub(super) supported: bool,
     /// Part of the squared mean error in elements with a node that touches.

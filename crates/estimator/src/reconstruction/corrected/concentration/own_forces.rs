@@ -55,6 +55,11 @@ impl<const D: usize> OwnForces<D> {
         self.replaced.iter().filter(|&&replaced| replaced).count()
     }
 
+    /// Forgets the contact of a node whose traction cannot be hats any more: the force of the simulation acts again.
+    pub(in crate::reconstruction::corrected) fn release(&mut self, at: usize) {
+        self.contacts[at] = None;
+    }
+
     /// Replaces the forces of nodes that touch alone, from then on until the own force is 0. Those of surfaces that
     /// slide stay.
     pub(in crate::reconstruction::corrected) fn replace<const N: usize>(

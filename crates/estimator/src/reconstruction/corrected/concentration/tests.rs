@@ -244,6 +244,26 @@ fn own_forces_stick_and_slide() {
     assert!((apply(0.0) - 1.0).abs() < 1e-12);
 }
 
+/// A node that is released begins a new contact: neither where the last one stuck nor how deep it was is known.
+#[test]
+fn a_released_node_begins_anew() {
+    let problem = rough(1.0);
+    let concentration = Concentration::new(&problem);
+    let (at, force) = corner(&problem);
+    let frame = problem.obstacles()[0].flat_frame();
+    let slid = [[0.0; 2], [-frame.normal()[1], frame.normal()[0]].map(|t| 1e-3 * t)];
+    let apply = |own: &mut OwnForces<2>, along| {
+        own_force(&problem, &concentration, own, (force, Approach { along, ..onto(-6e-5) }))
+    };
+    let mut own = OwnForces::new(&problem);
+    apply(&mut own, slid);
+    let mut released = own.clone();
+    released.release(at);
+    let fresh = apply(&mut OwnForces::new(&problem), [[0.0; 2]; 2]);
+    assert_eq!(apply(&mut released, [[0.0; 2]; 2]), fresh);
+    assert_ne!(apply(&mut own, [[0.0; 2]; 2]), fresh);
+}
+
 /// A node that is behind its plane when it begins to touch alone does not come to it within a short step: in each step,
 /// the depth falls by the square of the step over τ.
 #[test]
