@@ -54,6 +54,7 @@ fn histories_that_the_library_does_not_survive() {
         ("header", "damaged: an object header;"),
         ("length", "damaged: the length of the text `percute/problem`;"),
         ("attribute", "damaged: the text attribute `percute.kind` is longer than the file;"),
+        ("type", "has a type of another size;"),
     ] {
         let seed = format!("{}/../../fuzz/seeds/history/refused-{name}.vtkhdf", env!("CARGO_MANIFEST_DIR"));
         let told = entry::history(&std::fs::read(seed).unwrap(), &folder.path().join("a.vtkhdf")).unwrap_err();

@@ -1,7 +1,8 @@
 //! Attributes that are texts of variable length. The library takes memory for the length that an attribute states
-//! before it looks for the text, and does not tell where the length is in the file. The records of attributes are
-//! therefore looked for by their names: version (1 byte), flags (1), sizes of name, type and shape (2 each), from
-//! version 3 on the encoding of the name (1); name, type, shape and value.
+//! before it looks for the text, and does not tell where the length is in the file. It also takes memory for a value of
+//! the size that the type states, but reads one of 16 bytes. The records of attributes are therefore looked for by their
+//! names: version (1 byte), flags (1), sizes of name, type and shape (2 each), from version 3 on the encoding of the
+//! name (1); name, type, shape and value. A type has class and version (1), flags (3) and its size (4).
 
 use super::heap::{is_too_long, places};
 use percute_system::read_exact_at;
@@ -16,7 +17,7 @@ struct Layout {
 
 const LAYOUTS: [Layout; 3] =
     [Layout { version: 1, name: 8 }, Layout { version: 2, name: 8 }, Layout { version: 3, name: 9 }];
-/// The flag of a type that is stored elsewhere.
+/// The flag of a type that is stored elsewhere, where its size is not known.
 const SHARED_TYPE: u8 = 1;
 /// Types of variable length, in the lower half of the first byte of a type.
 const VARIABLE: u8 = 9;
@@ -26,8 +27,8 @@ const VALUE: u64 = 16;
 /// Whether texts of variable length of a name can be read, or what is wrong with them.
 pub(super) type Found = Result<(), &'static str>;
 
-/// Compares the length in all attributes of these names that may be texts of variable length with the size of the file.
-/// The file is read once.
+/// Compares the length in all attributes of these names that may be texts of variable length with the size of the file,
+/// and the size of their types with that of a value. The file is read once.
 ///
 /// # Errors
 /// A file that cannot be read.
@@ -43,8 +44,11 @@ fn of_name(file: &File, places: &[u64], length: u64, bytes: u64) -> io::Result<F
     for &name in places {
         for layout in LAYOUTS.iter().filter(|layout| layout.name <= name) {
             let value = layout.value(file, name, length)?;
-            if let Some(value) = value.filter(|value| value + VALUE <= bytes) {
+            if let Some((value, size)) = value.filter(|(value, _)| value + VALUE <= bytes) {
                 found = true;
+                if size != VALUE {
+                    return Ok(Err("has a type of another size"));
+                }
                 if is_too_long(file, value, bytes)? {
                     return Ok(Err("is longer than the file"));
                 }
@@ -55,8 +59,8 @@ fn of_name(file: &File, places: &[u64], length: u64, bytes: u64) -> io::Result<F
 }
 
 impl Layout {
-    /// Where the value of the record would be whose name of so many bytes is at a place.
-    fn value(&self, file: &File, name: u64, bytes: u64) -> io::Result<Option<u64>> {
+    /// Where the value of the record would be whose name of so many bytes is at a place, and the size of its type.
+    fn value(&self, file: &File, name: u64, bytes: u64) -> io::Result<Option<(u64, u64)>> {
         let mut start = [0; 9];
         let start = &mut start[..self.name as usize];
         read_exact_at(file, start, name - self.name)?;
@@ -65,13 +69,15 @@ impl Layout {
             return Ok(None);
         }
         let [size, kind_size, shape_size] = sizes.map(|s| if self.version == 1 { s.next_multiple_of(8) } else { s });
-        let mut kind = [0];
-        let kind = match read_exact_at(file, &mut kind, name + size) {
+        let mut kind = [0; 8];
+        match read_exact_at(file, &mut kind, name + size) {
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Ok(None),
-            read => read.map(|()| kind[0] & 0x0f)?,
-        };
+            read => read?,
+        }
         let elsewhere = self.version > 1 && start[1] & SHARED_TYPE != 0;
-        Ok((elsewhere || kind == VARIABLE).then_some(name + size + kind_size + shape_size))
+        let value =
+            (name + size + kind_size + shape_size, u64::from(u32::from_le_bytes([kind[4], kind[5], kind[6], kind[7]])));
+        Ok((!elsewhere && kind[0] & 0x0f == VARIABLE).then_some(value))
     }
 }
 
@@ -139,9 +145,14 @@ mod tests {
         for end in 0..record.len() {
             assert_eq!(told(&record[..end]), Err("is stored in a way that percute does not read"), "{end} bytes");
         }
-        record[14] = 0x13;
-        assert_eq!(told(&record), Err("is stored in a way that percute does not read"));
-        record[1] = SHARED_TYPE;
-        assert_eq!(told(&record), Err("is longer than the file"));
+        let mut other = record.clone();
+        other[14] = 0x13;
+        assert_eq!(told(&other), Err("is stored in a way that percute does not read"));
+        other = record.clone();
+        other[1] = SHARED_TYPE;
+        assert_eq!(told(&other), Err("is stored in a way that percute does not read"));
+        // Memory for a value of 9 bytes, of which 16 are read.
+        record[18] = 9;
+        assert_eq!(told(&record), Err("has a type of another size"));
     }
 }
