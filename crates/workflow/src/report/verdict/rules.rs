@@ -123,7 +123,7 @@ pub(super) const RULES: [Rule; 28] = [
         situation: "several contact phases",
         doubt: Some("after several contacts, simulation and solution are no longer in step"),
     },
-    // python/percute/verification/struck.py has 0.90 to 1.66, random_strikes.py RANGE.
+    // python/percute/verification/struck.py has 0.90 to 1.66, random_strikes.py 1.01 to 1.85.
     Rule {
         applies: Facts::slides_on_little,
         range: [0.83, 2.2],
