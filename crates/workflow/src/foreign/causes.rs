@@ -107,8 +107,8 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
             false => ["another body", "the places of the bodies are not those"],
         };
         format!(
-            "nodes go through {through} without contact: it is left out of the simulation or of the history, or {or} of \
-             the history"
+            "nodes go through {through} without contact: it is left out of the simulation or of the history, or {or} \
+             of the history"
         )
     }
 

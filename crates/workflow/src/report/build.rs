@@ -2,8 +2,9 @@
 
 use super::columns::{Columns, EnergiesOverTime, PARTS};
 use super::flat::FlatElements;
+use super::found::found;
 use super::varying_steps::varying_steps;
-use super::warnings::{Facts, Warning, few_samples, found, reported};
+use super::warnings::{Facts, Warning, few_samples, reported};
 use super::{
     ADMISSIBLE, ContactReport, FORMAT, Impacts, LargestResidual, ObstacleSummary, ProblemSummary, Rebound, Report,
     SlidingReport, SourceReport, Subject, Verdict, Versions, WorstElement, meaning, verdict,

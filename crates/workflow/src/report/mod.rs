@@ -5,6 +5,7 @@ pub(crate) mod build;
 mod columns;
 mod contact;
 mod flat;
+mod found;
 mod impacts;
 mod meaning;
 mod rebound;

@@ -1,7 +1,6 @@
 //! What the user should look at before trusting a result.
 
 use super::flat::FlatElements;
-use super::symptoms::symptoms;
 use super::{LargestResidual, ProblemSummary};
 use crate::foreign::{Checked, Samples};
 use crate::message::{counted, percent, short, trimmed};
@@ -53,15 +52,6 @@ pub(super) struct Facts<'a> {
     pub(super) critical_step: f64,
 }
 
-/// What only the results of a run show.
-pub(super) fn found(facts: &Facts<'_>) -> Vec<Warning> {
-    let accepted = facts.checked.is_some_and(|checked| checked.contradiction.is_some());
-    let mut found = [not_admissible(facts), last_instant(facts), samples(facts), shifted(facts)].to_vec();
-    found.extend(symptoms(facts).map(|symptom| Some(symptom.warning(accepted))));
-    found.extend([resampled(facts), reoriented(facts)]);
-    found.into_iter().flatten().collect()
-}
-
 impl Warning {
     /// Whether it doubts the result, rather than the input or how it was taken.
     #[must_use]
@@ -96,7 +86,7 @@ fn warning(name: &'static str, brief: impl Into<String>, message: impl Into<Stri
     Some(Warning { name, brief: brief.into(), message: message.into() })
 }
 
-fn not_admissible(facts: &Facts<'_>) -> Option<Warning> {
+pub(super) fn not_admissible(facts: &Facts<'_>) -> Option<Warning> {
     let LargestResidual { name, value, admissible } = facts.residual;
     if *admissible {
         return None;
@@ -109,12 +99,12 @@ fn not_admissible(facts: &Facts<'_>) -> Option<Warning> {
     warning("not_admissible", format!("residual {name} too large: do not trust the error"), message)
 }
 
-fn last_instant(facts: &Facts<'_>) -> Option<Warning> {
+pub(super) fn last_instant(facts: &Facts<'_>) -> Option<Warning> {
     let message = left_out(facts.checked?.left_out?);
     warning("last_instant", "the last instant of the history is left out", message)
 }
 
-fn samples(facts: &Facts<'_>) -> Option<Warning> {
+pub(super) fn samples(facts: &Facts<'_>) -> Option<Warning> {
     let samples = facts.checked?.samples?;
     warning(
         "samples",
@@ -123,7 +113,7 @@ fn samples(facts: &Facts<'_>) -> Option<Warning> {
     )
 }
 
-fn shifted(facts: &Facts<'_>) -> Option<Warning> {
+pub(super) fn shifted(facts: &Facts<'_>) -> Option<Warning> {
     let cause = facts.checked?.shifted.as_ref()?;
     let message = format!(
         "the balance of the history is within its limit, but {cause}; the estimate counts this shift as an error of \
@@ -153,7 +143,7 @@ pub fn left_out(time: f64) -> String {
     )
 }
 
-fn resampled(facts: &Facts<'_>) -> Option<Warning> {
+pub(super) fn resampled(facts: &Facts<'_>) -> Option<Warning> {
     let error = facts.problem.resampling_error;
     if error <= RESAMPLED {
         return None;
@@ -165,7 +155,7 @@ fn resampled(facts: &Facts<'_>) -> Option<Warning> {
     warning("resampled", format!("tables in time differ by up to {error} between steps"), message)
 }
 
-fn reoriented(facts: &Facts<'_>) -> Option<Warning> {
+pub(super) fn reoriented(facts: &Facts<'_>) -> Option<Warning> {
     let count = facts.problem.reoriented_elements;
     let elements = counted(count, "element");
     let were = if count == 1 { "was" } else { "were" };

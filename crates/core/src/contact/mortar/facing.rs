@@ -97,8 +97,8 @@ impl<'a, const D: usize> Facing<'a, D> {
         (-gap).max(0.0)
     }
 
-    /// Whether a node of a slave faces nothing, or is a corner at the end of the master: one that faces so little of its
-    /// edge that its gap is a mean, or that is beyond this end by a thousandth of its edge at most.
+    /// Whether a node of a slave faces nothing, or is a corner at the end of the master: one that faces so little of
+    /// its edge that its gap is a mean, or that is beyond this end by a thousandth of its edge at most.
     #[must_use]
     pub fn is_at_end(&self, at: usize) -> bool {
         self.place(at).is_some_and(|(sliding, coupling, place)| {

@@ -285,8 +285,8 @@ const PENALTY: &str = "contact by a penalty";
 /// The gap of a slave is a mean over its edges: a corner enters them first.
 const LATE: &str = "corners and curves that enter the edges that they strike";
 
-/// Corners that slide off a plate at 100 to 400 m/s: 1.2 to 24; that strike within a 16th of their edge from its end: up
-/// to 9; that are beyond it by less than a thousandth of their edge: up to 41.
+/// Corners that slide off a plate at 100 to 400 m/s: 1.2 to 24; that strike within a 16th of their edge from its end:
+/// up to 9; that are beyond it by less than a thousandth of their edge: up to 41.
 const AT_END: &str =
     "corners and curves that slide off the end of the other surface, or strike within 1/16 of an edge of it";
 
