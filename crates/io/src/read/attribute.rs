@@ -1,8 +1,8 @@
 //! Attributes that are texts of variable length. The library takes memory for the length that an attribute states
-//! before it looks for the text, and does not tell where the length is in the file. It also takes memory for a value of
-//! the size that the type states, but reads one of 16 bytes. The records of attributes are therefore looked for by
-//! their names: version (1 byte), flags (1), sizes of name, type and shape (2 each), from version 3 on the encoding of the
-//! name (1); name, type, shape and value. A type has class and version (1), flags (3) and its size (4).
+//! before it looks for the text, and does not tell where the length is in the file. It also takes memory for a value
+//! of the size that the type states, but reads one of 16 bytes. The records of attributes are therefore looked for by
+//! their names: version (1 byte), flags (1), sizes of name, type and shape (2 each), from version 3 on the encoding of
+//! the name (1); name, type, shape and value. A type has class and version (1), flags (3) and its size (4).
 
 use super::heap::{is_too_long, places};
 use percute_system::read_exact_at;
