@@ -6,24 +6,20 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import dataclass
 from typing import Literal, cast
 
 import numpy as np
 import percute as pc
-from percute.verification.bodies import graded
-from percute.verification.struck import COURANT, MESHES
+from percute.verification.block import ALUMINIUM
+from percute.verification.bodies import STEEL
+from percute.verification.struck import FINER, indices, refined
 
-MATERIALS = {
-    "aluminium": {"young": 70e9, "poisson": 0.3, "density": 2700.0},
-    "steel": {"young": 210e9, "poisson": 0.3, "density": 7800.0},
-    "plastic": {"young": 3e9, "poisson": 0.38, "density": 1200.0},
-}
+MATERIALS = {"aluminium": ALUMINIUM, "steel": STEEL, "plastic": {"young": 3e9, "poisson": 0.38, "density": 1200.0}}
 SEED, COUNT = 1, 50
 """Seed of the cases, number of cases in the middle of a plate and beside its end."""
-REFINEMENTS, SIZE = 3, 32e-6
-"""Refinements of the reference; size of its elements where the bodies touch, over that of the bodies."""
+SIZE = 32e-6
+"""Size of the elements of the reference where the bodies touch (m), times the size of the case."""
 WIDTH, HEIGHT, RADIUS = 0.06, 0.025, 0.01
 """Width of the plate, height of plate and block, radius of a disc (m), times the size of the case."""
 
@@ -77,9 +73,7 @@ class Strike:
         struck = [(place, HEIGHT * scale), (WIDTH * scale, HEIGHT * scale)]
         if self.covered == 1.0:
             low, struck = low[:1], struck[:1]
-        mesh, plate = mesh.refine(refinements), plate.refine(refinements)
-        if size:
-            mesh, plate = graded(mesh, np.array(low), size), graded(plate, np.array(struck), size)
+        mesh, plate = refined(mesh, refinements, size, low), refined(plate, refinements, size, struck)
         above, below = (pc.Elastic(**MATERIALS[name], plane=self.plane) for name in self.materials)
         velocity = (self.along * speed, -speed)
         bodies = [
@@ -90,12 +84,7 @@ class Strike:
 
     def indices(self) -> list[float]:
         """Give the effectivity indices of sup and mean on all meshes."""
-        histories = [pc.simulate(self.problem(mesh), end=self.end, courant=COURANT) for mesh in MESHES]
-        fine = self.problem(REFINEMENTS, SIZE * self.size)
-        errors = pc.true_errors(histories, fine, end=self.end, courant=COURANT)
-        estimates = [pc.estimate(history, every=1) for history in histories]
-        pairs = zip(estimates, errors, strict=True)
-        return [index for estimate, error in pairs for index in (estimate.sup / error.sup, estimate.mean / error.mean)]
+        return indices(self.problem, self.problem(FINER, SIZE * self.size), self.end)
 
     def __str__(self) -> str:
         part = "" if self.covered == 1.0 else f", {self.covered:.3g} of an edge covered"
@@ -128,14 +117,13 @@ def strikes(seed: int, count: int, *, beside_end: bool) -> list[Strike]:
 
 def main() -> None:
     """Print the indices of each case, and their range."""
-    warnings.simplefilter("ignore", pc.SimulationWarning)
     for title, beside_end in (("in the middle of the plate", False), ("beside its end", True)):
         print(f"## {title}")
         found: list[float] = []
         for strike in strikes(SEED, COUNT, beside_end=beside_end):
-            indices = strike.indices()
-            found.extend(indices)
-            print(f"{strike}: {', '.join(f'{index:.2f}' for index in indices)}", flush=True)
+            of_strike = strike.indices()
+            found.extend(of_strike)
+            print(f"{strike}: {', '.join(f'{index:.2f}' for index in of_strike)}", flush=True)
         print(f"{len(found)} indices from {min(found):.2f} to {max(found):.2f}")
 
 

@@ -6,15 +6,15 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Protocol
 
 import numpy as np
 import percute as pc
 from percute.verification.block import ALUMINIUM
-from percute.verification.bodies import graded
+from percute.verification.bodies import STEEL, graded
 
-STEEL = {"young": 210e9, "poisson": 0.3, "density": 7800.0}
 FRICTION, COURANT = 0.2, 0.9
 """Coefficient of friction, step over the critical one."""
 SPEEDS = (0.2, 2.0, 20.0, 200.0)
@@ -33,7 +33,8 @@ class Problem(Protocol):
     def __call__(self, speed: float, refinements: int, size: float = 0.0) -> pc.Problem: ...
 
 
-def _refined(mesh: pc.Mesh, refinements: int, size: float, places: Sequence[tuple[float, float]]) -> pc.Mesh:
+def refined(mesh: pc.Mesh, refinements: int, size: float, places: Sequence[tuple[float, float]]) -> pc.Mesh:
+    """Refine a mesh so often and, if the size is not 0, to elements of it (m) at some places."""
     mesh = mesh.refine(refinements)
     return graded(mesh, np.array(places), size) if size else mesh
 
@@ -42,8 +43,8 @@ def tilted(angle: float, width: float = 0.06) -> Problem:
     """Give a block of 40 × 25 mm, tilted (°), whose corner strikes a plate of this width (m) and 25 mm."""
 
     def problem(speed: float, refinements: int, size: float = 0.0) -> pc.Problem:
-        block = _refined(pc.Mesh.rectangle(0.04, 0.025, nx=7, ny=6), refinements, size, [(0.0, 0.0)])
-        plate = _refined(pc.Mesh.rectangle(width, 0.025, nx=round(width / 0.005), ny=6), refinements, size, [(0.0123, 0.025)])
+        block = refined(pc.Mesh.rectangle(0.04, 0.025, nx=7, ny=6), refinements, size, [(0.0, 0.0)])
+        plate = refined(pc.Mesh.rectangle(width, 0.025, nx=round(width / 0.005), ny=6), refinements, size, [(0.0123, 0.025)])
         law = pc.Elastic(**ALUMINIUM, plane="stress")
         above = pc.Body(name="block", mesh=block, material=law, rotation=angle, origin=(0.0123, 0.025 + WAY * speed), velocity=(0.0, -speed))
         return _struck(above, pc.Body(name="plate", mesh=plate, material=law))
@@ -55,8 +56,8 @@ def beside_end(angle: float) -> Problem:
     """Give a block of 40 × 25 mm, tilted (°), whose corner strikes 1.5 mm beside the end of a plate of 24 × 25 mm: 0.3 of its edge on the first mesh."""
 
     def problem(speed: float, refinements: int, size: float = 0.0) -> pc.Problem:
-        block = _refined(pc.Mesh.rectangle(0.04, 0.025, nx=8, ny=5), refinements, size, [(0.0, 0.0), (0.0015, 0.0)])
-        plate = _refined(pc.Mesh.rectangle(0.024, 0.025, nx=5, ny=5), refinements, size, [(0.0225, 0.025), (0.024, 0.025)])
+        block = refined(pc.Mesh.rectangle(0.04, 0.025, nx=8, ny=5), refinements, size, [(0.0, 0.0), (0.0015, 0.0)])
+        plate = refined(pc.Mesh.rectangle(0.024, 0.025, nx=5, ny=5), refinements, size, [(0.0225, 0.025), (0.024, 0.025)])
         law = pc.Elastic(**ALUMINIUM, plane="stress")
         above = pc.Body(name="block", mesh=block, material=law, rotation=angle, origin=(0.0225, 0.025 + WAY * speed), velocity=(0.0, -speed))
         return _struck(above, pc.Body(name="plate", mesh=plate, material=law))
@@ -68,8 +69,8 @@ def leaving(angle: float) -> Problem:
     """Give the block of `beside_end`, 1 mm beside the end, that goes down with 20 m/s and leaves the plate at this speed along it."""
 
     def problem(speed: float, refinements: int, size: float = 0.0) -> pc.Problem:
-        block = _refined(pc.Mesh.rectangle(0.04, 0.025, nx=8, ny=5), refinements, size, [(0.0, 0.0)])
-        plate = _refined(pc.Mesh.rectangle(0.024, 0.025, nx=5, ny=5), refinements, size, [(0.023, 0.025), (0.024, 0.025)])
+        block = refined(pc.Mesh.rectangle(0.04, 0.025, nx=8, ny=5), refinements, size, [(0.0, 0.0)])
+        plate = refined(pc.Mesh.rectangle(0.024, 0.025, nx=5, ny=5), refinements, size, [(0.023, 0.025), (0.024, 0.025)])
         law = pc.Elastic(**ALUMINIUM, plane="stress")
         above = pc.Body(name="block", mesh=block, material=law, rotation=angle, origin=(0.023, 0.02502), velocity=(speed, -20.0))
         return _struck(above, pc.Body(name="plate", mesh=plate, material=law))
@@ -79,8 +80,8 @@ def leaving(angle: float) -> Problem:
 
 def disc(speed: float, refinements: int, size: float = 0.0) -> pc.Problem:
     """Give a disc of steel, of 10 mm radius, that strikes a plate of 40 × 10 mm of aluminium."""
-    mesh = _refined(pc.Mesh.disc(0.01, rings=3), refinements, size, [(0.0, -0.01)])
-    plate = _refined(pc.Mesh.rectangle(0.04, 0.01, nx=12, ny=3), refinements, size, [(0.0207, 0.01)])
+    mesh = refined(pc.Mesh.disc(0.01, rings=3), refinements, size, [(0.0, -0.01)])
+    plate = refined(pc.Mesh.rectangle(0.04, 0.01, nx=12, ny=3), refinements, size, [(0.0207, 0.01)])
     above = pc.Body(name="disc", mesh=mesh, material=pc.Elastic(**STEEL, plane="stress"), origin=(0.0207, 0.02 + WAY * speed), velocity=(0.0, -speed))
     return _struck(above, pc.Body(name="plate", mesh=plate, material=pc.Elastic(**ALUMINIUM, plane="stress")))
 
@@ -89,8 +90,8 @@ def overlapping(overlap: float) -> Problem:
     """Give a block of 20 × 20 mm that strikes the end of a plate of 40 × 20 mm with so long a part (m) of its lower side."""
 
     def problem(speed: float, refinements: int, size: float = 0.0) -> pc.Problem:
-        plate = _refined(pc.Mesh.rectangle(0.04, 0.02, nx=8, ny=6), refinements, size, [(0.0, 0.02), (overlap, 0.02)])
-        block = _refined(pc.Mesh.rectangle(0.02, 0.02, nx=7, ny=6), refinements, size, [(0.02 - overlap, 0.0), (0.02, 0.0)])
+        plate = refined(pc.Mesh.rectangle(0.04, 0.02, nx=8, ny=6), refinements, size, [(0.0, 0.02), (overlap, 0.02)])
+        block = refined(pc.Mesh.rectangle(0.02, 0.02, nx=7, ny=6), refinements, size, [(0.02 - overlap, 0.0), (0.02, 0.0)])
         law = pc.Elastic(**ALUMINIUM, plane="stress")
         above = pc.Body(name="block", mesh=block, material=law, origin=(overlap - 0.02, 0.02 + WAY * speed), velocity=(0.0, -speed))
         return _struck(above, pc.Body(name="plate", mesh=plate, material=law))
@@ -112,16 +113,16 @@ CASES: tuple[tuple[str, Problem, float], ...] = (
 """Names, problems, and ends of the runs (s)."""
 
 
-def indices(problem: Problem, speed: float, end: float) -> list[tuple[float, float]]:
-    """Give the effectivity indices of sup and mean on each mesh, against a reference that is fine where the bodies touch first."""
-    histories = [pc.simulate(problem(speed, mesh), end=end, courant=COURANT) for mesh in MESHES]
-    errors = pc.true_errors(histories, problem(speed, FINER, SIZE), end=end, courant=COURANT)
-    found = []
+def indices(problem: Callable[[int], pc.Problem], fine: pc.Problem, end: float) -> list[float]:
+    """Give the effectivity indices of sup and mean on each mesh of a problem, by its refinements, against a fine one."""
+    histories = [pc.simulate(problem(mesh), end=end, courant=COURANT) for mesh in MESHES]
+    errors = pc.true_errors(histories, fine, end=end, courant=COURANT)
+    found: list[float] = []
     for history, error in zip(histories, errors, strict=True):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", pc.SimulationWarning)
             estimate = pc.estimate(history, every=1)
-        found.append((estimate.sup / error.sup, estimate.mean / error.mean))
+        found += [estimate.sup / error.sup, estimate.mean / error.mean]
     return found
 
 
@@ -134,7 +135,7 @@ ALONG = (100.0, 200.0, 400.0)
 def _print(title: str, cases: tuple[tuple[str, Problem, float], ...], speeds: tuple[float, ...]) -> None:
     print(f"| {title} | {' | '.join(f'{speed:g} m/s' for speed in speeds)} |\n|{'---|' * (len(speeds) + 1)}")
     for name, problem, end in cases:
-        found = [[index for both in indices(problem, speed, end) for index in both] for speed in speeds]
+        found = [indices(partial(problem, speed), problem(speed, FINER, SIZE), end) for speed in speeds]
         print(f"| {name} | {' | '.join(f'{min(each):.2f} to {max(each):.2f}' for each in found)} |", flush=True)
 
 

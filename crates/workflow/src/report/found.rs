@@ -6,8 +6,8 @@ use super::warnings::{Facts, Warning, last_instant, not_admissible, reoriented, 
 /// What only the results of a run show.
 pub(super) fn found(facts: &Facts<'_>) -> Vec<Warning> {
     let accepted = facts.checked.is_some_and(|checked| checked.contradiction.is_some());
-    let mut found = [not_admissible(facts), last_instant(facts), samples(facts), shifted(facts)].to_vec();
-    found.extend(symptoms(facts).map(|symptom| Some(symptom.warning(accepted))));
-    found.extend([resampled(facts), reoriented(facts)]);
-    found.into_iter().flatten().collect()
+    let first = [not_admissible(facts), last_instant(facts), samples(facts), shifted(facts)];
+    let of_motion = symptoms(facts).map(|symptom| symptom.warning(accepted));
+    let last = [resampled(facts), reoriented(facts)];
+    first.into_iter().flatten().chain(of_motion).chain(last.into_iter().flatten()).collect()
 }

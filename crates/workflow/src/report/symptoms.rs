@@ -6,12 +6,12 @@ use crate::message::{percent, short, trimmed};
 use percute_estimator::Reconstruction;
 
 /// Energy that appears or goes by more than this, relatively, is a warning.
-const DRIFT: f64 = 0.1;
+pub(crate) const DRIFT: f64 = 0.1;
 /// A relative error above this is a warning. η is half the squared norm of the difference of two fields, and d the sum
 /// of their squared norms: e/D is 1/√2 where they are orthogonal.
 const NEAR_CEILING: f64 = 0.6;
 /// So is a contact impulse of which less than the one or more than the other is kept.
-const KEPT: [f64; 2] = [0.9, 1.1];
+pub(crate) const KEPT: [f64; 2] = [0.9, 1.1];
 /// Pairs of nodes that slip by more edges leave the range of the method.
 pub(crate) const SLIP: f64 = 0.1;
 /// Nodes of surfaces that slide that are deeper in the other body, over their edge, are outside of the evidence: there,

@@ -6,15 +6,12 @@ use super::rules::{self, Rule};
 use super::touches::Touches;
 use crate::foreign::Contradiction;
 use crate::message::{change, short, whole_percent};
+use crate::report::symptoms::{DRIFT, KEPT};
 
 /// A relative error above this is as large as the solution: it cannot exceed 1/√2 by much.
 const AS_LARGE: f64 = 0.5;
 /// Less of the squared error is not told.
 const LEAST: f64 = 5e-3;
-/// A larger drift of the energy balance is a reason for doubt.
-const DRIFT: f64 = 0.1;
-/// So is an admissible contact force with less or more of the impulse.
-const KEPT: [f64; 2] = [0.9, 1.1];
 /// An expected change of the mean error below this is not worth a run.
 const WORTH: f64 = -0.1;
 /// Where the contact surface is the source of more, elements that touch are refined first: in sources-local.csv the
