@@ -58,14 +58,17 @@ impl Band {
 
 #[inline(always)]
 fn product(width: usize, values: &[f64], row: usize, vector: &[f64]) -> f64 {
-    let (before, values) = (row.min(width), &values[row * (width + 1)..]);
-    let own = values[width - before..=width].iter().zip(&vector[row - before..]);
-    let mut sum: f64 = own.map(|(a, x)| a * x).sum();
-    let below = values[width + 1..].chunks_exact(width + 1);
-    for ((values, x), at) in below.zip(&vector[row + 1..]).zip((0..width).rev()) {
-        sum += values[at] * x;
+    let (values, size) = (&values[row * (width + 1)..], width + 1);
+    // The entries below the diagonal are in the next rows, one place further to the left in each.
+    if row >= width && row + width < vector.len() {
+        let (values, vector) = (&values[..size * size], &vector[row - width..=row + width]);
+        let own: f64 = (0..size).map(|at| values[at] * vector[at]).sum();
+        return own + (1..size).map(|at| values[at * width + width] * vector[width + at]).sum::<f64>();
     }
-    sum
+    let before = row.min(width);
+    let own: f64 = values[width - before..size].iter().zip(&vector[row - before..]).map(|(a, x)| a * x).sum();
+    let below = values[size..].chunks_exact(size).zip(&vector[row + 1..]).zip((0..width).rev());
+    own + below.map(|((values, x), at)| values[at] * x).sum::<f64>()
 }
 
 /// The factors L D Lᵀ of some rows and columns of a positive definite matrix.

@@ -3,15 +3,13 @@
 use super::dual::{DualShape, Moments};
 use super::normal::largest;
 use super::partition::{Segment, place, segments};
-use super::side::Side;
+use super::rows::Rows;
+use super::side::{Part, Side};
 
 /// A multiplier with a smaller part of the largest weight does not act.
 const LEAST_WEIGHT: f64 = 1e-9;
 /// A force smaller than this part of the one that causes it is rounding.
 const LEAST_PART: f64 = 1e-9;
-
-/// A row of M has room for so many values at least: most surfaces need no more.
-pub(super) const SHORT: usize = 4;
 
 /// D = ∫ψφ, M = ∫ψN and the weights w = ∫ψ of the multipliers (m), on the partition at an instant. The multipliers are
 /// those of the nodes of the slave; N are the hats of the master.
@@ -31,20 +29,10 @@ pub struct Coupling {
     masters: usize,
     /// Rows of D: the values at the node before, at the node and at the node after it.
     slave: Vec<[f64; 3]>,
-    /// Rows of M.
-    rows: Vec<Row>,
-    master: Vec<f64>,
+    /// M.
+    rows: Rows,
     weights: Vec<f64>,
     least: f64,
-}
-
-/// A row of M: its first node of the master, the one after the last, and the place of the first value. Room that is
-/// left has zeros.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Row {
-    first: usize,
-    end: usize,
-    start: usize,
 }
 
 impl Coupling {
@@ -54,21 +42,14 @@ impl Coupling {
         self.clear(slave.len());
         self.shifts.extend_from_slice(shifts);
         self.masters = master.len();
-        for (index, (part, &shift)) in slave.parts().iter().zip(shifts).enumerate() {
-            place((slave, part), master, shift, tolerance, &mut self.places);
-            let places = &self.places[index * self.masters..];
-            self.inverse.extend(master.edges().iter().map(|&first| 1.0 / (places[first + 1] - places[first])));
-            let mut next = 0;
-            for edge in part.edges.clone() {
-                self.before.push(self.segments.len());
-                let places = &self.places[index * self.masters..];
-                segments((slave, edge), master, places, &mut next, &mut self.segments);
-                self.open_rows(slave.edges()[edge], self.before[edge], master);
-                self.add_edge((index, edge), slave, master);
-            }
+        for (part, &shift) in slave.parts().iter().zip(shifts) {
+            self.cut((slave, part), master, shift, tolerance);
         }
         self.before.push(self.segments.len());
-        self.open_row(slave.len() - 1, 0);
+        self.rows.open();
+        for (index, part) in slave.parts().iter().enumerate() {
+            part.edges.clone().for_each(|edge| self.add_edge((index, edge), slave, master));
+        }
         self.weights.extend(self.slave.iter().map(|row| row[0] + row[1] + row[2]));
         self.least = LEAST_WEIGHT * largest(self.weights.iter().copied());
     }
@@ -82,30 +63,28 @@ impl Coupling {
         self.inverse.clear();
         self.slave.clear();
         self.slave.resize(multipliers, [0.0; 3]);
-        self.rows.clear();
-        self.master.clear();
+        self.rows.reset(multipliers);
         self.weights.clear();
     }
 
-    /// Makes room in the rows of both nodes of an edge, the first of which may have values of the edge before: from the
-    /// first to the last node of the master with a segment on it, of those from `start` on.
-    fn open_rows(&mut self, first: usize, start: usize, master: &Side) {
-        let [Some(low), Some(high)] = [self.segments[start..].first(), self.segments[start..].last()] else { return };
-        let [low, high] = [low, high].map(|segment| master.edges()[segment.master]);
-        for node in first..first + 2 {
-            self.open_row(node, low);
-            let row = &mut self.rows[node];
-            row.end = high + 2;
-            self.master.resize(row.start + (row.end - row.first).max(SHORT), 0.0);
-        }
-    }
-
-    /// Begins a row at this node of the master, unless it has begun. Rows before it that have not are empty.
-    fn open_row(&mut self, node: usize, first: usize) {
-        while self.rows.len() <= node {
-            let start = self.master.len();
-            self.rows.push(Row { first, end: first, start });
-            self.master.resize(start + SHORT, 0.0);
+    /// Finds the segments of a part of the slave. The multipliers of both nodes of an edge act on all nodes of the
+    /// master with a segment on it.
+    fn cut(&mut self, (slave, part): (&Side, &Part), master: &Side, shift: f64, tolerance: f64) {
+        let start = self.places.len();
+        place((slave, part), master, shift, tolerance, &mut self.places);
+        let (places, edges) = (&self.places[start..], master.edges());
+        self.inverse.extend(edges.iter().map(|&first| 1.0 / (places[first + 1] - places[first])));
+        let mut next = 0;
+        for edge in part.edges.clone() {
+            let before = self.segments.len();
+            self.before.push(before);
+            segments((slave, edge), master, places, &mut next, &mut self.segments);
+            if let [low, ..] = self.segments[before..] {
+                let high = self.segments[self.segments.len() - 1];
+                let columns = edges[low.master]..edges[high.master] + 2;
+                let first = slave.edges()[edge];
+                (first..first + 2).for_each(|node| self.rows.widen(node, &columns));
+            }
         }
     }
 
@@ -113,7 +92,7 @@ impl Coupling {
     fn add_edge(&mut self, (part, edge): (usize, usize), slave: &Side, master: &Side) {
         let (first, inverse) = (slave.edges()[edge], slave.inverse()[edge]);
         let ends = [slave.xi()[first], slave.xi()[first + 1]];
-        let segments = &self.segments[self.before[edge]..];
+        let segments = &self.segments[self.before[edge]..self.before[edge + 1]];
         let moments = Moments::of(ends, inverse, segments);
         let shape = moments.shape(ends[1] - ends[0], slave.corners(edge));
         self.shapes.push(shape);
@@ -141,26 +120,25 @@ impl Coupling {
                 self.slave[first + 1][1] += two;
             }
         }
-        let (lines, count) = (shape.lines(), master.edges().len());
-        let (places, inverses) = (&self.places[part * self.masters..], &self.inverse[part * count..]);
-        // The rows of both nodes, the last ones so far.
-        let [own, after] = [self.rows[first], self.rows[first + 1]];
-        let (before, last) = self.master.split_at_mut(after.start);
-        let mut rows = [(own.first, &mut before[own.start..], lines[0]), (after.first, last, lines[1])];
-        for segment in segments {
-            let low = master.edges()[segment.master];
-            let (from, scale) = (places[low], inverses[segment.master]);
-            let hat = segment.ends.map(|end| (end - from) * scale);
-            let second = segment.ends.map(|end| (end - ends[0]) * inverse);
-            let sixth = (segment.ends[1] - segment.ends[0]) * (1.0 / 6.0);
-            for (first, row, [start, slope]) in &mut rows {
-                let [f, g] = second.map(|second| *start + *slope * second);
-                // Both factors are linear: exact.
-                let upper = sixth * (f * (2.0 * hat[0] + hat[1]) + g * (hat[0] + 2.0 * hat[1]));
-                let values = &mut row[low - *first..][..2];
-                values[0] += 3.0 * sixth * (f + g) - upper;
-                values[1] += upper;
-            }
+        let places = &self.places[part * self.masters..][..self.masters];
+        let inverses = &self.inverse[part * master.edges().len()..][..master.edges().len()];
+        let ([lines, after_lines], [(own, row), (after, after_row)]) = (shape.lines(), self.rows.pair_mut(first));
+        for &Segment { master: other, ends: [from, to], .. } in segments {
+            let low = master.edges()[other];
+            let (place, scale) = (places[low], inverses[other]);
+            let hat = [(from - place) * scale, (to - place) * scale];
+            let second = [(from - ends[0]) * inverse, (to - ends[0]) * inverse];
+            // Both factors are linear: Simpson's rule is exact.
+            let sixth = (to - from) * (1.0 / 6.0);
+            let upper = [sixth * (2.0 * hat[0] + hat[1]), sixth * (hat[0] + 2.0 * hat[1])];
+            let lower = upper.map(|upper| 3.0 * sixth - upper);
+            let add = |values: &mut [f64], [start, slope]: [f64; 2]| {
+                let [f, g] = second.map(|second| start + slope * second);
+                values[0] += lower[0] * f + lower[1] * g;
+                values[1] += upper[0] * f + upper[1] * g;
+            };
+            add(&mut row[low - own..][..2], lines);
+            add(&mut after_row[low - after..][..2], after_lines);
         }
     }
 
@@ -233,15 +211,13 @@ impl Coupling {
     #[inline]
     #[must_use]
     pub fn master_row(&self, node: usize) -> (usize, &[f64]) {
-        let Row { first, end, start } = self.rows[node];
-        (first, &self.master[start..][..end - first])
+        self.rows.row(node)
     }
 
-    /// The same with the zeros behind it, at least [`SHORT`] values.
+    /// M.
     #[inline]
-    pub(super) fn room_of_row(&self, node: usize) -> (usize, &[f64]) {
-        let Row { first, end, start } = self.rows[node];
-        (first, &self.master[start..][..(end - first).max(SHORT)])
+    pub(super) fn master(&self) -> &Rows {
+        &self.rows
     }
 
     /// The nodes of the master on which a multiplier acts, but for rounding.

@@ -1,40 +1,53 @@
 //! The matrix of the contact problem of a step.
 
 use super::band::Band;
-use super::coupling::{Coupling, SHORT};
+use super::coupling::Coupling;
+use super::rows::SHORT;
 
 /// A = D m⁻¹ Dᵀ + M m'⁻¹ Mᵀ (m²/kg): the relative acceleration of weighted values that multipliers cause. `inverse` has
 /// 1/m of the nodes of the slave and of the master (1/kg).
 pub(super) fn gram(matrix: &mut Band, coupling: &Coupling, inverse: [&[f64]; 2], window: &mut Vec<f64>) {
     matrix.reset(coupling.len(), width(coupling));
-    let longest = (0..coupling.len()).map(|row| coupling.room_of_row(row).1.len()).fold(SHORT, usize::max);
-    // Short rows are compiled on their own.
-    if longest == SHORT {
-        fill(SHORT, matrix, coupling, inverse, window);
+    if coupling.master().longest() == SHORT {
+        fill_short(matrix, coupling, inverse);
     } else {
-        fill(longest, matrix, coupling, inverse, window);
+        fill(matrix, coupling, inverse, window);
     }
 }
 
-/// Adds up all rows. None of M is longer than `longest`.
-#[inline(always)]
-fn fill(longest: usize, matrix: &mut Band, coupling: &Coupling, inverse: [&[f64]; 2], window: &mut Vec<f64>) {
+/// Adds up all rows, of which none of M is longer than [`SHORT`].
+fn fill_short(matrix: &mut Band, coupling: &Coupling, inverse: [&[f64]; 2]) {
+    let (rows, width) = (coupling.master(), matrix.width());
+    for (row, sums) in matrix.rows_mut().enumerate() {
+        let begin = row.saturating_sub(width);
+        // A row of M m'⁻¹ between zeros.
+        let (mut window, (low, values)) = ([0.0; 3 * SHORT], rows.row(row));
+        let scaled = window[SHORT..].iter_mut().zip(values).zip(&inverse[1][low..]);
+        scaled.for_each(|((scaled, value), inverse)| *scaled = value * inverse);
+        for (sum, (other_low, other)) in sums[begin + width - row..].iter_mut().zip(rows.short(begin..=row)) {
+            let common = window.get((SHORT + other_low).wrapping_sub(low)..).and_then(|window| window.first_chunk());
+            if let Some::<&[f64; SHORT]>(common) = common {
+                let [a, b, c, d] = std::array::from_fn(|at| common[at] * other[at]);
+                *sum = (a + c) + (b + d);
+            }
+        }
+        add_slave(sums, coupling, row, inverse[0]);
+    }
+}
+
+/// Adds up rows of any length.
+fn fill(matrix: &mut Band, coupling: &Coupling, inverse: [&[f64]; 2], window: &mut Vec<f64>) {
+    let (rows, width, longest) = (coupling.master(), matrix.width(), coupling.master().longest());
     // A row of M m'⁻¹ between zeros, from so many nodes before its first one on.
     window.clear();
     window.resize(3 * longest, 0.0);
-    let room = |row: usize| {
-        let (low, values) = coupling.room_of_row(row);
-        (low, if longest == SHORT { &values[..SHORT] } else { values })
-    };
-    let width = matrix.width();
     for (row, sums) in matrix.rows_mut().enumerate() {
-        let (low, values) = room(row);
+        let (low, values) = rows.row(row);
         window[longest..].fill(0.0);
-        for (node, (scaled, value)) in (low..).zip(window[longest..].iter_mut().zip(values)) {
-            *scaled = value * inverse[1].get(node).unwrap_or(&0.0);
-        }
+        let scaled = window[longest..].iter_mut().zip(values).zip(&inverse[1][low..]);
+        scaled.for_each(|((scaled, value), inverse)| *scaled = value * inverse);
         for apart in 0..=width.min(row) {
-            let (other_low, other) = room(row - apart);
+            let (other_low, other) = rows.row(row - apart);
             let common = (longest + other_low).checked_sub(low).and_then(|begin| window.get(begin..begin + longest));
             let Some(common) = common else { continue };
             sums[width - apart] = common.iter().zip(other).map(|(scaled, other)| scaled * other).sum();

@@ -25,6 +25,7 @@ mod gram;
 mod normal;
 mod partition;
 mod relaxation;
+mod rows;
 mod sharing;
 mod side;
 mod step;
