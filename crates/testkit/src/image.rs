@@ -70,6 +70,39 @@ fn mirror(mesh: &TriangleMesh, axis: usize) -> Result<TriangleMesh, MeshError> {
     parts.mesh()
 }
 
+/// The mesh of a half at x ≥ 0 and its mirror image, joined where x = 0. The numbers of the half are kept; facets at
+/// x = 0 leave their groups.
+///
+/// # Errors
+/// None beyond those of the mesh.
+pub fn doubled(half: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
+    let mut parts = Parts::of(half);
+    let image: Vec<usize> = (0..half.node_count())
+        .map(|node| {
+            let [x, y] = half.points()[node];
+            if x == 0.0 {
+                return node;
+            }
+            parts.points.push([-x, y]);
+            parts.points.len() - 1
+        })
+        .collect();
+    let count = parts.cells.len();
+    parts.cells.extend_from_within(..);
+    parts.cells[count..].iter_mut().for_each(|cell| *cell = [cell[0], cell[2], cell[1]].map(|node| image[node]));
+    for facets in parts.facet_groups.values_mut() {
+        facets.retain(|facet| facet.iter().any(|&node| image[node] != node));
+        let images: Vec<[usize; 2]> = facets.iter().map(|facet| facet.map(|node| image[node])).collect();
+        facets.extend(images);
+    }
+    parts.facet_groups.retain(|_, facets| !facets.is_empty());
+    for elements in parts.element_groups.values_mut() {
+        let images: Vec<usize> = elements.iter().map(|element| element + count).collect();
+        elements.extend(images);
+    }
+    parts.mesh()
+}
+
 /// The mesh moved by `by` (m); numbers and groups are kept.
 ///
 /// # Errors

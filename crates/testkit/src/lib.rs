@@ -11,7 +11,7 @@ mod shape;
 pub mod strategy;
 
 pub use delaunay::{disc, random_rectangle};
-pub use image::{Renumbering, mirrored, renumbered, rotated, translated, upside_down};
+pub use image::{Renumbering, doubled, mirrored, renumbered, rotated, translated, upside_down};
 pub use random::Random;
 pub use shape::smallest_angle;
 

@@ -85,8 +85,9 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         };
         let contacts = nodes.iter().map(contact).collect::<Result<Vec<_>, Cause>>()?;
         let eta = nodes.iter().map(|&node| dot(&from_origin(node), normal)).collect();
+        let held: Vec<bool> = contacts.iter().map(|(contact, _)| contact.guided).collect();
         surface.add(facing, contacts, facets);
-        Ok(Line::new(start, [xi, eta], edges, &starts))
+        Ok(Line::new(start, [xi, eta], edges, &starts).held(&held))
     }
 
     /// The facets of each body of a side, of bodies in ascending order of their first ξ.

@@ -18,6 +18,7 @@ mod determinism;
 mod edges;
 mod estimating;
 mod given;
+mod half;
 mod loads;
 mod malformed;
 mod maps;

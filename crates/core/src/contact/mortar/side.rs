@@ -21,7 +21,7 @@ pub struct Side {
     corners: Vec<bool>,
     /// 1 over the length of each edge (1/m).
     inverse: Vec<f64>,
-    /// The share of each node in the mean of its part.
+    /// The share of each node in the motion of its part along ξ.
     share: Vec<f64>,
 }
 
@@ -57,6 +57,19 @@ impl Side {
         let inverse = edges.iter().map(|&first| 1.0 / (xi[first + 1] - xi[first])).collect();
         let corners = corners([&xi, &eta], &edges);
         Self { start, parts, xi, eta, corners, edges, inverse, share }
+    }
+
+    /// The same where some nodes are held along the tangent: their parts move along ξ as these nodes do, so that half of
+    /// a symmetric model moves as in the whole one.
+    pub(crate) fn held(mut self, held: &[bool]) -> Self {
+        for part in &self.parts {
+            let count = held[part.nodes.clone()].iter().filter(|held| **held).count();
+            if count > 0 {
+                let share = |&held: &bool| if held { 1.0 / count as f64 } else { 0.0 };
+                self.share.splice(part.nodes.clone(), held[part.nodes.clone()].iter().map(share));
+            }
+        }
+        self
     }
 
     /// The parts of all bodies that it belongs to.
@@ -141,9 +154,9 @@ impl Side {
         &self.inverse
     }
 
-    /// The mean of a field over a part of the surface, by length.
+    /// The motion of a part along ξ, from that of its nodes: the mean by length, or that of nodes that are held.
     #[inline]
-    pub(super) fn mean(&self, part: &Part, field: impl Fn(usize) -> f64) -> f64 {
+    pub(super) fn motion_of(&self, part: &Part, field: impl Fn(usize) -> f64) -> f64 {
         part.nodes.clone().map(|node| self.share[node] * field(node)).sum()
     }
 }

@@ -70,7 +70,8 @@ impl<const D: usize> SlidingSurfaces<D> {
     }
 
     /// How far each part of the slave has moved along the tangent against the master (m), from the tangential
-    /// displacements of their nodes: the difference of the means over both surfaces, by length.
+    /// displacements of their nodes: the difference of the means over both surfaces, by length. A part with nodes that
+    /// are held along the tangent moves as they do.
     ///
     /// The mean over the bodies, Σmu/Σm, is not better: D and M take linear fields exactly at any shift, so that
     /// momentum, the couple of the normal forces at these places, and a uniform pressure are exact to rounding with
@@ -91,9 +92,9 @@ impl<const D: usize> SlidingSurfaces<D> {
         master: impl Fn(usize) -> f64,
     ) {
         let [own, other] = &self.sides;
-        let fixed: f64 = other.parts().iter().map(|part| other.mean(part, &master)).sum();
+        let fixed: f64 = other.parts().iter().map(|part| other.motion_of(part, &master)).sum();
         shifts.clear();
-        shifts.extend(own.parts().iter().map(|part| own.mean(part, &slave) - fixed));
+        shifts.extend(own.parts().iter().map(|part| own.motion_of(part, &slave) - fixed));
     }
 
     /// D, M and the weights where each part of the slave has moved so far against the master (m).
