@@ -10,8 +10,8 @@ use percute_testkit::{doubled, translated};
 
 const HEIGHT: f64 = 0.025;
 
-/// The right halves of a roof of which the ridge points down, by an angle (°), and of a plate. They are the way of 1 µs at
-/// this speed apart (m/s).
+/// The right halves of a roof of which the ridge points down, by an angle (°), and of a plate. They are the way of 1 µs
+/// at this speed apart (m/s).
 fn halves(angle: f64, speed: f64, cells: [usize; 2]) -> [TriangleMesh; 2] {
     let half = |width: f64, cells: usize| TriangleMesh::rectangle(width, HEIGHT, cells, 4).unwrap();
     let slope = angle.to_radians().tan();
@@ -33,9 +33,10 @@ fn problem([roof, plate]: &[TriangleMesh; 2], speed: f64, is_half: bool) -> Tria
     builder.build().unwrap()
 }
 
-/// A corner of half a model is at the end of its surface, at the middle of the whole model. The stars there are halves of
-/// those of the whole, and their tractions of least energy are others: in these cases they change the estimate by up to
-/// 6 %. Surfaces that moved by their means would have the corner beyond the end, and an estimate up to 40 times too large.
+/// A corner of half a model is at the end of its surface, at the middle of the whole model. The stars there are halves
+/// of those of the whole, and their tractions of least energy are others: in these cases they change the estimate by up
+/// to 6 %. Surfaces that moved by their means would have the corner beyond the end, and an estimate up to 40 times too
+/// large.
 #[test]
 fn half_of_a_symmetric_model_has_half_of_the_estimate() {
     for (angle, speed) in [(0.0, 20.0), (3.0, 20.0), (10.0, 0.5), (10.0, 20.0), (28.0, 2.0), (28.0, 200.0)] {

@@ -59,8 +59,8 @@ impl Side {
         Self { start, parts, xi, eta, corners, edges, inverse, share }
     }
 
-    /// The same where some nodes are held along the tangent: their parts move along ξ as these nodes do, so that half of
-    /// a symmetric model moves as in the whole one.
+    /// The same where some nodes are held along the tangent: their parts move along ξ as these nodes do, so that half
+    /// of a symmetric model moves as in the whole one.
     pub(crate) fn held(mut self, held: &[bool]) -> Self {
         for part in &self.parts {
             let count = held[part.nodes.clone()].iter().filter(|held| **held).count();

@@ -30,7 +30,8 @@ fn problem([roof, plate]: &[TriangleMesh; 2], is_half: bool) -> TriangleProblem 
     builder.build().unwrap()
 }
 
-/// Both bodies widen by Poisson's ratio, each in its own way. Half of the model, held at its middle, moves as the whole.
+/// Both bodies widen by Poisson's ratio, each in its own way. Half of the model, held at its middle, moves as the whole
+/// one.
 #[test]
 fn half_of_a_symmetric_model_moves_as_the_whole() {
     for (angle, cells) in [(0.0, [5, 7]), (3.0, [5, 7]), (10.0, [6, 5])] {
