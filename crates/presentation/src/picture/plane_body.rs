@@ -11,6 +11,8 @@ use crate::svg::{Anchor, Svg};
 const SCALE: [f64; 3] = [22.0, 18.0, 90.0];
 /// Elements are outlined from this size on (pixels).
 const OUTLINED: f64 = 7.0;
+/// Strokes shorter than this are a point (pixels): places are written to a tenth.
+const SHORTEST: f64 = 0.05;
 /// Distance of the strokes that hatch the far side of a plane (pixels).
 const HATCH: f64 = 9.0;
 /// A plane is in the picture if its distance is at most this part of the size of the body.
@@ -113,8 +115,11 @@ fn draw_plane(svg: &mut Svg, plot: &Plot, frame: &Frame, plane: &Plane) {
     // Strokes that begin beyond the frame may end in it.
     for i in 0..=((to - from) / spacing).floor() as usize + 1 {
         let s = from + i as f64 * spacing;
-        if let Some(stroke) = frame.within(at(s, 0.0), at(s - spacing, spacing)) {
-            svg.line("hatch", place(stroke[0]), place(stroke[1]));
+        let Some(stroke) = frame.within(at(s, 0.0), at(s - spacing, spacing)) else { continue };
+        let [start, end] = [place(stroke[0]), place(stroke[1])];
+        // A stroke in a corner of the frame alone is there or not by rounding.
+        if (0..2).any(|c| (end[c] - start[c]).abs() > SHORTEST) {
+            svg.line("hatch", start, end);
         }
     }
 }
@@ -144,6 +149,7 @@ mod tests {
             let (cos, sin) = (degrees.to_radians().cos(), degrees.to_radians().sin());
             let strokes = strokes([-sin, cos]);
             assert!(strokes.iter().flatten().all(|x| (-0.1..=200.1).contains(x)), "{degrees}: {strokes:?}");
+            assert!(strokes.iter().all(|s| s[0] != s[2] || s[1] != s[3]), "{degrees}: {strokes:?}");
             // Along the plane, from end to end of its part in the frame, no gap is longer than two distances of
             // strokes.
             let along = |x: f64, y: f64| (x - 100.0) * cos + (100.0 - y) * sin;
