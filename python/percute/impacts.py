@@ -77,6 +77,8 @@ class SlidingEstimate:
 
     groups: tuple[str, str]
     """The groups of edges of both bodies."""
+    couple: float
+    """The largest couple of the normal forces on both bodies, over the largest of these forces (m)."""
     slide: float
     """How far they are along each other from their places at the start, at most (m)."""
     lift: float

@@ -75,7 +75,7 @@ impl Report {
             contact: ContactReport::new(contact),
             rebound,
             impacts: Impacts::new(problem_of, contact),
-            sliding: SlidingReport::all(problem_of, &estimate.surfaces),
+            sliding: SlidingReport::all(problem_of, contact, &estimate.surfaces),
             over_time: Columns::new(estimate.over_time.clone(), PARTS),
             by_element: estimate.by_element.clone(),
             outline: outline.cloned(),
