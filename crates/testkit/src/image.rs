@@ -70,8 +70,8 @@ fn mirror(mesh: &TriangleMesh, axis: usize) -> Result<TriangleMesh, MeshError> {
     parts.mesh()
 }
 
-/// The mesh of a half at x ≥ 0 and its mirror image, joined where x = 0. The numbers of the half are kept; facets at
-/// x = 0 leave their groups.
+/// The mesh of a half at x ≥ 0 and its mirror image, joined where x = 0. The numbers of the half are kept. Facets at
+/// x = 0 leave their groups; the image of `right` is `left`.
 ///
 /// # Errors
 /// None beyond those of the mesh.
@@ -90,12 +90,19 @@ pub fn doubled(half: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
     let count = parts.cells.len();
     parts.cells.extend_from_within(..);
     parts.cells[count..].iter_mut().for_each(|cell| *cell = [cell[0], cell[2], cell[1]].map(|node| image[node]));
-    for facets in parts.facet_groups.values_mut() {
-        facets.retain(|facet| facet.iter().any(|&node| image[node] != node));
+    for (name, facets) in std::mem::take(&mut parts.facet_groups) {
+        let away = |facet: &[usize; 2]| facet.iter().any(|&node| image[node] != node);
+        let facets: Vec<[usize; 2]> = facets.into_iter().filter(away).collect();
         let images: Vec<[usize; 2]> = facets.iter().map(|facet| facet.map(|node| image[node])).collect();
-        facets.extend(images);
+        let other = match name.as_str() {
+            "left" => "right",
+            "right" => "left",
+            same => same,
+        };
+        for (name, facets) in [(other.to_string(), images), (name, facets)].into_iter().filter(|(_, f)| !f.is_empty()) {
+            parts.facet_groups.entry(name).or_default().extend(facets);
+        }
     }
-    parts.facet_groups.retain(|_, facets| !facets.is_empty());
     for elements in parts.element_groups.values_mut() {
         let images: Vec<usize> = elements.iter().map(|element| element + count).collect();
         elements.extend(images);

@@ -196,8 +196,8 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.stated.body_forces, volume)?;
 
         let of_facet = |f: FacetId| &materials[usize::from(element_material[mesh.facets()[f.index()].owner.index()])];
-        let (held, fixed) = (boundary::held(mesh, &self.stated), fixed(mesh.node_count(), &prescribed));
-        let bodies = Bodies { mesh, body: Vec::new(), held, fixed, mass: &mass, law: &of_facet };
+        let (held, (fixed, driven)) = (boundary::held(mesh, &self.stated), fixed(mesh.node_count(), &prescribed));
+        let bodies = Bodies { mesh, body: Vec::new(), held, fixed, driven, mass: &mass, law: &of_facet };
         let start = Start { displacement: &initial_displacement, velocity: &initial_velocity, mass: &mass };
         // One body costs no search.
         let contact = Stated { contacts: &self.contacts, automatic: self.automatic && mesh.parts() > 1 };
@@ -239,11 +239,14 @@ fn lumped_mass<const D: usize, const N: usize>(mesh: &Mesh<D, N>, of_element: im
     mass
 }
 
-/// Which components of each node are prescribed.
-fn fixed<const D: usize>(nodes: usize, prescribed: &[PrescribedComponent]) -> Vec<[bool; D]> {
-    let mut fixed = vec![[false; D]; nodes];
-    prescribed.iter().for_each(|p| fixed[p.node.index()][p.component] = true);
-    fixed
+/// Which components of each node are prescribed, and whether a support moves it.
+fn fixed<const D: usize>(nodes: usize, prescribed: &[PrescribedComponent]) -> (Vec<[bool; D]>, Vec<bool>) {
+    let (mut fixed, mut driven) = (vec![[false; D]; nodes], vec![false; nodes]);
+    for p in prescribed {
+        fixed[p.node.index()][p.component] = true;
+        driven[p.node.index()] |= p.motion.is_some();
+    }
+    (fixed, driven)
 }
 
 /// All contact of a problem.
@@ -271,9 +274,9 @@ fn all_contact<const D: usize, const N: usize>(
     let facing_planes = surface.facets().iter().map(|facet| facet.facet).collect();
     let Surfaces { choices, mut groups } = contacts::surfaces(&bodies, &stated, start, &facing_planes)?;
     let with_groups = (!groups.is_empty()).then(|| bodies.mesh.clone().with_facet_groups(groups.clone()));
-    let Bodies { mesh, body, held, fixed, mass, law } = bodies;
+    let Bodies { mesh, body, held, fixed, driven, mass, law } = bodies;
     let mesh = with_groups.as_ref().unwrap_or(mesh);
-    let bodies = Bodies { mesh, body, held, fixed, mass, law: &|facet| law(facet) };
+    let bodies = Bodies { mesh, body, held, fixed, driven, mass, law: &|facet| law(facet) };
     let (surface, interfaces) = with_interfaces(surface, &bodies, &choices, start.displacement)?;
     groups.retain(|(name, _)| interfaces.iter().any(|interface| interface.groups().contains(&name.as_str())));
     let places = choices.into_iter().map(|(_, place)| place).collect();

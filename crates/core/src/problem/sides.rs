@@ -16,6 +16,8 @@ pub(super) struct Bodies<'m, const D: usize, const N: usize> {
     pub(super) body: Vec<NodeId>,
     pub(super) held: Vec<Option<HeldBy>>,
     pub(super) fixed: Vec<[bool; D]>,
+    /// Nodes that a support moves.
+    pub(super) driven: Vec<bool>,
     /// The mass of each node (kg).
     pub(super) mass: &'m [f64],
     /// The law of the element that a facet belongs to.

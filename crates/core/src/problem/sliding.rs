@@ -85,9 +85,13 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         };
         let contacts = nodes.iter().map(contact).collect::<Result<Vec<_>, Cause>>()?;
         let eta = nodes.iter().map(|&node| dot(&from_origin(node), normal)).collect();
-        let held: Vec<bool> = contacts.iter().map(|(contact, _)| contact.guided).collect();
+        let guided = |driven: bool| -> Vec<bool> {
+            let driven = |contact: &ContactNode| self.driven[contact.node.index()] == driven;
+            contacts.iter().map(|(contact, _)| contact.guided && driven(contact)).collect()
+        };
+        let (still, driven) = (guided(false), guided(true));
         surface.add(facing, contacts, facets);
-        Ok(Line::new(start, [xi, eta], edges, &starts).held(&held))
+        Ok(Line::new(start, [xi, eta], edges, &starts).held(&still, &driven))
     }
 
     /// The facets of each body of a side, of bodies in ascending order of their first ξ.

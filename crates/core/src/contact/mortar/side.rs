@@ -59,15 +59,14 @@ impl Side {
         Self { start, parts, xi, eta, corners, edges, inverse, share }
     }
 
-    /// The same where some nodes are held along the tangent: their parts move along ξ as these nodes do, so that half
-    /// of a symmetric model moves as in the whole one.
-    pub(crate) fn held(mut self, held: &[bool]) -> Self {
+    /// The same where supports hold nodes along the tangent. A part with nodes that stand still does not move along ξ,
+    /// so that half of a symmetric model moves as in the whole one. A part with driven nodes alone moves by their mean.
+    pub(crate) fn held(mut self, still: &[bool], driven: &[bool]) -> Self {
         for part in &self.parts {
-            let count = held[part.nodes.clone()].iter().filter(|held| **held).count();
-            if count > 0 {
-                let share = |&held: &bool| if held { 1.0 / count as f64 } else { 0.0 };
-                self.share.splice(part.nodes.clone(), held[part.nodes.clone()].iter().map(share));
-            }
+            let of_part = [still, driven].map(|nodes| &nodes[part.nodes.clone()]);
+            let Some(held) = of_part.into_iter().find(|nodes| nodes.contains(&true)) else { continue };
+            let share = 1.0 / held.iter().filter(|held| **held).count() as f64;
+            self.share.splice(part.nodes.clone(), held.iter().map(|held| if *held { share } else { 0.0 }));
         }
         self
     }
@@ -154,7 +153,7 @@ impl Side {
         &self.inverse
     }
 
-    /// The motion of a part along ξ, from that of its nodes: the mean by length, or that of nodes that are held.
+    /// The motion of a part along ξ, from that of its nodes: the mean by length, or that of nodes that supports hold.
     #[inline]
     pub(super) fn motion_of(&self, part: &Part, field: impl Fn(usize) -> f64) -> f64 {
         part.nodes.clone().map(|node| self.share[node] * field(node)).sum()
