@@ -35,8 +35,8 @@ fn problem([roof, plate]: &[TriangleMesh; 2], speed: f64, is_half: bool) -> Tria
 
 /// A corner of half a model is at the end of its surface, at the middle of the whole model. The stars there are halves
 /// of those of the whole, and their tractions of least energy are others: in these cases they change the estimate by up
-/// to 6 %. With surfaces that moved by their means, the corner was beyond the end, and slow corners had an estimate 7 to
-/// 14 times as large.
+/// to 6 %. With surfaces that moved by their means, the corner was beyond the end, and slow corners had an estimate 7
+/// to 14 times as large.
 #[test]
 fn half_of_a_symmetric_model_has_half_of_the_estimate() {
     for (angle, speed) in [(0.0, 20.0), (3.0, 20.0), (10.0, 0.5), (10.0, 20.0), (28.0, 2.0), (28.0, 200.0)] {

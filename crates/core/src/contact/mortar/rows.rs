@@ -31,7 +31,8 @@ impl Rows {
         self.rows.resize(count, Row::default());
     }
 
-    /// A row gets these columns, too: none of them is before its first one, and the last one is not before its last one.
+    /// A row gets these columns, too: none of them is before its first one, and the last of them is not before its last
+    /// one.
     #[inline]
     pub(super) fn widen(&mut self, row: usize, columns: &Range<usize>) {
         let row = &mut self.rows[row];
@@ -55,8 +56,8 @@ impl Rows {
         self.values.resize(room, 0.0);
     }
 
-    /// The first columns of a row and of the one after it, and the values from there on, to those of the next row and of
-    /// all others.
+    /// The first columns of a row and of the one after it, and the values from there on: those of the first up to the
+    /// second, and those of the second up to the end of all.
     #[inline]
     pub(super) fn pair_mut(&mut self, row: usize) -> [(usize, &mut [f64]); 2] {
         let [own, after] = [self.rows[row], self.rows[row + 1]];

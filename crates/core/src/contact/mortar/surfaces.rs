@@ -71,7 +71,8 @@ impl<const D: usize> SlidingSurfaces<D> {
 
     /// How far each part of the slave has moved along the tangent against the master (m), from the tangential
     /// displacements of their nodes: the difference of the means over both surfaces, by length. A part with nodes that
-    /// supports hold along the tangent moves as these do: not at all or, if all of them are driven, by their plain mean.
+    /// supports hold along the tangent moves as these do: not at all or, if all of them are driven, by their plain
+    /// mean.
     ///
     /// The mean over the bodies, Σmu/Σm, is not better: D and M take linear fields exactly at any shift, so that
     /// momentum, the couple of the normal forces at these places, and a uniform pressure are exact to rounding with
