@@ -75,7 +75,7 @@ fn mirror(mesh: &TriangleMesh, axis: usize) -> Result<TriangleMesh, MeshError> {
 ///
 /// # Errors
 /// None beyond those of the mesh.
-pub fn doubled(half: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
+pub(crate) fn doubled(half: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
     let mut parts = Parts::of(half);
     let image: Vec<usize> = (0..half.node_count())
         .map(|node| {

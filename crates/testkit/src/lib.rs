@@ -1,5 +1,5 @@
 //! Shared by the tests of several crates: unstructured meshes, their images under motions and
-//! renumbering, and strategies that draw them.
+//! renumbering, strategies that draw them, and a symmetric impact.
 //!
 //! Structured meshes hide errors: all stars are alike, diagonals line up with waves and
 //! boundaries with axes. Everything here is the same on every run for the same arguments.
@@ -7,12 +7,14 @@
 mod delaunay;
 mod image;
 mod random;
+mod roof;
 mod shape;
 pub mod strategy;
 
 pub use delaunay::{disc, random_rectangle};
-pub use image::{Renumbering, doubled, mirrored, renumbered, rotated, translated, upside_down};
+pub use image::{Renumbering, mirrored, renumbered, rotated, translated, upside_down};
 pub use random::Random;
+pub use roof::Roof;
 pub use shape::smallest_angle;
 
 use percute_core::mesh::MeshError;

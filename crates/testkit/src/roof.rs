@@ -1,0 +1,72 @@
+//! A symmetric impact: all of it, and its right half.
+
+use crate::image::{doubled, translated};
+use percute_core::contact::Interface;
+use percute_core::load::Support;
+use percute_core::material::Elastic;
+use percute_core::mesh::{MeshError, TriangleMesh};
+use percute_core::problem::{Builder, Initial, TriangleProblem};
+use std::error::Error;
+
+/// Height of both bodies (m).
+const HEIGHT: f64 = 0.025;
+/// The gap is the way in so long a time (s).
+const WAY: f64 = 1e-6;
+
+/// A roof of aluminium, of which the ridge points down, strikes a plate, with friction.
+#[derive(Clone, Debug)]
+pub struct Roof {
+    /// The right halves of `roof` and `plate`, and both as a whole.
+    halves: [TriangleMesh; 2],
+    whole: [TriangleMesh; 2],
+    speed: f64,
+}
+
+impl Roof {
+    /// With an angle of its sides (°), a speed (m/s), and cells along half of the roof and of the plate.
+    ///
+    /// # Errors
+    /// None beyond those of the meshes.
+    pub fn new(angle: f64, speed: f64, cells: [usize; 2]) -> Result<Self, MeshError> {
+        let slope = angle.to_radians().tan();
+        let roof = TriangleMesh::rectangle(0.02, HEIGHT, cells[0], 4)?.mapped(|p| [p[0], p[1] + slope * p[0]])?;
+        let halves =
+            [translated(&roof, [0.0, HEIGHT + WAY * speed])?, TriangleMesh::rectangle(0.03, HEIGHT, cells[1], 4)?];
+        let whole = [doubled(&halves[0])?, doubled(&halves[1])?];
+        Ok(Self { halves, whole, speed })
+    }
+
+    /// All of it.
+    ///
+    /// # Errors
+    /// None with an angle and cells that have meshes.
+    pub fn whole(&self) -> Result<Builder<2, 3>, Box<dyn Error>> {
+        self.builder(&self.whole)
+    }
+
+    /// Its right half, held along the line of symmetry.
+    ///
+    /// # Errors
+    /// As [`Roof::whole`].
+    pub fn half(&self) -> Result<Builder<2, 3>, Box<dyn Error>> {
+        let held = |group: &str| Support { group: group.to_string(), components: [true, false], velocity: None };
+        Ok(self.builder(&self.halves)?.support(held("roof.left")).support(held("plate.left")))
+    }
+
+    /// The number in the whole of a node of the half.
+    #[must_use]
+    pub fn in_whole(&self, node: usize) -> usize {
+        let [half, whole] = [&self.halves, &self.whole].map(|bodies| bodies[0].node_count());
+        if node < half { node } else { node - half + whole }
+    }
+
+    fn builder(&self, [roof, plate]: &[TriangleMesh; 2]) -> Result<Builder<2, 3>, Box<dyn Error>> {
+        let mesh = TriangleMesh::joined(&[("roof", roof), ("plate", plate)])?;
+        let velocity = |node: usize| [0.0, if node < roof.node_count() { -self.speed } else { 0.0 }];
+        let velocity = Initial::Nodal((0..mesh.node_count()).map(velocity).collect());
+        Ok(TriangleProblem::builder(mesh)
+            .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0)?)
+            .initial_velocity(velocity)
+            .interface(Interface::sliding::<2>("roof.bottom", "plate.top", 0.2)?))
+    }
+}
