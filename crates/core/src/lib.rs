@@ -14,8 +14,6 @@ pub mod dynamics;
 pub mod element_state;
 pub mod history;
 pub mod ids;
-#[cfg(debug_assertions)]
-mod instances;
 pub mod load;
 pub mod material;
 pub mod memory;

@@ -18,11 +18,10 @@ mod direction;
 mod element;
 mod error;
 mod estimate;
+mod estimator;
 mod field_lanes;
 mod increment;
 mod inertia;
-#[cfg(debug_assertions)]
-mod instances;
 mod kinematic;
 mod lanes;
 mod loaded;
@@ -50,10 +49,9 @@ mod wide;
 
 pub use error::{EstimateError, RunError};
 pub use estimate::{ErrorMeasures, Estimate, Given, Parts, Sample, SurfaceEstimate};
+pub use estimator::{Estimator, estimate, memory};
 pub use map::{AdmissibleFields, ElementMap};
 pub use options::{Ablation, Acceleration, MOST_THREADS, Options, Reconstruction, UnknownName, UnsuitableAcceleration};
-pub use pipeline::{Estimator, memory};
-pub use replay::estimate;
 pub use request::{Request, RequestError};
 pub use residual::Residuals;
 pub use sampling::{Sampling, UnknownSampling};

@@ -3,7 +3,7 @@
 use crate::error::{EstimateError, RunError};
 use crate::estimate::Estimate;
 use crate::options::Options;
-use crate::pipeline::Estimator;
+use crate::pipeline::{Pipeline, Steps};
 use crate::request::Request;
 use percute_core::dynamics::{Balancing, Evaluation, Simulation};
 use percute_core::history::{SinkError, StateSink, StepError, StepSource};
@@ -12,14 +12,8 @@ use percute_core::problem::Problem;
 use std::ops::ControlFlow;
 use thiserror::Error;
 
-/// Estimates a history: from the same steps, the same bits as beside the run that made them. If the observer breaks,
-/// the steps taken so far are estimated, on a large mesh as far as [`Estimator::stopping`] says. The simulation is
-/// summed up from the steps. `beside` takes every step that is estimated too, so that they need not be read again.
-///
-/// # Errors
-/// [`RunError`]: a history that cannot be read or does not fit the problem, options out of range, maps
-/// that cannot be kept.
-pub fn estimate<const D: usize, const N: usize>(
+/// Estimates a history, [`estimate`](crate::estimate()).
+pub(crate) fn estimate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     source: &dyn StepSource<D>,
     options: Options,
@@ -27,8 +21,10 @@ pub fn estimate<const D: usize, const N: usize>(
     beside: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
 ) -> Result<(Simulation, Estimate<D>), RunError> {
-    let estimator = Estimator::new(problem, source.times(), options)?.keeping(request)?.stopping(observer.flag());
-    let mut sinks = (estimator, (Balancing::new(problem, source.times()), beside));
+    let mut pipeline = Pipeline::new(problem, source.times(), options)?;
+    pipeline.keep(request)?;
+    pipeline.stop_at(observer.flag());
+    let mut sinks = (pipeline, (Balancing::new(problem, source.times()), beside));
     let mut evaluation = Evaluation::new(problem, source.times());
     let last = source.count().saturating_sub(1);
     let replayed = source.replay(&mut |step| {
@@ -39,7 +35,7 @@ pub fn estimate<const D: usize, const N: usize>(
         }
         Ok(())
     });
-    let (estimator, (balancing, _)) = sinks;
+    let (pipeline, (balancing, _)) = sinks;
     let interrupted = match replayed {
         Ok(()) => false,
         Err(error) if error.is::<Stopped>() => true,
@@ -48,7 +44,7 @@ pub fn estimate<const D: usize, const N: usize>(
     let balance_over_time = balancing.finish();
     let balance = balance_over_time.last().copied().unwrap_or_default();
     let steps = balance_over_time.len().saturating_sub(1);
-    let estimate = estimator.finish()?;
+    let estimate = Box::new(pipeline).finish()?;
     Ok((Simulation { balance, balance_over_time, steps, interrupted }, estimate))
 }
 

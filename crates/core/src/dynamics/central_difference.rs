@@ -18,57 +18,8 @@ const FEWEST_ELEMENTS: usize = 20_000;
 /// Strips of each parity share two threads.
 const FEWEST_STRIPS: usize = 4;
 
-/// Runs a problem over a time grid and hands every step n = 0 … N to `sink`.
-///
-/// The observer is asked after each step; if it breaks, the run ends cleanly there.
-///
-/// # Errors
-/// [`SimulationError`]: an unstable run, a start too near to an obstacle, a sink that fails.
-pub fn simulate<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    times: &TimeGrid,
-    sink: &mut dyn StateSink<D>,
-    observer: &mut dyn Observer,
-) -> Result<Simulation, SimulationError> {
-    run(&Dynamics::new(problem, times), None, sink, observer)
-}
-
-/// The same on so many threads, by default one for each core. The result does not depend on their number. A mesh that
-/// is too small for threads to pay runs on one, and so does one whose order has no strips, or if threads cannot be
-/// started.
-///
-/// # Errors
-/// As [`simulate`].
-pub fn simulate_threaded<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    times: &TimeGrid,
-    threads: Option<usize>,
-    sink: &mut dyn StateSink<D>,
-    observer: &mut dyn Observer,
-) -> Result<Simulation, SimulationError> {
-    threaded(problem, times, threads, None, sink, observer)
-}
-
-/// Goes on from a checkpoint of a run of the same problem over the same instants. `sink` gets the steps after it, bit
-/// by bit those of a run that was not interrupted.
-///
-/// # Errors
-/// As [`simulate`].
-///
-/// # Panics
-/// If the fields do not have one value for each node.
-pub fn resume<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    times: &TimeGrid,
-    threads: Option<usize>,
-    checkpoint: &Checkpoint<D>,
-    sink: &mut dyn StateSink<D>,
-    observer: &mut dyn Observer,
-) -> Result<Simulation, SimulationError> {
-    threaded(problem, times, threads, Some(checkpoint), sink, observer)
-}
-
-fn threaded<const D: usize, const N: usize>(
+/// Runs a problem over a time grid, on so many threads, from the start or from a checkpoint on.
+pub(super) fn simulate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
     threads: Option<usize>,
@@ -90,7 +41,7 @@ fn threaded<const D: usize, const N: usize>(
     run(&dynamics, checkpoint, sink, observer)
 }
 
-/// The loop over the steps, from the start or from a checkpoint on.
+/// The loop over the steps.
 fn run<const D: usize, const N: usize>(
     dynamics: &Dynamics<'_, D, N>,
     checkpoint: Option<&Checkpoint<D>>,

@@ -19,14 +19,8 @@ pub fn element_time_step<const D: usize, const N: usize>(problem: &Problem<D, N>
     2.0 / element_bound(problem).sqrt()
 }
 
-/// Δt_c (s) from the largest eigenvalue of M⁻¹K by a matrix-free Lanczos iteration.
-///
-/// The Ritz value approaches ω²_max from below; its residual is added and the element-wise bound
-/// caps the sum. At least 10 ln n vectors are used: with a random start the expected relative
-/// error of the Ritz value is then below 0.103 (ln n/(k−1))² ≈ 1e-3 for any spectrum
-/// (Kuczyński and Woźniakowski, 1992), half of it for ω, and in practice far smaller.
-#[must_use]
-pub fn critical_time_step<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+/// Δt_c (s) from the largest eigenvalue of M⁻¹K, [`critical_time_step`](super::critical_time_step).
+pub(super) fn critical_time_step<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
     2.0 / largest_eigenvalue(problem).min(element_bound(problem)).sqrt()
 }
 

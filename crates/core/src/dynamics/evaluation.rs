@@ -62,10 +62,7 @@ impl<'p, const D: usize, const N: usize> Evaluation<'p, D, N> {
 }
 
 /// Hands the states of all steps of a history to `sink`.
-///
-/// # Errors
-/// A step that cannot be read or does not fit, or what the sink fails to take.
-pub fn replay<const D: usize, const N: usize>(
+pub(super) fn replay<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     source: &dyn StepSource<D>,
     sink: &mut dyn StateSink<D>,

@@ -1,6 +1,7 @@
 //! How a simulation ended, and why it stopped before.
 
-use super::{Balance, Dynamics, critical_time_step};
+use super::critical_step::critical_time_step;
+use super::{Balance, Dynamics};
 use crate::history::SinkError;
 use thiserror::Error;
 

@@ -6,9 +6,11 @@
 
 mod bar;
 mod by_dimension;
+mod instance;
 mod triangle;
 
 pub use by_dimension::ByDimension;
+pub use instance::instance;
 use std::fmt::Debug;
 
 /// The element of dimension `D` with `N` nodes, if [`Simplex`] is written for it.

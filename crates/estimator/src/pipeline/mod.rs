@@ -35,8 +35,9 @@ use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use prepare::Preparation;
 use rayon::ThreadPool;
+use std::fmt::Debug;
 use window::LevelWindow;
-pub use window::memory;
+pub(crate) use window::memory;
 
 /// From so many elements on, a step takes much longer than to hand it to the threads, some 10 µs.
 const THREADED: usize = 20_000;
@@ -44,20 +45,21 @@ const THREADED: usize = 20_000;
 /// From so many elements on a stop is looked for within a window. A smaller one takes some 0.1 s, and is not given up.
 const STOPPED: usize = 100_000;
 
-/// Takes in the steps of a history and estimates its constitutive relation error.
-///
-/// Steps may come from the integrator as it runs or from a stored history. They are worked on in
-/// windows, and memory does not grow with their number, but for some 150 bytes of each step, 300 of each sample and the
-/// maps that were requested.
-/// Elements around candidate nodes of contact wait until the next contact of all these nodes is known, which may be the
-/// end of the run. Some kilobytes for each node wait in memory, and the rest in a temporary file, in the folder that
-/// `TMPDIR` names or in `/var/tmp`. Once it cannot be written, steps are refused with [`EstimateError::Scratch`].
-///
-/// A state that fills a window of 8 sampled levels makes [`accept`](StateSink::accept) work on all of it before it
-/// returns, and so does [`finish`](Estimator::finish) on the last one: about a second on one core for a million
-/// elements. [`stopping`](Estimator::stopping) ends it before.
+/// From steps to an estimate, for any element of a dimension.
+pub(crate) trait Steps<const D: usize>: StateSink<D> + Debug + Send {
+    /// [`Estimator::keeping`](crate::Estimator::keeping).
+    fn keep(&mut self, request: &Request) -> Result<(), EstimateError>;
+
+    /// [`Estimator::stopping`](crate::Estimator::stopping).
+    fn stop_at(&mut self, flag: StopFlag);
+
+    /// [`Estimator::finish`](crate::Estimator::finish).
+    fn finish(self: Box<Self>) -> Result<Estimate<D>, EstimateError>;
+}
+
+/// The work of an [`Estimator`](crate::Estimator).
 #[derive(Debug)]
-pub struct Estimator<'p, const D: usize, const N: usize> {
+pub(crate) struct Pipeline<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     times: &'p TimeGrid,
     every: Sampling,
@@ -66,12 +68,13 @@ pub struct Estimator<'p, const D: usize, const N: usize> {
     window: LevelWindow<'p, D, N>,
 }
 
-impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
-    /// Prepares the estimate of a problem over a time grid.
-    ///
-    /// # Errors
-    /// Options out of range, threads that cannot be started, or no folder for a temporary file that may be needed.
-    pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: Options) -> Result<Self, EstimateError> {
+impl<'p, const D: usize, const N: usize> Pipeline<'p, D, N> {
+    /// Before the first step.
+    pub(crate) fn new(
+        problem: &'p Problem<D, N>,
+        times: &'p TimeGrid,
+        options: Options,
+    ) -> Result<Self, EstimateError> {
         let every = match options.every {
             Sampling::Auto => None,
             Sampling::Every(steps) => Some(steps),
@@ -103,44 +106,6 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
         Ok(Self { problem, times, every: options.every, pool, preparation, window })
     }
 
-    /// Keeps the maps requested as well, from the first step on. Only [`Sampling::Auto`] samples them for this: its
-    /// sums then have more samples. Otherwise no other number of the estimate changes.
-    ///
-    /// # Errors
-    /// Steps out of order, beyond the last or not sampled; more maps than memory can hold.
-    pub fn keeping(mut self, request: &Request) -> Result<Self, EstimateError> {
-        request.check(self.times, self.every.stride())?;
-        if self.every == Sampling::Auto {
-            self.preparation.request(&request.steps);
-        }
-        self.window.maps = Maps::new(request.clone(), self.problem)?;
-        Ok(self)
-    }
-
-    /// Leaves the work on a large mesh in its middle once a flag is up. The estimate then covers the steps before that
-    /// work, and those that follow are not estimated: [`Estimate::steps`] tells how many are.
-    #[must_use]
-    pub fn stopping(mut self, flag: StopFlag) -> Self {
-        if self.problem.mesh().element_count() >= STOPPED {
-            self.window.stop_at(flag);
-        }
-        self
-    }
-
-    /// Ends with the steps taken so far and sums up.
-    ///
-    /// # Errors
-    /// Fewer than two steps, none estimated before a [stop](Estimator::stopping), or numbers out of range.
-    pub fn finish(mut self) -> Result<Estimate<D>, EstimateError> {
-        if self.preparation.count() < 2 {
-            return Err(EstimateError::TooFewSteps { count: self.preparation.count() });
-        }
-        self.preparation.finish()?;
-        self.pass_on()?;
-        let estimate = self.window.finish(&self.pool, &mut self.preparation)?;
-        if estimate.is_finite() { Ok(estimate) } else { Err(EstimateError::Overflow) }
-    }
-
     /// Hands the levels that are ready to the window.
     fn pass_on(&mut self) -> Result<(), EstimateError> {
         while let Some(level) = self.preparation.next_ready() {
@@ -150,7 +115,35 @@ impl<'p, const D: usize, const N: usize> Estimator<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> StateSink<D> for Estimator<'_, D, N> {
+impl<const D: usize, const N: usize> Steps<D> for Pipeline<'_, D, N> {
+    fn keep(&mut self, request: &Request) -> Result<(), EstimateError> {
+        request.check(self.times, self.every.stride())?;
+        if self.every == Sampling::Auto {
+            self.preparation.request(&request.steps);
+        }
+        self.window.maps = Maps::new(request.clone(), self.problem)?;
+        Ok(())
+    }
+
+    fn stop_at(&mut self, flag: StopFlag) {
+        if self.problem.mesh().element_count() >= STOPPED {
+            self.window.stop_at(flag);
+        }
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<Estimate<D>, EstimateError> {
+        if self.preparation.count() < 2 {
+            return Err(EstimateError::TooFewSteps { count: self.preparation.count() });
+        }
+        self.preparation.finish()?;
+        self.pass_on()?;
+        let Self { pool, mut preparation, window, .. } = *self;
+        let estimate = window.finish(&pool, &mut preparation)?;
+        if estimate.is_finite() { Ok(estimate) } else { Err(EstimateError::Overflow) }
+    }
+}
+
+impl<const D: usize, const N: usize> StateSink<D> for Pipeline<'_, D, N> {
     fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
         self.preparation.check(state.step())?;
         let preparation = &mut self.preparation;

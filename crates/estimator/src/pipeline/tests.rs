@@ -28,7 +28,7 @@ fn instants(problem: &TriangleProblem, steps: usize) -> TimeGrid {
 
 /// An estimate of every step, and the most bytes that have waited in memory.
 struct Watched<'p> {
-    estimator: Estimator<'p, 2, 3>,
+    pipeline: Pipeline<'p, 2, 3>,
     most: usize,
 }
 
@@ -40,19 +40,19 @@ impl<'p> Watched<'p> {
             threads: Some(1),
             ..Options::default()
         };
-        Self { estimator: Estimator::new(problem, times, options).unwrap(), most: 0 }
+        Self { pipeline: Pipeline::new(problem, times, options).unwrap(), most: 0 }
     }
 
     fn run(&mut self) -> Result<(), SimulationError> {
-        let (problem, times) = (self.estimator.problem, self.estimator.times);
+        let (problem, times) = (self.pipeline.problem, self.pipeline.times);
         simulate(problem, times, self, &mut Unobserved).map(|_| ())
     }
 }
 
 impl StateSink<2> for Watched<'_> {
     fn accept(&mut self, state: &State<'_, 2>) -> Result<(), SinkError> {
-        self.estimator.accept(state)?;
-        let Estimator { preparation, window, .. } = &mut self.estimator;
+        self.pipeline.accept(state)?;
+        let Pipeline { preparation, window, .. } = &mut self.pipeline;
         self.most = self.most.max(preparation.tracks().held() + window.near_mut().held());
         Ok(())
     }
@@ -67,12 +67,12 @@ fn memory_does_not_grow_with_the_steps() {
         let times = instants(&problem, steps);
         let mut watched = Watched::new(&problem, &times);
         if !limited {
-            watched.estimator.preparation.tracks_mut().lift_limit();
-            watched.estimator.window.near_mut().backlog_mut().lift_limit();
+            watched.pipeline.preparation.tracks_mut().lift_limit();
+            watched.pipeline.window.near_mut().backlog_mut().lift_limit();
         }
         watched.run().unwrap();
-        assert_eq!(watched.estimator.window.near_mut().backlog_mut().has_been_in_file(), limited);
-        (watched.most, watched.estimator.finish().unwrap())
+        assert_eq!(watched.pipeline.window.near_mut().backlog_mut().has_been_in_file(), limited);
+        (watched.most, Box::new(watched.pipeline).finish().unwrap())
     };
     let [(short, _), (long, estimate)] = [1000, 4000].map(|steps| run(steps, true));
     let [(_, _), (unlimited, same)] = [1000, 4000].map(|steps| run(steps, false));
@@ -87,7 +87,7 @@ fn a_file_that_fails_is_an_error() {
     let problem = rebound();
     let times = instants(&problem, 1000);
     let mut watched = Watched::new(&problem, &times);
-    watched.estimator.window.near_mut().backlog_mut().wait_in(ScratchFile::within("/no/such/folder".into()));
+    watched.pipeline.window.near_mut().backlog_mut().wait_in(ScratchFile::within("/no/such/folder".into()));
     let Err(SimulationError::Sink { cause, step }) = watched.run() else { panic!("no error") };
     assert!(step > 10, "{step}");
     assert!(matches!(cause.downcast_ref(), Some(EstimateError::Scratch(_))), "{cause}");
@@ -103,16 +103,17 @@ fn stopped(
 ) -> Result<Estimate<2>, EstimateError> {
     let options = Options { every: Sampling::Every(1), threads: Some(1), ..Options::default() };
     let flag = StopFlag::default();
-    let mut estimator = Estimator::new(problem, times, options).unwrap().stopping(flag.clone());
+    let mut pipeline = Pipeline::new(problem, times, options).unwrap();
+    pipeline.stop_at(flag.clone());
     if large {
-        estimator.window.stop_at(flag.clone());
+        pipeline.window.stop_at(flag.clone());
     }
     let watch = &mut |progress: Progress| {
         flag.set(progress.done >= step);
         ControlFlow::Continue(())
     };
-    simulate(problem, times, &mut estimator, watch).unwrap();
-    estimator.finish()
+    simulate(problem, times, &mut pipeline, watch).unwrap();
+    Box::new(pipeline).finish()
 }
 
 /// A stop drops the windows from then on. What is kept has the bits of the whole estimate, and the contributions of the

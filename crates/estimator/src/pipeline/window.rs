@@ -58,10 +58,12 @@ fn size(options: &Options) -> usize {
     options.window.map_or(LANES, |window| window.min(LANES))
 }
 
-/// About how much memory (bytes) an estimate takes beside its problem: its levels and the data that it keeps of
-/// each element and sample.
-#[must_use]
-pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, options: &Options) -> usize {
+/// About how much memory (bytes) an estimate takes beside its problem, [`memory`](crate::memory).
+pub(crate) fn memory<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    times: &TimeGrid,
+    options: &Options,
+) -> usize {
     let levels = size(options).min(times.step_count()).saturating_add(OTHER_LEVELS);
     // Its places in the blocks of elements and stars are three for each node of it.
     let element = size_of::<Element<D, N>>() + 3 * N * size_of::<u32>() + size_of::<FarCourse<D, N>>();

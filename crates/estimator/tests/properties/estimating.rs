@@ -29,7 +29,7 @@ pub(crate) fn history<const D: usize, const N: usize>(problem: &Problem<D, N>, t
 /// An estimator of bare steps.
 pub(crate) struct Evaluated<'p> {
     evaluation: Evaluation<'p, 2, 3>,
-    pub(crate) estimator: Estimator<'p, 2, 3>,
+    pub(crate) estimator: Estimator<'p, 2>,
 }
 
 impl<'p> Evaluated<'p> {
