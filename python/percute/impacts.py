@@ -77,8 +77,8 @@ class SlidingEstimate:
 
     groups: tuple[str, str]
     """The groups of edges of both bodies."""
-    couple: float
-    """The largest couple of the normal forces on both bodies, over the largest of these forces (m)."""
+    couple: float | None
+    """The largest couple of the normal forces on both bodies, over the largest of these forces (m); None in files of earlier versions."""
     slide: float
     """How far they are along each other from their places at the start, at most (m)."""
     lift: float
@@ -91,7 +91,7 @@ class SlidingEstimate:
     @classmethod
     def _all(cls, found: Sequence[Mapping[str, Any]]) -> tuple[SlidingEstimate, ...]:
         """Make them from their JSON objects."""
-        return tuple(cls(**{**each, "groups": tuple(each["groups"])}) for each in found)
+        return tuple(cls(**{"couple": None, **each, "groups": tuple(each["groups"])}) for each in found)
 
 
 def _vectors(found: Mapping[str, Any], *names: str) -> dict[str, NDArray[np.float64] | None]:

@@ -60,14 +60,15 @@ impl<const D: usize> Sum<D> {
         let sum = &mut self.resultant;
         sum.friction_energy += share.friction_energy;
         (0..D).for_each(|c| sum.force[c] += share.force[c]);
+        // Nodes beside the contact of surfaces that slide are pulled: forces of their multipliers have both signs.
+        sum.normal_force += share.normal_force;
+        (0..D).for_each(|c| self.moment[c] += share.normal_force * share.place[c]);
         if share.status == Status::Free {
             return;
         }
-        sum.normal_force += share.normal_force;
         sum.area += share.area;
         sum.in_contact += 1;
         sum.slipping += usize::from(share.status == Status::Slip);
-        (0..D).for_each(|c| self.moment[c] += share.normal_force * share.place[c]);
     }
 
     /// The resultant at t_n; its impulse goes on from that `before`, `step` seconds ago.
@@ -77,7 +78,8 @@ impl<const D: usize> Sum<D> {
             done.impulse = before.impulse;
             (0..D).for_each(|c| done.impulse[c] += 0.5 * step * (before.force[c] + done.force[c]));
         }
-        done.centre = (done.in_contact > 0).then(|| self.moment.map(|m| m / done.normal_force));
+        done.centre =
+            (done.in_contact > 0 && done.normal_force > 0.0).then(|| self.moment.map(|m| m / done.normal_force));
         done
     }
 }

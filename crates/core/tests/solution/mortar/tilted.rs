@@ -2,6 +2,8 @@
 
 use super::setup::steps;
 use crate::run::{aluminium, run};
+use percute_core::contact::ContactRecorder;
+use percute_core::history::StepSource;
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Between, Contact, Initial, TriangleProblem};
 
@@ -35,4 +37,32 @@ fn a_corner_that_slides_gains_no_energy() {
         assert!(gained < 0.005, "{degrees}°: {gained}");
         assert!(normal[0].abs() < 1e-12, "{degrees}°: {normal:?}");
     }
+}
+
+/// Forces of the multipliers have both signs: nodes beside the contact are pulled. The normal forces on both sides have
+/// the same sum all the same.
+#[test]
+fn both_sides_have_the_same_normal_force() {
+    let problem = tilted(28.0, 200.0);
+    let run = run(&problem, &steps(&problem, 20e-6));
+    let results = ContactRecorder::new(&problem, run.history.times()).keeping_steps().unwrap().replay(&run.history);
+    let results = results.unwrap();
+    let normals = [0, 1].map(|side| *problem.obstacles()[side].flat_frame().normal());
+    let across = |side: usize, force: &[f64; 2]| force[0] * normals[side][0] + force[1] * normals[side][1];
+    let (mut peak, mut pulled) = (0.0_f64, 0.0_f64);
+    for n in 0..results.instants.len() {
+        let sides = [0, 1].map(|side| results.obstacles[side][n]);
+        let size = sides[0].normal_force;
+        peak = peak.max(size);
+        for (k, side) in sides.iter().enumerate() {
+            // Sums of some ten forces.
+            let apart = [side.normal_force - size, side.normal_force - across(k, &side.force)];
+            assert!(apart.iter().all(|apart| apart.abs() <= 1e-12 * size.abs()), "step {n}: {apart:?}");
+        }
+        let count = problem.surface().nodes().len();
+        for (at, force) in results.steps.as_ref().unwrap().force[n * count..][..count].iter().enumerate() {
+            pulled = pulled.min(across(problem.surface().nodes()[at].obstacle, force));
+        }
+    }
+    assert!(peak > 0.0 && pulled < -0.02 * peak, "{pulled} of {peak}");
 }
