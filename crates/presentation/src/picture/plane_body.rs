@@ -11,8 +11,8 @@ use crate::svg::{Anchor, Svg};
 const SCALE: [f64; 3] = [22.0, 18.0, 90.0];
 /// Elements are outlined from this size on (pixels).
 const OUTLINED: f64 = 7.0;
-/// Strokes shorter than this are a point (pixels): places are written to a tenth.
-const SHORTEST: f64 = 0.05;
+/// Strokes shorter than this may be a point (pixels): places are written to a tenth.
+const SHORTEST: f64 = 0.1;
 /// Distance of the strokes that hatch the far side of a plane (pixels).
 const HATCH: f64 = 9.0;
 /// A plane is in the picture if its distance is at most this part of the size of the body.
