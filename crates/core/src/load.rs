@@ -66,6 +66,12 @@ impl<const C: usize> Table<C> {
         &self.value
     }
 
+    /// Whether it has the same value at all times.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        self.value.iter().all(|value| *value == self.value[0])
+    }
+
     /// The value at an instant.
     #[must_use]
     pub fn at(&self, t: f64) -> [f64; C] {

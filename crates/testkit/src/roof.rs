@@ -2,7 +2,7 @@
 
 use crate::image::{doubled, translated};
 use percute_core::contact::Interface;
-use percute_core::load::Support;
+use percute_core::load::{Support, Table};
 use percute_core::material::Elastic;
 use percute_core::mesh::{MeshError, TriangleMesh};
 use percute_core::problem::{Builder, Initial, TriangleProblem};
@@ -13,27 +13,37 @@ const HEIGHT: f64 = 0.025;
 /// The gap is the way in so long a time (s).
 const WAY: f64 = 1e-6;
 
-/// A roof of aluminium, of which the ridge points down, strikes a plate, with friction.
+/// A roof of aluminium strikes a plate, with friction. Its ridge points down, or up where the angle is negative.
 #[derive(Clone, Debug)]
 pub struct Roof {
     /// The right halves of `roof` and `plate`, and both as a whole.
     halves: [TriangleMesh; 2],
     whole: [TriangleMesh; 2],
     speed: f64,
+    along: f64,
 }
 
 impl Roof {
-    /// With an angle of its sides (°), a speed (m/s), and cells along half of the roof and of the plate.
+    /// With an angle of its sides (°), a speed (m/s), half of the width of the plate (m), that of the roof being 20 mm,
+    /// and cells along half of the roof and of the plate.
     ///
     /// # Errors
     /// None beyond those of the meshes.
-    pub fn new(angle: f64, speed: f64, cells: [usize; 2]) -> Result<Self, MeshError> {
+    pub fn new(angle: f64, speed: f64, plate: f64, cells: [usize; 2]) -> Result<Self, MeshError> {
         let slope = angle.to_radians().tan();
         let roof = TriangleMesh::rectangle(0.02, HEIGHT, cells[0], 4)?.mapped(|p| [p[0], p[1] + slope * p[0]])?;
-        let halves =
-            [translated(&roof, [0.0, HEIGHT + WAY * speed])?, TriangleMesh::rectangle(0.03, HEIGHT, cells[1], 4)?];
+        let halves = [
+            translated(&roof, [0.0, HEIGHT + WAY * speed - (0.02 * slope).min(0.0)])?,
+            TriangleMesh::rectangle(plate, HEIGHT, cells[1], 4)?,
+        ];
         let whole = [doubled(&halves[0])?, doubled(&halves[1])?];
-        Ok(Self { halves, whole, speed })
+        Ok(Self { halves, whole, speed, along: 0.0 })
+    }
+
+    /// The same in a frame in which all moves along the plate with this speed (m/s).
+    #[must_use]
+    pub fn moving(self, along: f64) -> Self {
+        Self { along, ..self }
     }
 
     /// All of it.
@@ -49,7 +59,9 @@ impl Roof {
     /// # Errors
     /// As [`Roof::whole`].
     pub fn half(&self) -> Result<Builder<2, 3>, Box<dyn Error>> {
-        let held = |group: &str| Support { group: group.to_string(), components: [true, false], velocity: None };
+        let velocity = (self.along != 0.0).then(|| Table::constant([self.along, 0.0]));
+        let held =
+            |group: &str| Support { group: group.to_string(), components: [true, false], velocity: velocity.clone() };
         Ok(self.builder(&self.halves)?.support(held("roof.left")).support(held("plate.left")))
     }
 
@@ -62,7 +74,7 @@ impl Roof {
 
     fn builder(&self, [roof, plate]: &[TriangleMesh; 2]) -> Result<Builder<2, 3>, Box<dyn Error>> {
         let mesh = TriangleMesh::joined(&[("roof", roof), ("plate", plate)])?;
-        let velocity = |node: usize| [0.0, if node < roof.node_count() { -self.speed } else { 0.0 }];
+        let velocity = |node: usize| [self.along, if node < roof.node_count() { -self.speed } else { 0.0 }];
         let velocity = Initial::Nodal((0..mesh.node_count()).map(velocity).collect());
         Ok(TriangleProblem::builder(mesh)
             .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0)?)

@@ -64,6 +64,24 @@ pub(super) struct Supports<const D: usize> {
     pub(super) motions: Vec<Table<1>>,
 }
 
+impl<const D: usize> Supports<D> {
+    /// Which components of each node are prescribed.
+    pub(super) fn fixed(&self, nodes: usize) -> Vec<[bool; D]> {
+        let mut fixed = vec![[false; D]; nodes];
+        self.prescribed.iter().for_each(|p| fixed[p.node.index()][p.component] = true);
+        fixed
+    }
+
+    /// Whether supports hold a node, or move it with a velocity that does not change.
+    pub(super) fn steady(&self, nodes: usize) -> Vec<bool> {
+        let changes = |p: &PrescribedComponent| p.motion.is_some_and(|motion| !self.motions[motion].is_constant());
+        let mut steady = vec![false; nodes];
+        self.prescribed.iter().for_each(|p| steady[p.node.index()] = true);
+        self.prescribed.iter().filter(|p| changes(p)).for_each(|p| steady[p.node.index()] = false);
+        steady
+    }
+}
+
 /// Resolves the supports; two may overlap only if they prescribe the same motion.
 pub(super) fn supports<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,

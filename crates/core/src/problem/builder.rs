@@ -4,9 +4,7 @@ use super::bodies::{Contact, Start};
 use super::boundary::{self, Supports};
 use super::contacts::{self, Choice, Stated, Surfaces};
 use super::sides::Bodies;
-use super::{
-    Cause, InputError, Place, PrescribedComponent, Problem, candidates, pairs, sides, sliding, start_of_contact,
-};
+use super::{Cause, InputError, Place, Problem, candidates, pairs, sides, sliding, start_of_contact};
 use crate::contact::{ContactSurface, Interface, Obstacle, Plane};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{BodyForce, Support, Traction};
@@ -188,7 +186,9 @@ impl<const D: usize, const N: usize> Builder<D, N> {
 
         let initial_displacement = nodal(&self.displacement, mesh.node_count(), "displacement")?;
         let initial_velocity = nodal(&self.velocity, mesh.node_count(), "velocity")?;
-        let Supports { facets: supported, prescribed, motions } = boundary::supports(mesh, &self.stated.supports)?;
+        let supports = boundary::supports(mesh, &self.stated.supports)?;
+        let (fixed, steady) = (supports.fixed(mesh.node_count()), supports.steady(mesh.node_count()));
+        let Supports { facets: supported, prescribed, motions } = supports;
         if prescribed.len() == D * mesh.node_count() {
             return Err(Cause::NoFreedom.at("support", None, ""));
         }
@@ -196,8 +196,8 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.stated.body_forces, volume)?;
 
         let of_facet = |f: FacetId| &materials[usize::from(element_material[mesh.facets()[f.index()].owner.index()])];
-        let (held, (fixed, driven)) = (boundary::held(mesh, &self.stated), fixed(mesh.node_count(), &prescribed));
-        let bodies = Bodies { mesh, body: Vec::new(), held, fixed, driven, mass: &mass, law: &of_facet };
+        let (body, held, velocity) = (Vec::new(), boundary::held(mesh, &self.stated), &initial_velocity[..]);
+        let bodies = Bodies { mesh, body, held, fixed, steady, velocity, mass: &mass, law: &of_facet };
         let start = Start { displacement: &initial_displacement, velocity: &initial_velocity, mass: &mass };
         // One body costs no search.
         let contact = Stated { contacts: &self.contacts, automatic: self.automatic && mesh.parts() > 1 };
@@ -239,16 +239,6 @@ fn lumped_mass<const D: usize, const N: usize>(mesh: &Mesh<D, N>, of_element: im
     mass
 }
 
-/// Which components of each node are prescribed, and whether a support moves it.
-fn fixed<const D: usize>(nodes: usize, prescribed: &[PrescribedComponent]) -> (Vec<[bool; D]>, Vec<bool>) {
-    let (mut fixed, mut driven) = (vec![[false; D]; nodes], vec![false; nodes]);
-    for p in prescribed {
-        fixed[p.node.index()][p.component] = true;
-        driven[p.node.index()] |= p.motion.is_some();
-    }
-    (fixed, driven)
-}
-
 /// All contact of a problem.
 struct AllContact<const D: usize> {
     surface: ContactSurface<D>,
@@ -274,9 +264,9 @@ fn all_contact<const D: usize, const N: usize>(
     let facing_planes = surface.facets().iter().map(|facet| facet.facet).collect();
     let Surfaces { choices, mut groups } = contacts::surfaces(&bodies, &stated, start, &facing_planes)?;
     let with_groups = (!groups.is_empty()).then(|| bodies.mesh.clone().with_facet_groups(groups.clone()));
-    let Bodies { mesh, body, held, fixed, driven, mass, law } = bodies;
+    let Bodies { mesh, law, .. } = bodies;
     let mesh = with_groups.as_ref().unwrap_or(mesh);
-    let bodies = Bodies { mesh, body, held, fixed, driven, mass, law: &|facet| law(facet) };
+    let bodies = Bodies { mesh, law: &|facet| law(facet), ..bodies };
     let (surface, interfaces) = with_interfaces(surface, &bodies, &choices, start.displacement)?;
     groups.retain(|(name, _)| interfaces.iter().any(|interface| interface.groups().contains(&name.as_str())));
     let places = choices.into_iter().map(|(_, place)| place).collect();

@@ -16,8 +16,10 @@ pub(super) struct Bodies<'m, const D: usize, const N: usize> {
     pub(super) body: Vec<NodeId>,
     pub(super) held: Vec<Option<HeldBy>>,
     pub(super) fixed: Vec<[bool; D]>,
-    /// Nodes that a support moves.
-    pub(super) driven: Vec<bool>,
+    /// Nodes that supports move uniformly, or hold.
+    pub(super) steady: Vec<bool>,
+    /// The initial velocity of each node (m/s).
+    pub(super) velocity: &'m [[f64; D]],
     /// The mass of each node (kg).
     pub(super) mass: &'m [f64],
     /// The law of the element that a facet belongs to.
@@ -30,7 +32,7 @@ pub(super) struct Side<const D: usize> {
     pub(super) facets: Vec<FacetId>,
     /// Nodes along the boundary.
     pub(super) nodes: Vec<NodeId>,
-    /// Σ of outward normals times areas (m² or 1).
+    /// Σ of outward normals times areas (m² or 1), of half of a symmetric model that of the whole.
     pub(super) outward: [f64; D],
     /// The bodies that it belongs to, by their first nodes, ascending.
     pub(super) bodies: Vec<NodeId>,
@@ -89,8 +91,22 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         facets.sort_by_key(|&facet| self.body_of(facet));
         let mut bodies: Vec<NodeId> = facets.iter().map(|&facet| self.body_of(facet)).collect();
         bodies.dedup();
-        let outward = outward(self.mesh, &facets);
-        Ok(Side { nodes: along_the_boundary(self.mesh, &facets), facets, outward, bodies })
+        let nodes = along_the_boundary(self.mesh, &facets);
+        let outward = self.of_the_whole(outward(self.mesh, &facets), &nodes);
+        Ok(Side { nodes, facets, outward, bodies })
+    }
+
+    /// Σ of outward normals with those of the mirrored side: a support that holds a node along the side, or moves it
+    /// uniformly, is a line of symmetry across the side.
+    fn of_the_whole(&self, mut outward: [f64; D], nodes: &[NodeId]) -> [f64; D] {
+        let largest = outward.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
+        for c in 0..D {
+            let is_mirror = |node: &NodeId| self.steady[node.index()] && self.fixed[node.index()][c];
+            if outward[c].abs() < largest && nodes.iter().any(is_mirror) {
+                outward[c] = 0.0;
+            }
+        }
+        outward
     }
 
     /// The body of a facet, by its first node.

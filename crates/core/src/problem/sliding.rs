@@ -9,6 +9,8 @@ use crate::ids::{FacetId, NodeId};
 
 /// Places nearer than this part of the size of the mesh are one.
 const ONE_PLACE: f64 = 1e-12;
+/// Velocities that differ by less than this part of the largest are one.
+const ONE_SPEED: f64 = 1e-9;
 
 /// Facets of a body in ascending order of ξ, each with its nodes and their ξ (m).
 type Chain = Vec<(FacetId, [(f64, NodeId); 2])>;
@@ -85,13 +87,12 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         };
         let contacts = nodes.iter().map(contact).collect::<Result<Vec<_>, Cause>>()?;
         let eta = nodes.iter().map(|&node| dot(&from_origin(node), normal)).collect();
-        let guided = |driven: bool| -> Vec<bool> {
-            let driven = |contact: &ContactNode| self.driven[contact.node.index()] == driven;
-            contacts.iter().map(|(contact, _)| contact.guided && driven(contact)).collect()
-        };
-        let (still, driven) = (guided(false), guided(true));
+        let velocity: Vec<[f64; D]> = nodes.iter().map(|node| self.velocity[node.index()]).collect();
+        let steady: Vec<bool> = nodes.iter().map(|node| self.steady[node.index()]).collect();
+        let fastest = velocity.iter().fold(0.0_f64, |most, v| most.max(dot(v, v).sqrt()));
+        let velocity: Vec<f64> = velocity.iter().map(|velocity| dot(velocity, &along)).collect();
         surface.add(facing, contacts, facets);
-        Ok(Line::new(start, [xi, eta], edges, &starts).held(&still, &driven))
+        Ok(Line::new(start, [xi, eta], edges, &starts).held(&velocity, &steady, ONE_SPEED * fastest))
     }
 
     /// The facets of each body of a side, of bodies in ascending order of their first ξ.

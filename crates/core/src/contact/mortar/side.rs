@@ -59,14 +59,18 @@ impl Side {
         Self { start, parts, xi, eta, corners, edges, inverse, share }
     }
 
-    /// The same where supports hold nodes along the tangent. A part with nodes that stand still does not move along ξ,
-    /// so that half of a symmetric model moves as in the whole one. A part with driven nodes alone moves by their mean.
-    pub(crate) fn held(mut self, still: &[bool], driven: &[bool]) -> Self {
+    /// The same where supports hold nodes, from the initial velocities along the tangent (m/s). `steady` nodes keep
+    /// theirs. If they go with the mean of their part, to `tolerance`, the part moves by them: half of a symmetric model
+    /// then moves as the whole one. Where they do not, a wave has yet to bring their motion to the other nodes.
+    pub(crate) fn held(mut self, velocity: &[f64], steady: &[bool], tolerance: f64) -> Self {
         for part in &self.parts {
-            let of_part = [still, driven].map(|nodes| &nodes[part.nodes.clone()]);
-            let Some(held) = of_part.into_iter().find(|nodes| nodes.contains(&true)) else { continue };
-            let share = 1.0 / held.iter().filter(|held| **held).count() as f64;
-            self.share.splice(part.nodes.clone(), held.iter().map(|held| if *held { share } else { 0.0 }));
+            let mean = self.motion_of(part, |node| velocity[node]);
+            let leads = |node: &usize| steady[*node] && (velocity[*node] - mean).abs() <= tolerance;
+            let leading: Vec<usize> = part.nodes.clone().filter(leads).collect();
+            if !leading.is_empty() {
+                self.share[part.nodes.clone()].fill(0.0);
+                leading.iter().for_each(|&node| self.share[node] = 1.0 / leading.len() as f64);
+            }
         }
         self
     }
