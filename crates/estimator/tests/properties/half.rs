@@ -7,8 +7,8 @@ use percute_testkit::Roof;
 
 /// A corner of half a model is at the end of its surface, at the middle of the whole model. The stars there are halves
 /// of those of the whole, and their tractions of least energy are others: in these cases they change the estimate by up
-/// to 6 %, at 10° and 200 m/s by up to 17 %, and at 5° and 100 m/s by up to 38 %. With surfaces that moved by their means, the corner was beyond the
-/// end, and slow corners had an estimate 7 to 14 times as large.
+/// to 6 %, at 10° and 200 m/s by up to 17 %, and at 5° and 100 m/s by up to 38 %. With surfaces that moved by their
+/// means, the corner was beyond the end, and slow corners had an estimate 7 to 14 times as large.
 #[test]
 fn half_of_a_symmetric_model_has_half_of_the_estimate() {
     let slow = [(0.0, 20.0), (3.0, 20.0), (10.0, 0.5), (10.0, 20.0), (28.0, 2.0), (28.0, 200.0)];

@@ -60,8 +60,8 @@ impl Side {
     }
 
     /// The same where supports hold nodes, from the initial velocities along the tangent (m/s). `steady` nodes keep
-    /// theirs. If they go with the mean of their part, to `tolerance`, the part moves by them: half of a symmetric model
-    /// then moves as the whole one. Where they do not, a wave has yet to bring their motion to the other nodes.
+    /// theirs. If they go with the mean of their part, to `tolerance`, the part moves by them: half of a symmetric
+    /// model then moves as the whole one. Where they do not, a wave has yet to bring their motion to the other nodes.
     pub(crate) fn held(mut self, velocity: &[f64], steady: &[bool], tolerance: f64) -> Self {
         for part in &self.parts {
             let mean = self.motion_of(part, |node| velocity[node]);
