@@ -1,7 +1,7 @@
 //! A symmetric impact: all of it, and its right half.
 
 use crate::image::{doubled, translated};
-use percute_core::contact::Interface;
+use percute_core::contact::{Interface, Obstacle};
 use percute_core::load::{Support, Table};
 use percute_core::material::Elastic;
 use percute_core::mesh::{MeshError, TriangleMesh};
@@ -10,6 +10,7 @@ use std::error::Error;
 
 /// Height of both bodies (m).
 const HEIGHT: f64 = 0.025;
+const FRICTION: f64 = 0.2;
 /// The gap is the way in so long a time (s).
 const WAY: f64 = 1e-6;
 
@@ -65,6 +66,21 @@ impl Roof {
         Ok(self.builder(&self.halves)?.support(held("roof.left")).support(held("plate.left")))
     }
 
+    /// The roof on a rigid plane instead of the plate: all of it, and its right half.
+    ///
+    /// # Errors
+    /// As [`Roof::whole`].
+    pub fn alone(&self) -> Result<[Builder<2, 3>; 2], Box<dyn Error>> {
+        let builder = |roof: &TriangleMesh| -> Result<Builder<2, 3>, Box<dyn Error>> {
+            Ok(TriangleProblem::builder(roof.clone())
+                .material(aluminium()?)
+                .initial_velocity(Initial::Uniform([0.0, -self.speed]))
+                .obstacle(Obstacle::plane([0.0, HEIGHT], [0.0, 1.0], FRICTION, Some("bottom".to_string()))?))
+        };
+        let held = Support { group: "left".to_string(), components: [true, false], velocity: None };
+        Ok([builder(&self.whole[0])?, builder(&self.halves[0])?.support(held)])
+    }
+
     /// The number in the whole of a node of the half.
     #[must_use]
     pub fn in_whole(&self, node: usize) -> usize {
@@ -77,8 +93,12 @@ impl Roof {
         let velocity = |node: usize| [self.along, if node < roof.node_count() { -self.speed } else { 0.0 }];
         let velocity = Initial::Nodal((0..mesh.node_count()).map(velocity).collect());
         Ok(TriangleProblem::builder(mesh)
-            .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0)?)
+            .material(aluminium()?)
             .initial_velocity(velocity)
-            .interface(Interface::sliding::<2>("roof.bottom", "plate.top", 0.2)?))
+            .interface(Interface::sliding::<2>("roof.bottom", "plate.top", FRICTION)?))
     }
+}
+
+fn aluminium() -> Result<Elastic, Box<dyn Error>> {
+    Ok(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0)?)
 }

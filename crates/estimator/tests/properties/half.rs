@@ -2,28 +2,55 @@
 
 use crate::bodies::steps;
 use crate::estimating::{assert_admissible, estimate, history};
+use percute_core::problem::TriangleProblem;
 use percute_estimator::{Options, Sampling};
 use percute_testkit::Roof;
 
-/// A corner of half a model is at the end of its surface, at the middle of the whole model. The stars there are halves
-/// of those of the whole, and their tractions of least energy are others: in these cases they change the estimate by up
-/// to 6 %, at 10° and 200 m/s by up to 17 %, and at 5° and 100 m/s by up to 38 %. With surfaces that moved by their
-/// means, the corner was beyond the end, and slow corners had an estimate 7 to 14 times as large.
+/// Roofs by angle (°), speed (m/s), and cells of roof and plate.
+const ROOFS: [(f64, f64, [usize; 2]); 10] = [
+    (0.0, 20.0, [5, 7]),
+    (-3.0, 20.0, [5, 7]),
+    (3.0, 20.0, [5, 7]),
+    (10.0, 0.5, [5, 7]),
+    (10.0, 20.0, [5, 7]),
+    (28.0, 2.0, [5, 7]),
+    (28.0, 200.0, [5, 7]),
+    (10.0, 200.0, [5, 7]),
+    (1.0, 20.0, [10, 14]),
+    (5.0, 100.0, [10, 10]),
+];
+
+/// The estimate of the half times √2 is that of the whole, but for a part `less` of it: supports on the line of symmetry
+/// take tractions across it, as they are in the whole.
+fn check(roof: &str, [whole, half]: [&TriangleProblem; 2], less: f64) {
+    let times = steps(whole, 0.9, 40);
+    let options = Options { every: Sampling::Every(1), threads: Some(1), ..Options::default() };
+    let [whole, half] = [whole, half].map(|problem| estimate(problem, &history(problem, &times), options));
+    assert_admissible(roof, &half);
+    assert!(whole.error.sup > 0.0 && half.kept_impulse.is_some(), "{roof}: no contact");
+    for (whole, half) in [(whole.error.sup, half.error.sup), (whole.error.mean, half.error.mean)] {
+        let ratio = half * 2.0_f64.sqrt() / whole;
+        // The few steps of the minimisation differ by up to 5e-4.
+        assert!((0.999 - less..1.001).contains(&ratio), "{roof}: {ratio}");
+    }
+}
+
+/// In the whole, the stresses beside linear tractions on both sides of the ridge are summed up by their norms, in the half
+/// there is one of them. Measured are up to 3.0 % less.
 #[test]
 fn half_of_a_symmetric_model_has_half_of_the_estimate() {
-    let slow = [(0.0, 20.0), (3.0, 20.0), (10.0, 0.5), (10.0, 20.0), (28.0, 2.0), (28.0, 200.0)];
-    let cases = slow.map(|case| (case, [5, 7], 0.07));
-    let fast = [((10.0, 200.0), [5, 7], 0.2), ((5.0, 100.0), [10, 10], 0.4)];
-    for ((angle, speed), cells, most) in cases.into_iter().chain(fast) {
+    for (angle, speed, cells) in ROOFS {
         let roof = Roof::new(angle, speed, 0.03, cells).unwrap();
         let [whole, half] = [roof.whole(), roof.half()].map(|builder| builder.unwrap().build().unwrap());
-        let times = steps(&whole, 0.9, 40);
-        let options = Options { every: Sampling::Every(1), threads: Some(1), ..Options::default() };
-        let [whole, half] = [&whole, &half].map(|problem| estimate(problem, &history(problem, &times), options));
-        assert_admissible("half", &half);
-        for (whole, half) in [(whole.error.sup, half.error.sup), (whole.error.mean, half.error.mean)] {
-            let ratio = half * 2.0_f64.sqrt() / whole;
-            assert!((ratio - 1.0).abs() < most, "{angle}° at {speed} m/s: {ratio}");
-        }
+        check(&format!("{angle}° at {speed} m/s"), [&whole, &half], 0.035);
+    }
+}
+
+#[test]
+fn half_of_a_symmetric_body_on_a_plane_has_half_of_the_estimate() {
+    for (angle, speed, cells) in ROOFS {
+        let [whole, half] = Roof::new(angle, speed, 0.03, cells).unwrap().alone().unwrap();
+        let [whole, half] = [whole, half].map(|builder| builder.build().unwrap());
+        check(&format!("{angle}° at {speed} m/s on a plane"), [&whole, &half], 0.0);
     }
 }

@@ -7,6 +7,9 @@
 //! those nearest to 1, in the mean weighted by the forces, affine along the plane, and 0 where they would be negative.
 //! Friction is multiplied by the factor of its normal force. The rest of its sum is shared out where the cone has room;
 //! there is always enough.
+//!
+//! On a line of symmetry, which supports hold along the plane, the half of a shape function has its centroid beside the
+//! node. In the whole body no moment is missing, and the line takes that of its half: nothing is corrected.
 
 use crate::direction::{along, tangent};
 use percute_core::contact::Coulomb;
@@ -35,8 +38,6 @@ pub(super) struct CorrectedNode {
     pub(super) centroid: f64,
     /// From there to the place of its reaction, along the plane and away from it (m).
     pub(super) lever: [f64; 2],
-    /// Whether its tangential motion is prescribed: no friction moves it.
-    pub(super) guided: bool,
 }
 
 /// Gives reactions as forces whose densities have their moment.
@@ -72,10 +73,10 @@ impl<const D: usize> MomentCorrection<D> {
                 at,
                 centroid: along(centroid, &group.tangent),
                 lever: [along(&arm, &group.tangent), along(&arm, &group.normal)],
-                guided: contact.guided,
             });
         }
-        Self { groups: groups.into_iter().map(|(_, group)| group).collect() }
+        let is_free = |group: &Group<D>| group.nodes.iter().all(|node| !surface.nodes()[node.at].guided);
+        Self { groups: groups.into_iter().map(|(_, group)| group).filter(is_free).collect() }
     }
 
     /// Forces of the same resultants as these reactions, which are in the cone, and in it as well; their densities have
@@ -119,11 +120,8 @@ impl<const D: usize> Group<D> {
     fn share_out(&self, normal: &[f64], tangential: &[f64], factors: &[f64]) -> Vec<f64> {
         let mut shared: Vec<f64> = tangential.iter().zip(factors).map(|(t, factor)| t * factor).collect();
         let lacking = tangential.iter().sum::<f64>() - shared.iter().sum::<f64>();
-        let rooms = self.nodes.iter().zip(normal).zip(&shared).map(|((node, n), t)| {
-            let room = self.law.limit(*n) - lacking.signum() * t;
-            if node.guided { 0.0 } else { room.max(0.0) }
-        });
-        let rooms: Vec<f64> = rooms.collect();
+        let room = |(n, t): (&f64, &f64)| (self.law.limit(*n) - lacking.signum() * t).max(0.0);
+        let rooms: Vec<f64> = normal.iter().zip(&shared).map(room).collect();
         let room: f64 = rooms.iter().sum();
         if room > 0.0 {
             let part = (lacking / room).clamp(-1.0, 1.0);

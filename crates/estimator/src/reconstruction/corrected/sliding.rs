@@ -252,7 +252,8 @@ fn reaches(slave: &Side, coupling: &Coupling, node: usize) -> Option<[Reach; 2]>
     Some([before?, after?])
 }
 
-/// All nodes of a slave that act, with the centroids of their densities; those of each body by themselves.
+/// All nodes of a slave that act, with the centroids of their densities; those of each body by themselves. Bodies with a
+/// line of symmetry across the interface are left out.
 fn groups<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     sliding: &SlidingSurfaces<D>,
@@ -275,13 +276,12 @@ fn groups<const D: usize, const N: usize>(
     }
     let node = |(k, moments): (usize, &[f64; 3])| {
         let [centroid, along, across] = moments.map(|moment| moment / coupling.weight(k));
-        let at = slave.position(k);
-        let guided = problem.surface().nodes()[at].guided;
-        CorrectedNode { at, centroid, lever: [along, across], guided }
+        CorrectedNode { at: slave.position(k), centroid, lever: [along, across] }
     };
+    let is_free = |part: &&Part| part.nodes.clone().all(|k| !problem.surface().nodes()[slave.position(k)].guided);
     let of_part = |part: &Part| {
         let acting = part.nodes.clone().filter(|&k| coupling.is_active(k)).map(|k| node((k, &moments[k])));
         Group::new(*sliding.frame().normal(), *sliding.tangent(), sliding.law(), acting.collect())
     };
-    slave.parts().iter().map(of_part).collect()
+    slave.parts().iter().filter(is_free).map(of_part).collect()
 }

@@ -10,6 +10,9 @@ use crate::stress::TractionForms;
 use percute_core::ids::{ElementId, FacetId, NodeId};
 use percute_core::problem::Problem;
 
+/// A component of an edge that is a smaller part of its length is rounding.
+const STRAIGHT: f64 = 1e-14;
+
 /// The parts of the mesh that matter.
 #[derive(Clone, Copy, Debug)]
 struct Unknown<'a, const D: usize, const N: usize> {
@@ -39,15 +42,43 @@ pub(super) fn assemble<const D: usize, const N: usize>(
 }
 
 impl<const D: usize, const N: usize> Unknown<'_, D, N> {
-    /// A facet held in all components has unknown moments like an inner one.
-    fn facet(&self, facet: FacetId) -> bool {
-        self.problem.mesh().facets()[facet.index()].neighbour.is_some() || self.problem.supported(facet) == [true; D]
+    /// The components in which the moments of a facet are unknown: all in the body, those of the support on its
+    /// boundary.
+    fn unknown(&self, facet: FacetId) -> [bool; D] {
+        let inside = self.problem.mesh().facets()[facet.index()].neighbour.is_some();
+        if inside { [true; D] } else { self.problem.supported(facet) }
     }
 
-    /// Sectors of a node: none unless all its edges are unknown.
+    /// Whether the moments of a facet may have a part along it, or across it.
+    fn contain(&self, facet: FacetId, along: bool) -> bool {
+        let unknown = self.unknown(facet);
+        if unknown == [true; D] || unknown == [false; D] {
+            return unknown == [true; D];
+        }
+        let [first, last] = [0, D - 1].map(|k| self.problem.mesh().points()[nodes_of(self.problem, facet)[k].index()]);
+        let way: [f64; D] = std::array::from_fn(|c| (last[c] - first[c]).abs());
+        let length = way.iter().fold(0.0_f64, |most, x| most.max(*x));
+        // Across it, the components are exchanged.
+        let part = |c: usize| way[if along { c } else { D - 1 - c }];
+        (0..D).all(|c| unknown[c] || part(c) <= STRAIGHT * length)
+    }
+
+    /// Which modes a node has: both forces and the couple, as far as all edges around it let them through.
+    fn modes_of(&self, node: NodeId) -> [bool; 3] {
+        let mut modes = [true; 3];
+        for link in self.problem.mesh().stars().star(node).links {
+            let Some(facet) = *link else { return [false; 3] };
+            let unknown = self.unknown(facet);
+            let own = [unknown[0], unknown[D - 1], self.contain(facet, false)];
+            (0..3).for_each(|i| modes[i] &= own[i]);
+        }
+        modes
+    }
+
+    /// Sectors of a node: none if it has no modes.
     fn sectors_of(&self, node: NodeId) -> usize {
         let star = self.problem.mesh().stars().star(node);
-        match star.links.iter().all(|link| link.is_some_and(|f| self.facet(f))) {
+        match self.modes_of(node).contains(&true) {
             true if star.is_closed() => star.elements.len(),
             true => star.links.len(),
             false => 0,
@@ -135,13 +166,12 @@ impl<const D: usize, const N: usize> Unknown<'_, D, N> {
     /// Turns the blocks of nodes and edges into their scales.
     fn factor(&self, operator: &mut Operator) {
         for node in 0..operator.node_scale.len() {
-            let modes = !operator.sectors(node).is_empty();
             let scale = &mut operator.node_scale[node];
-            *scale = if modes { inverse_factor(scale) } else { [[0.0; 3]; 3] };
+            *scale = inverse_factor(scale, self.modes_of(NodeId::new(node)));
         }
         for facet in (0..operator.edge_scale.len()).map(FacetId::new) {
             let scale = &mut operator.edge_scale[self.numbers.of(facet)];
-            *scale = if self.facet(facet) && *scale > 0.0 { 1.0 / scale.sqrt() } else { 0.0 };
+            *scale = if self.contain(facet, true) && *scale > 0.0 { 1.0 / scale.sqrt() } else { 0.0 };
         }
     }
 }
@@ -164,11 +194,12 @@ fn scale(operator: &mut Operator) {
     }
 }
 
-/// L⁻¹ of a matrix LLᵀ, of which the part on and below the diagonal is given; zero if it has none.
-fn inverse_factor(a: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    let mut l = [[0.0; 3]; 3];
-    for i in 0..3 {
-        for j in 0..=i {
+/// L⁻¹ of a matrix LLᵀ, of which the part on and below the diagonal is given, in these rows and columns; 0 in others,
+/// and in all if it has none.
+fn inverse_factor(a: &[[f64; 3]; 3], of: [bool; 3]) -> [[f64; 3]; 3] {
+    let (mut l, mut inverse) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
+    for i in (0..3).filter(|&i| of[i]) {
+        for j in (0..=i).filter(|&j| of[j]) {
             let rest = a[i][j] - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
             if i != j {
                 l[i][j] = rest / l[j][j];
@@ -178,8 +209,15 @@ fn inverse_factor(a: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
                 return [[0.0; 3]; 3];
             }
         }
+        inverse[i][i] = 1.0 / l[i][i];
+        for j in 0..i {
+            let sum = (j..i).map(|k| l[i][k] * inverse[k][j]).sum::<f64>();
+            inverse[i][j] = -sum * inverse[i][i];
+        }
     }
-    let (x, y, z) = (1.0 / l[0][0], 1.0 / l[1][1], 1.0 / l[2][2]);
-    let below = -l[1][0] * x * y;
-    [[x, 0.0, 0.0], [below, y, 0.0], [-(l[2][0] * x + l[2][1] * below) * z, -l[2][1] * y * z, z]]
+    inverse
+}
+
+fn nodes_of<const D: usize, const N: usize>(problem: &Problem<D, N>, facet: FacetId) -> [NodeId; D] {
+    problem.mesh().facets()[facet.index()].nodes
 }

@@ -4,7 +4,7 @@ use super::modes::MOMENTS;
 use super::*;
 use crate::kinematic::ElementMotion;
 use crate::measure::NodalBalance;
-use case::{Case, problem, problem_of};
+use case::{Case, problem_of, problems};
 use percute_core::ids::FacetId;
 use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, TriangleMesh};
@@ -13,7 +13,10 @@ use percute_testkit::{Random, random_rectangle};
 /// Moments on an edge act like forces at its two nodes: no mode gives any element a resultant or a moment.
 #[test]
 fn modes_have_no_resultant_on_any_element() {
-    let case = Case::new(problem());
+    problems().map(Case::new).iter().for_each(check_resultants);
+}
+
+fn check_resultants(case: &Case) {
     let links = case.on_links(&case.random_modes(&mut Random::new(1)));
     for e in 0..case.elements.len() {
         let points = case.problem.mesh().cell_points(ElementId::new(e));
@@ -35,31 +38,55 @@ fn modes_have_no_resultant_on_any_element() {
     }
 }
 
-/// Their number is that of all changes that balance: unknown moments less three equations for each element.
+/// Their number is that of all changes that balance: unknown moments less three equations for each element. One of them
+/// is redundant where the body may move along its line of symmetry.
 #[test]
 fn the_modes_are_all_there_are() {
-    let case = Case::new(problem());
-    let mesh = case.problem.mesh();
-    let unknown = |f: &usize| mesh.facets()[*f].neighbour.is_some() || case.problem.supported(FacetId::new(*f))[0];
-    let (facets, modes) = ((0..mesh.facets().len()).filter(unknown).count(), case.modes());
-    // One column for each mode: the moments that it makes.
-    let column = |m: &usize| {
-        // Couples of 1 N have levers of some 5 mm.
-        let turn = *m < 3 * mesh.node_count() && m % 3 == 2;
-        let one = case.with(&[*m], |_| Lanes::constant(if turn { 0.01 } else { 1.0 }));
-        case.on_links(&one).iter().flatten().map(|lanes| lanes.0[0]).collect::<Vec<_>>()
-    };
-    let columns: Vec<_> = modes.iter().map(column).collect();
-    let matrix = nalgebra::DMatrix::from_fn(columns[0].len(), modes.len(), |r, c| columns[c][r]);
-    // A held side leaves no equation redundant.
-    assert_eq!(modes.len(), 4 * facets - 3 * case.elements.len());
-    // Singular values of independent modes of size 1 are far above this, those of dependent ones at rounding.
-    assert_eq!(matrix.rank(1e-6), modes.len());
+    for (case, redundant) in problems().map(Case::new).iter().zip([0, 1]) {
+        let mesh = case.problem.mesh();
+        let unknown = |f: usize| match mesh.facets()[f].neighbour {
+            Some(_) => 2,
+            None => case.problem.supported(FacetId::new(f)).into_iter().filter(|supported| *supported).count(),
+        };
+        let unknown: usize = (0..mesh.facets().len()).map(unknown).sum();
+        let modes = case.modes();
+        // One column for each mode: the moments that it makes.
+        let column = |m: &usize| {
+            // Couples of 1 N have levers of some 5 mm.
+            let turn = *m < 3 * mesh.node_count() && m % 3 == 2;
+            let one = case.with(&[*m], |_| Lanes::constant(if turn { 0.01 } else { 1.0 }));
+            case.on_links(&one).iter().flatten().map(|lanes| lanes.0[0]).collect::<Vec<_>>()
+        };
+        let columns: Vec<_> = modes.iter().map(column).collect();
+        let matrix = nalgebra::DMatrix::from_fn(columns[0].len(), modes.len(), |r, c| columns[c][r]);
+        assert_eq!(modes.len(), 2 * unknown + redundant - 3 * case.elements.len());
+        // Singular values of independent modes of size 1 are far above this, those of dependent ones at rounding.
+        assert_eq!(matrix.rank(1e-6), modes.len());
+    }
+}
+
+/// A line of symmetry gets no traction along it.
+#[test]
+fn modes_leave_given_tractions_alone() {
+    let [_, case] = problems().map(Case::new);
+    let links = case.on_links(&case.random_modes(&mut Random::new(1)));
+    let (mesh, mut across) = (case.problem.mesh(), 0.0_f64);
+    for node in (0..mesh.node_count()).map(NodeId::new) {
+        let star = mesh.stars().star(node);
+        for (facet, moment) in star.links.iter().zip(&links[mesh.stars().link_range(node)]) {
+            if facet.is_some_and(|facet| mesh.facets()[facet.index()].neighbour.is_none()) {
+                assert_eq!(moment[1].0, [0.0; LANES], "{node:?}");
+                across = across.max(moment[0].0[0].abs());
+            }
+        }
+    }
+    assert!(across > 0.1);
 }
 
 #[test]
 fn adding_slopes_is_the_transpose_of_adding_changes() {
-    let (case, mut random) = (Case::new(problem()), Random::new(2));
+    let [_, case] = problems().map(Case::new);
+    let mut random = Random::new(2);
     let (modes, slopes) = (case.random_modes(&mut random), case.random_slopes(&mut random));
     let (links, gathered) = (case.on_links(&modes), case.in_modes(&slopes));
     for lane in 0..LANES {
@@ -79,7 +106,8 @@ fn adding_slopes_is_the_transpose_of_adding_changes() {
 /// The slopes of an element are differences of its energy, in a body that is not of unit thickness.
 #[test]
 fn slopes_are_differences_of_the_energy() {
-    let (case, mut random) = (Case::new(problem()), Random::new(8));
+    let [case, _] = problems().map(Case::new);
+    let mut random = Random::new(8);
     for (e, element) in case.elements.iter().enumerate() {
         let (id, points) = (ElementId::new(e), case.problem.mesh().cell_points(ElementId::new(e)));
         let measure = ElementMeasure::new(&case.problem, element, id, Acceleration::Closest);
@@ -114,7 +142,11 @@ fn slopes_are_differences_of_the_energy() {
 /// The matrix has the energy of the elements' own maps.
 #[test]
 fn the_matrix_is_the_energy() {
-    let (case, mut random) = (Case::new(problem()), Random::new(5));
+    problems().map(Case::new).iter().for_each(check_matrix);
+}
+
+fn check_matrix(case: &Case) {
+    let mut random = Random::new(5);
     let mut coefficients = case.random_modes(&mut random);
     let x = coefficients.clone();
     let product = case.multiply(&x);
@@ -181,7 +213,8 @@ fn the_largest_eigenvalue() {
 /// A lane does not depend on its neighbours, and one without any slope stays where it is.
 #[test]
 fn lanes_are_apart() {
-    let (case, mut random) = (Case::new(problem()), Random::new(4));
+    let [_, case] = problems().map(Case::new);
+    let mut random = Random::new(4);
     let slopes = case.random_slopes(&mut random);
     let together = case.change(&slopes);
     for lane in 0..LANES {

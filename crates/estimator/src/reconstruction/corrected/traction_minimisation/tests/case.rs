@@ -16,17 +16,21 @@ use percute_testkit::{Random, random_rectangle};
 type Form = [[f64; MOMENTS]; MOMENTS];
 
 pub(super) fn problem_of(mesh: TriangleMesh, material: Elastic) -> TriangleProblem {
+    held(mesh, material, [true; 2])
+}
+
+fn held(mesh: TriangleMesh, material: Elastic, components: [bool; 2]) -> TriangleProblem {
     Problem::builder(mesh)
         .material(material)
-        .support(Support { group: "left".into(), components: [true, true], velocity: None })
+        .support(Support { group: "left".into(), components, velocity: None })
         .build()
         .unwrap()
 }
 
-/// A block of random triangles whose left side is held.
-pub(super) fn problem() -> TriangleProblem {
+/// Blocks of random triangles whose left side is held, and is a line of symmetry.
+pub(super) fn problems() -> [TriangleProblem; 2] {
     let material = Elastic::plane_stress(70e9, 0.3, 2700.0, 0.3).unwrap();
-    problem_of(random_rectangle(0.05, 0.04, 4, 1).unwrap(), material)
+    [true, false].map(|y| held(random_rectangle(0.05, 0.04, 4, 1).unwrap(), material, [true, y]))
 }
 
 /// The minimisation of a problem with all that tests compare it with.
