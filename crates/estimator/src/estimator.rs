@@ -10,7 +10,7 @@ use percute_core::dynamics::Simulation;
 use percute_core::history::{SinkError, State, StateSink, StepSource};
 use percute_core::observer::{Observer, StopFlag};
 use percute_core::problem::Problem;
-use percute_core::simplex::instance;
+use percute_core::simplex::{Shape, instance};
 use percute_core::time::TimeGrid;
 
 type Begin<const D: usize, const N: usize> =
@@ -37,8 +37,11 @@ static TRIANGLE: Functions<2, 3> = Functions::NEW;
 impl<const D: usize, const N: usize> Functions<D, N> {
     const NEW: Self = Self { begin, estimate: replay::estimate, memory: pipeline::memory };
 
-    fn get() -> &'static Self {
-        instance(&BAR, &TRIANGLE)
+    fn of(problem: &Problem<D, N>) -> &'static Self {
+        instance(match problem.mesh().simplex().shape() {
+            Shape::Bar => &BAR,
+            Shape::Triangle => &TRIANGLE,
+        })
     }
 }
 
@@ -75,7 +78,7 @@ impl<'p, const D: usize> Estimator<'p, D> {
         times: &'p TimeGrid,
         options: Options,
     ) -> Result<Self, EstimateError> {
-        (Functions::get().begin)(problem, times, options).map(Self)
+        (Functions::of(problem).begin)(problem, times, options).map(Self)
     }
 
     /// Keeps the maps requested as well, from the first step on. Only [`Sampling::Auto`](crate::Sampling::Auto) samples
@@ -115,7 +118,7 @@ impl<const D: usize> StateSink<D> for Estimator<'_, D> {
 /// each element and sample.
 #[must_use]
 pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, options: &Options) -> usize {
-    (Functions::get().memory)(problem, times, options)
+    (Functions::of(problem).memory)(problem, times, options)
 }
 
 /// Estimates a history: from the same steps, the same bits as beside the run that made them. If the observer breaks,
@@ -133,5 +136,5 @@ pub fn estimate<const D: usize, const N: usize>(
     beside: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
 ) -> Result<(Simulation, Estimate<D>), RunError> {
-    (Functions::get().estimate)(problem, source, options, request, beside, observer)
+    (Functions::of(problem).estimate)(problem, source, options, request, beside, observer)
 }

@@ -4,7 +4,7 @@ use super::{Simulation, SimulationError, central_difference, critical_step, eval
 use crate::history::{Checkpoint, SinkError, StateSink, StepSource};
 use crate::observer::Observer;
 use crate::problem::Problem;
-use crate::simplex::instance;
+use crate::simplex::{Shape, instance};
 use crate::time::TimeGrid;
 
 type Simulate<const D: usize, const N: usize> = fn(
@@ -33,8 +33,11 @@ impl<const D: usize, const N: usize> Functions<D, N> {
         critical_time_step: critical_step::critical_time_step,
     };
 
-    fn get() -> &'static Self {
-        instance(&BAR, &TRIANGLE)
+    fn of(problem: &Problem<D, N>) -> &'static Self {
+        instance(match problem.mesh().simplex().shape() {
+            Shape::Bar => &BAR,
+            Shape::Triangle => &TRIANGLE,
+        })
     }
 }
 
@@ -66,7 +69,7 @@ pub fn simulate_threaded<const D: usize, const N: usize>(
     sink: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
 ) -> Result<Simulation, SimulationError> {
-    (Functions::get().simulate)(problem, times, threads, None, sink, observer)
+    (Functions::of(problem).simulate)(problem, times, threads, None, sink, observer)
 }
 
 /// Goes on from a checkpoint of a run of the same problem over the same instants. `sink` gets the steps after it, bit
@@ -85,7 +88,7 @@ pub fn resume<const D: usize, const N: usize>(
     sink: &mut dyn StateSink<D>,
     observer: &mut dyn Observer,
 ) -> Result<Simulation, SimulationError> {
-    (Functions::get().simulate)(problem, times, threads, Some(checkpoint), sink, observer)
+    (Functions::of(problem).simulate)(problem, times, threads, Some(checkpoint), sink, observer)
 }
 
 /// Hands the states of all steps of a history to `sink`.
@@ -97,7 +100,7 @@ pub fn replay<const D: usize, const N: usize>(
     source: &dyn StepSource<D>,
     sink: &mut dyn StateSink<D>,
 ) -> Result<(), SinkError> {
-    (Functions::get().replay)(problem, source, sink)
+    (Functions::of(problem).replay)(problem, source, sink)
 }
 
 /// Δt_c (s) from the largest eigenvalue of M⁻¹K by a matrix-free Lanczos iteration.
@@ -108,5 +111,5 @@ pub fn replay<const D: usize, const N: usize>(
 /// (Kuczyński and Woźniakowski, 1992), half of it for ω, and in practice far smaller.
 #[must_use]
 pub fn critical_time_step<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
-    (Functions::get().critical_time_step)(problem)
+    (Functions::of(problem).critical_time_step)(problem)
 }
