@@ -3,8 +3,8 @@
 use std::any::Any;
 
 /// An object for one element, which is known from a [`Shape`](super::Shape), with its type. It has functions for this
-/// element, compiled in the crate of the object. Generic code of other crates calls them through it. Otherwise optimised
-/// builds compile generic functions anew in each crate.
+/// element, compiled in the crate of the object. Generic code of other crates calls them through it. Otherwise
+/// optimised builds compile generic functions anew in each crate.
 ///
 /// # Panics
 /// If the object is that of another element.

@@ -20,8 +20,8 @@ const ROOFS: [(f64, f64, [usize; 2]); 10] = [
     (5.0, 100.0, [10, 10]),
 ];
 
-/// The estimate of the half times √2 is that of the whole, but for a part `less` of it: supports on the line of symmetry
-/// take tractions across it, as they are in the whole.
+/// The estimate of the half times √2 is that of the whole, but for a part `less` of it: supports on the line of
+/// symmetry take tractions across it, as they are in the whole.
 fn check(roof: &str, [whole, half]: [&TriangleProblem; 2], less: f64) {
     let times = steps(whole, 0.9, 40);
     let options = Options { every: Sampling::Every(1), threads: Some(1), ..Options::default() };
@@ -35,8 +35,8 @@ fn check(roof: &str, [whole, half]: [&TriangleProblem; 2], less: f64) {
     }
 }
 
-/// In the whole, the stresses beside linear tractions on both sides of the ridge are summed up by their norms, in the half
-/// there is one of them. Measured are up to 3.0 % less.
+/// In the whole, the stresses beside linear tractions on both sides of the ridge are summed up by their norms, in the
+/// half there is one of them. Measured are up to 3.0 % less.
 #[test]
 fn half_of_a_symmetric_model_has_half_of_the_estimate() {
     for (angle, speed, cells) in ROOFS {

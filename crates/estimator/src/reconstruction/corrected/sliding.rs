@@ -252,8 +252,8 @@ fn reaches(slave: &Side, coupling: &Coupling, node: usize) -> Option<[Reach; 2]>
     Some([before?, after?])
 }
 
-/// All nodes of a slave that act, with the centroids of their densities; those of each body by themselves. Bodies with a
-/// line of symmetry across the interface are left out.
+/// All nodes of a slave that act, with the centroids of their densities; those of each body by themselves. Bodies with
+/// a line of symmetry across the interface are left out.
 fn groups<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     sliding: &SlidingSurfaces<D>,
