@@ -188,6 +188,8 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let initial_velocity = nodal(&self.velocity, mesh.node_count(), "velocity")?;
         let supports = boundary::supports(mesh, &self.stated.supports)?;
         let (fixed, steady) = (supports.fixed(mesh.node_count()), supports.steady(mesh.node_count()));
+        let mut mirrors = boundary::mirrors(mesh, &supports.facets);
+        mirrors.iter_mut().zip(steady).filter(|(_, steady)| !steady).for_each(|(mirror, _)| *mirror = [false; D]);
         let Supports { facets: supported, prescribed, motions } = supports;
         if prescribed.len() == D * mesh.node_count() {
             return Err(Cause::NoFreedom.at("support", None, ""));
@@ -197,7 +199,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
 
         let of_facet = |f: FacetId| &materials[usize::from(element_material[mesh.facets()[f.index()].owner.index()])];
         let (body, held, velocity) = (Vec::new(), boundary::held(mesh, &self.stated), &initial_velocity[..]);
-        let bodies = Bodies { mesh, body, held, fixed, steady, velocity, mass: &mass, law: &of_facet };
+        let bodies = Bodies { mesh, body, held, fixed, mirrors, velocity, mass: &mass, law: &of_facet };
         let start = Start { displacement: &initial_displacement, velocity: &initial_velocity, mass: &mass };
         // One body costs no search.
         let contact = Stated { contacts: &self.contacts, automatic: self.automatic && mesh.parts() > 1 };

@@ -61,13 +61,13 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let spread = sides.each_ref().map(|side| self.spread(side));
         let alike = (spread[0] - spread[1]).abs() <= FLAT * (spread[0].max(spread[1]) + FLAT);
         let flatter = if alike { 1 - slave } else { usize::from(spread[1] < spread[0]) };
-        let outward = unit(&sides[flatter].outward);
+        let outward = unit(&sides[flatter].of_whole);
         if flatter == slave { outward.map(|n| -n) } else { outward }
     }
 
     /// The mean square of the difference of the normals of edges and their mean one, by length.
     fn spread(&self, side: &Side<D>) -> f64 {
-        let mean = unit(&side.outward);
+        let mean = unit(&side.of_whole);
         let (mut sum, mut length) = (0.0, 0.0);
         for &facet in &side.facets {
             let (normal, area) = self.mesh.facet_normal(facet);
@@ -130,7 +130,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
 
 /// The direction from the first side to the second one, midway between the normals of both.
 fn between<const D: usize>(sides: &[Side<D>; 2]) -> [f64; D] {
-    let outward = sides.each_ref().map(|side| unit(&side.outward));
+    let outward = sides.each_ref().map(|side| unit(&side.of_whole));
     let sum: [f64; D] = std::array::from_fn(|c| outward[0][c] - outward[1][c]);
     // Sides that do not face each other are refused later.
     if dot(&sum, &sum) < EQUAL { outward[0] } else { unit(&sum) }

@@ -16,8 +16,8 @@ pub(super) struct Bodies<'m, const D: usize, const N: usize> {
     pub(super) body: Vec<NodeId>,
     pub(super) held: Vec<Option<HeldBy>>,
     pub(super) fixed: Vec<[bool; D]>,
-    /// Nodes that supports move uniformly, or hold.
-    pub(super) steady: Vec<bool>,
+    /// The directions across which each node is on a line of symmetry that stands still or moves uniformly.
+    pub(super) mirrors: Vec<[bool; D]>,
     /// The initial velocity of each node (m/s).
     pub(super) velocity: &'m [[f64; D]],
     /// The mass of each node (kg).
@@ -32,8 +32,10 @@ pub(super) struct Side<const D: usize> {
     pub(super) facets: Vec<FacetId>,
     /// Nodes along the boundary.
     pub(super) nodes: Vec<NodeId>,
-    /// Σ of outward normals times areas (m² or 1), of half of a symmetric model that of the whole.
+    /// Σ of outward normals times areas (m² or 1).
     pub(super) outward: [f64; D],
+    /// The same with the mirrored half of a symmetric body.
+    pub(super) of_whole: [f64; D],
     /// The bodies that it belongs to, by their first nodes, ascending.
     pub(super) bodies: Vec<NodeId>,
 }
@@ -92,17 +94,15 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let mut bodies: Vec<NodeId> = facets.iter().map(|&facet| self.body_of(facet)).collect();
         bodies.dedup();
         let nodes = along_the_boundary(self.mesh, &facets);
-        let outward = self.of_the_whole(outward(self.mesh, &facets), &nodes);
-        Ok(Side { nodes, facets, outward, bodies })
+        let outward = outward(self.mesh, &facets);
+        Ok(Side { of_whole: self.of_whole(outward, &nodes), nodes, facets, outward, bodies })
     }
 
-    /// Σ of outward normals with those of the mirrored side: a support that holds a node along the side, or moves it
-    /// uniformly, is a line of symmetry across the side.
-    fn of_the_whole(&self, mut outward: [f64; D], nodes: &[NodeId]) -> [f64; D] {
+    /// Σ of outward normals with those of the mirrored side, from that of a side with these nodes.
+    fn of_whole(&self, mut outward: [f64; D], nodes: &[NodeId]) -> [f64; D] {
         let largest = outward.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
         for c in 0..D {
-            let is_mirror = |node: &NodeId| self.steady[node.index()] && self.fixed[node.index()][c];
-            if outward[c].abs() < largest && nodes.iter().any(is_mirror) {
+            if outward[c].abs() < largest && nodes.iter().any(|node| self.mirrors[node.index()][c]) {
                 outward[c] = 0.0;
             }
         }

@@ -9,6 +9,8 @@ use crate::ids::{FacetId, NodeId};
 
 /// Places nearer than this part of the size of the mesh are one.
 const ONE_PLACE: f64 = 1e-12;
+/// The cosine of 10°: an edge with a larger slope does not stand across a line of symmetry.
+const RIDGE: f64 = 0.984_807_753_012_208;
 /// Velocities that differ by less than this part of the largest are one.
 const ONE_SPEED: f64 = 1e-9;
 
@@ -28,6 +30,7 @@ pub(super) fn add<const D: usize, const N: usize>(
     let slave = bodies.slave(&sides, displacement);
     let normal = bodies.normal(&sides, slave);
     bodies.check_directions([&sides[slave], &sides[1 - slave]], &normal)?;
+    bodies.check_ridge(&sides, &normal)?;
     // All coordinates are from a place on the interface, so that a distant origin leaves no rounding in them.
     let origin = bodies.mesh.points()[sides[slave].nodes[0].index()];
     let mut lines = Vec::new();
@@ -45,6 +48,22 @@ pub(super) fn add<const D: usize, const N: usize>(
 }
 
 impl<const D: usize, const N: usize> Bodies<'_, D, N> {
+    /// On a line of symmetry one of the surfaces at least stands across it: a force along the line is not normal to
+    /// two slopes.
+    fn check_ridge(&self, sides: &[Side<D>; 2], normal: &[f64; D]) -> Result<(), Cause> {
+        let on_line = |node: &NodeId| self.mirrors[node.index()].contains(&true);
+        let slopes = |&facet: &FacetId| {
+            let meets_line = self.mesh.facets()[facet.index()].nodes.iter().any(on_line);
+            meets_line && dot(&self.mesh.facet_normal(facet).0, normal).abs() < RIDGE
+        };
+        if sides.iter().all(|side| side.facets.iter().any(slopes))
+            && let Some(node) = sides.iter().flat_map(|side| &side.nodes).find(|node| on_line(node))
+        {
+            return Err(Cause::HeldAcross { node: node.index() });
+        }
+        Ok(())
+    }
+
     /// Adds one side to the contact surface.
     fn add_side(
         &self,
@@ -88,7 +107,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let contacts = nodes.iter().map(contact).collect::<Result<Vec<_>, Cause>>()?;
         let eta = nodes.iter().map(|&node| dot(&from_origin(node), normal)).collect();
         let velocity: Vec<[f64; D]> = nodes.iter().map(|node| self.velocity[node.index()]).collect();
-        let steady: Vec<bool> = nodes.iter().map(|node| self.steady[node.index()]).collect();
+        let steady: Vec<bool> = nodes.iter().map(|node| self.mirrors[node.index()].contains(&true)).collect();
         let fastest = velocity.iter().fold(0.0_f64, |most, v| most.max(dot(v, v).sqrt()));
         let velocity: Vec<f64> = velocity.iter().map(|velocity| dot(velocity, &along)).collect();
         surface.add(facing, contacts, facets);

@@ -7,7 +7,7 @@ use percute_estimator::{Options, Sampling};
 use percute_testkit::Roof;
 
 /// Roofs by angle (°), speed (m/s), and cells of roof and plate.
-const ROOFS: [(f64, f64, [usize; 2]); 10] = [
+const ROOFS: [(f64, f64, [usize; 2]); 11] = [
     (0.0, 20.0, [5, 7]),
     (-3.0, 20.0, [5, 7]),
     (3.0, 20.0, [5, 7]),
@@ -18,6 +18,7 @@ const ROOFS: [(f64, f64, [usize; 2]); 10] = [
     (10.0, 200.0, [5, 7]),
     (1.0, 20.0, [10, 14]),
     (5.0, 100.0, [10, 10]),
+    (15.0, 20.0, [3, 4]),
 ];
 
 /// The estimate of the half times √2 is that of the whole, but for a part `less` of it: supports on the line of
@@ -36,13 +37,13 @@ fn check(roof: &str, [whole, half]: [&TriangleProblem; 2], less: f64) {
 }
 
 /// In the whole, the stresses beside linear tractions on both sides of the ridge are summed up by their norms, in the
-/// half there is one of them. Measured are up to 3.0 % less.
+/// half there is one of them. Measured are up to 4.7 % less.
 #[test]
 fn half_of_a_symmetric_model_has_half_of_the_estimate() {
     for (angle, speed, cells) in ROOFS {
         let roof = Roof::new(angle, speed, 0.03, cells).unwrap();
         let [whole, half] = [roof.whole(), roof.half()].map(|builder| builder.unwrap().build().unwrap());
-        check(&format!("{angle}° at {speed} m/s"), [&whole, &half], 0.035);
+        check(&format!("{angle}° at {speed} m/s"), [&whole, &half], 0.055);
     }
 }
 

@@ -19,7 +19,7 @@ pub struct Resultant<const D: usize> {
     pub slipping: usize,
     /// Energy dissipated by friction up to t_n (J).
     pub friction_energy: f64,
-    /// Centre of pressure (m): the mean place of the nodes at t_n, by normal force; none without contact.
+    /// Centre of pressure (m): the mean place of the nodes at t_n, by normal force; none without a normal force.
     pub centre: Option<[f64; D]>,
 }
 

@@ -9,6 +9,7 @@ use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, FacetGroups, TriangleMesh};
 use percute_core::problem::{Cause, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
+use percute_testkit::translated;
 
 fn cause(problem: Result<TriangleProblem, percute_core::problem::InputError>) -> Option<Cause> {
     problem.err().map(|error| error.cause)
@@ -28,6 +29,31 @@ fn wrong_groups_are_refused() {
     assert!(matches!(refusal("upper.bottom", "anvil.top"), Some(Cause::UnknownGroup { .. })));
     assert!(Interface::sliding::<2>("a", "b", -0.1).is_err());
     assert!(Interface::sliding::<1>("a", "b", 0.1).is_err());
+}
+
+/// Two slopes at a line of symmetry have no normal there that is one of both, unless they are nearly level. A support
+/// that is not a line of symmetry does not make one of an oblique surface.
+#[test]
+fn slopes_at_a_line_of_symmetry_are_refused() {
+    let problem = |slope: f64, leans: f64| {
+        let place = |p: &[f64; 2]| [p[0] + leans * p[1], p[1] + slope * p[0]];
+        let body = |up: f64| {
+            let block = TriangleMesh::rectangle(0.02, 0.02, 4, 4).unwrap();
+            translated(&block, [0.0, up]).unwrap().mapped(|p| place(&p)).unwrap()
+        };
+        let mesh = TriangleMesh::joined(&[("upper", &body(0.02 + GAP)), ("lower", &body(0.0))]).unwrap();
+        let support = |group: &str| Support { group: group.into(), components: [true, false], velocity: None };
+        TriangleProblem::builder(mesh)
+            .material(aluminium())
+            .support(support("upper.left"))
+            .support(support("lower.left"))
+            .interface(Interface::sliding::<2>("upper.bottom", "lower.top", 0.2).unwrap())
+            .build()
+    };
+    assert_eq!(cause(problem(0.1, 0.0)), None);
+    assert!(matches!(cause(problem(0.5, 0.0)), Some(Cause::HeldAcross { .. })));
+    assert_eq!(cause(problem(0.0, 0.3)), None);
+    assert!(matches!(cause(problem(0.1, 0.3)), Some(Cause::HeldAcross { .. })));
 }
 
 #[test]

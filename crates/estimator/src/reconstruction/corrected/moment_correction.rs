@@ -75,7 +75,8 @@ impl<const D: usize> MomentCorrection<D> {
                 lever: [along(&arm, &group.tangent), along(&arm, &group.normal)],
             });
         }
-        let is_free = |group: &Group<D>| group.nodes.iter().all(|node| !surface.nodes()[node.at].guided);
+        let on_line = problem.on_lines_of_symmetry();
+        let is_free = |group: &Group<D>| group.nodes.iter().all(|node| !on_line[node.at]);
         Self { groups: groups.into_iter().map(|(_, group)| group).filter(is_free).collect() }
     }
 

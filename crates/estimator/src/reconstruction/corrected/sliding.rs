@@ -17,6 +17,7 @@ use percute_core::ids::ElementId;
 use percute_core::material::{Law, LinearLaw};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The forces of all surfaces that slide.
@@ -28,6 +29,8 @@ pub(super) struct SlidingForces<'p, const D: usize, const N: usize> {
     impedance: Vec<[f64; 2]>,
     /// The compliance of both surfaces over that of the slave.
     compliance: Vec<f64>,
+    /// Which nodes of the contact surface are on a line of symmetry.
+    on_line: Vec<bool>,
 }
 
 impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
@@ -42,6 +45,7 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
             facets: SlidingFacets::all(problem).into(),
             impedance: all.iter().map(|sliding| mean(sliding, impedance)).collect(),
             compliance: all.iter().map(|sliding| both(mean(sliding, compliance))).collect(),
+            on_line: problem.on_lines_of_symmetry(),
         }
     }
 
@@ -145,7 +149,7 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
         forces: &mut [[f64; D]],
     ) {
         for (sliding, coupling) in self.problem.surface().sliding().iter().zip(couplings) {
-            groups(self.problem, sliding, coupling).iter().for_each(|group| group.apply(forces, centroid));
+            self.groups(sliding, coupling).iter().for_each(|group| group.apply(forces, centroid));
         }
     }
 
@@ -172,6 +176,39 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
             SlidingDensity::new(coupling, wide, hats)
         };
         self.problem.surface().sliding().iter().zip(couplings).map(density).collect()
+    }
+
+    /// All nodes of a slave that act, with the centroids of their densities; those of each body by themselves. Bodies with
+    /// a line of symmetry that crosses both surfaces are left out.
+    fn groups(&self, sliding: &SlidingSurfaces<D>, coupling: &Coupling) -> Vec<Group<D>> {
+        let slave = sliding.slave();
+        // ∫χξ, ∫(ψ − χ)ξ and ∫(ψ − χ)η of each node.
+        let mut moments = vec![[0.0; 3]; slave.len()];
+        for piece in pieces(sliding, coupling) {
+            let [edge, first] = piece.slave;
+            let shape = coupling.shape(edge);
+            let (dual, density) = (piece.on_slave.map(|s| shape.dual(s)), piece.on_slave.map(|s| shape.density(s)));
+            let eta = piece.slave_values(|node| slave.eta()[node]);
+            for k in 0..2 {
+                let own = density.map(|both| both[k]);
+                let apart = [0, 1].map(|end| dual[end][k] - own[end]);
+                let sums =
+                    [piece.product(own, piece.ends), piece.product(apart, piece.ends), piece.product(apart, eta)];
+                moments[first + k].iter_mut().zip(sums).for_each(|(moment, sum)| *moment += sum);
+            }
+        }
+        let node = |(k, moments): (usize, &[f64; 3])| {
+            let [centroid, along, across] = moments.map(|moment| moment / coupling.weight(k));
+            CorrectedNode { at: slave.position(k), centroid, lever: [along, across] }
+        };
+        let crosses = |side: &Side, nodes: Range<usize>| nodes.into_iter().any(|k| self.on_line[side.position(k)]);
+        let master = sliding.master();
+        let is_free = |part: &&Part| !(crosses(slave, part.nodes.clone()) && crosses(master, 0..master.len()));
+        let of_part = |part: &Part| {
+            let acting = part.nodes.clone().filter(|&k| coupling.is_active(k)).map(|k| node((k, &moments[k])));
+            Group::new(*sliding.frame().normal(), *sliding.tangent(), sliding.law(), acting.collect())
+        };
+        slave.parts().iter().filter(is_free).map(of_part).collect()
     }
 
     pub(super) fn facets(&self) -> &Arc<[SlidingFacets]> {
@@ -250,38 +287,4 @@ fn reaches(slave: &Side, coupling: &Coupling, node: usize) -> Option<[Reach; 2]>
     // The node is the second one of the edge before it.
     let [before, after] = [0, 1].map(|k| edges[k].map_or(Some(Reach::WHOLE), |edge| reach(edge, 1 - k)));
     Some([before?, after?])
-}
-
-/// All nodes of a slave that act, with the centroids of their densities; those of each body by themselves. Bodies with
-/// a line of symmetry across the interface are left out.
-fn groups<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    sliding: &SlidingSurfaces<D>,
-    coupling: &Coupling,
-) -> Vec<Group<D>> {
-    let slave = sliding.slave();
-    // ∫χξ, ∫(ψ − χ)ξ and ∫(ψ − χ)η of each node.
-    let mut moments = vec![[0.0; 3]; slave.len()];
-    for piece in pieces(sliding, coupling) {
-        let [edge, first] = piece.slave;
-        let shape = coupling.shape(edge);
-        let (dual, density) = (piece.on_slave.map(|s| shape.dual(s)), piece.on_slave.map(|s| shape.density(s)));
-        let eta = piece.slave_values(|node| slave.eta()[node]);
-        for k in 0..2 {
-            let own = density.map(|both| both[k]);
-            let apart = [0, 1].map(|end| dual[end][k] - own[end]);
-            let sums = [piece.product(own, piece.ends), piece.product(apart, piece.ends), piece.product(apart, eta)];
-            moments[first + k].iter_mut().zip(sums).for_each(|(moment, sum)| *moment += sum);
-        }
-    }
-    let node = |(k, moments): (usize, &[f64; 3])| {
-        let [centroid, along, across] = moments.map(|moment| moment / coupling.weight(k));
-        CorrectedNode { at: slave.position(k), centroid, lever: [along, across] }
-    };
-    let is_free = |part: &&Part| part.nodes.clone().all(|k| !problem.surface().nodes()[slave.position(k)].guided);
-    let of_part = |part: &Part| {
-        let acting = part.nodes.clone().filter(|&k| coupling.is_active(k)).map(|k| node((k, &moments[k])));
-        Group::new(*sliding.frame().normal(), *sliding.tangent(), sliding.law(), acting.collect())
-    };
-    slave.parts().iter().filter(is_free).map(of_part).collect()
 }

@@ -10,9 +10,6 @@ use crate::stress::TractionForms;
 use percute_core::ids::{ElementId, FacetId, NodeId};
 use percute_core::problem::Problem;
 
-/// A component of an edge that is a smaller part of its length is rounding.
-const STRAIGHT: f64 = 1e-14;
-
 /// The parts of the mesh that matter.
 #[derive(Clone, Copy, Debug)]
 struct Unknown<'a, const D: usize, const N: usize> {
@@ -55,12 +52,8 @@ impl<const D: usize, const N: usize> Unknown<'_, D, N> {
         if unknown == [true; D] || unknown == [false; D] {
             return unknown == [true; D];
         }
-        let [first, last] = [0, D - 1].map(|k| self.problem.mesh().points()[nodes_of(self.problem, facet)[k].index()]);
-        let way: [f64; D] = std::array::from_fn(|c| (last[c] - first[c]).abs());
-        let length = way.iter().fold(0.0_f64, |most, x| most.max(*x));
-        // Across it, the components are exchanged.
-        let part = |c: usize| way[if along { c } else { D - 1 - c }];
-        (0..D).all(|c| unknown[c] || part(c) <= STRAIGHT * length)
+        // A facet along an axis alone has one of both in the one direction of its support.
+        (0..D).any(|c| unknown[c] != along && self.problem.mesh().stands_across(facet, c))
     }
 
     /// Which modes a node has: both forces and the couple, as far as all edges around it let them through.
@@ -216,8 +209,4 @@ fn inverse_factor(a: &[[f64; 3]; 3], of: [bool; 3]) -> [[f64; 3]; 3] {
         }
     }
     inverse
-}
-
-fn nodes_of<const D: usize, const N: usize>(problem: &Problem<D, N>, facet: FacetId) -> [NodeId; D] {
-    problem.mesh().facets()[facet.index()].nodes
 }
