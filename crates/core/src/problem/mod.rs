@@ -150,8 +150,8 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         self.supported[facet.index()]
     }
 
-    /// Whether each node of the contact surface is on a line of symmetry across it: a support holds it along the surface,
-    /// and an edge that stands across.
+    /// Whether each node of the contact surface is on a line of symmetry across it: a support holds it along the
+    /// surface, and an edge that stands across.
     #[must_use]
     pub fn on_lines_of_symmetry(&self) -> Vec<bool> {
         let mirrors = boundary::mirrors(&self.mesh, &self.supported);

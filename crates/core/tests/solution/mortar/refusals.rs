@@ -39,7 +39,7 @@ fn slopes_at_a_line_of_symmetry_are_refused() {
         let place = |p: &[f64; 2]| [p[0] + leans * p[1], p[1] + slope * p[0]];
         let body = |up: f64| {
             let block = TriangleMesh::rectangle(0.02, 0.02, 4, 4).unwrap();
-            translated(&block, [0.0, up]).unwrap().mapped(|p| place(&p)).unwrap()
+            translated(&block, [0.0, up]).unwrap().mapped(place).unwrap()
         };
         let mesh = TriangleMesh::joined(&[("upper", &body(0.02 + GAP)), ("lower", &body(0.0))]).unwrap();
         let support = |group: &str| Support { group: group.into(), components: [true, false], velocity: None };

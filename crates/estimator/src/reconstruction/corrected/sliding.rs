@@ -178,8 +178,8 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
         self.problem.surface().sliding().iter().zip(couplings).map(density).collect()
     }
 
-    /// All nodes of a slave that act, with the centroids of their densities; those of each body by themselves. Bodies with
-    /// a line of symmetry that crosses both surfaces are left out.
+    /// All nodes of a slave that act, with the centroids of their densities; those of each body by themselves. Bodies
+    /// with a line of symmetry that crosses both surfaces are left out.
     fn groups(&self, sliding: &SlidingSurfaces<D>, coupling: &Coupling) -> Vec<Group<D>> {
         let slave = sliding.slave();
         // ∫χξ, ∫(ψ − χ)ξ and ∫(ψ − χ)η of each node.
