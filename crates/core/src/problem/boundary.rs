@@ -72,13 +72,12 @@ impl<const D: usize> Supports<D> {
         fixed
     }
 
-    /// Whether supports hold a node, or move it with a velocity that does not change.
-    pub(super) fn steady(&self, nodes: usize) -> Vec<bool> {
-        let changes = |p: &PrescribedComponent| p.motion.is_some_and(|motion| !self.motions[motion].is_constant());
-        let mut steady = vec![false; nodes];
-        self.prescribed.iter().for_each(|p| steady[p.node.index()] = true);
-        self.prescribed.iter().filter(|p| changes(p)).for_each(|p| steady[p.node.index()] = false);
-        steady
+    /// The [`mirrors`] that stand still or move with a velocity that does not change.
+    pub(super) fn steady_mirrors<const N: usize>(&self, mesh: &Mesh<D, N>) -> Vec<[bool; D]> {
+        let mut mirrors = mirrors(mesh, &self.facets);
+        let changes = |p: &&PrescribedComponent| p.motion.is_some_and(|motion| !self.motions[motion].is_constant());
+        self.prescribed.iter().filter(changes).for_each(|p| mirrors[p.node.index()] = [false; D]);
+        mirrors
     }
 }
 

@@ -187,9 +187,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let initial_displacement = nodal(&self.displacement, mesh.node_count(), "displacement")?;
         let initial_velocity = nodal(&self.velocity, mesh.node_count(), "velocity")?;
         let supports = boundary::supports(mesh, &self.stated.supports)?;
-        let (fixed, steady) = (supports.fixed(mesh.node_count()), supports.steady(mesh.node_count()));
-        let mut mirrors = boundary::mirrors(mesh, &supports.facets);
-        mirrors.iter_mut().zip(steady).filter(|(_, steady)| !steady).for_each(|(mirror, _)| *mirror = [false; D]);
+        let (fixed, mirrors) = (supports.fixed(mesh.node_count()), supports.steady_mirrors(mesh));
         let Supports { facets: supported, prescribed, motions } = supports;
         if prescribed.len() == D * mesh.node_count() {
             return Err(Cause::NoFreedom.at("support", None, ""));
