@@ -119,6 +119,22 @@ def test_an_estimate_has_the_same_page_from_a_file(estimate: pc.Estimate, tmp_pa
     assert "The pressure along the surface is not drawn" in page and "is not drawn" not in now
 
 
+def test_nodes_that_face_nothing_are_in_the_page_from_a_file(tmp_path: Path) -> None:
+    """A block on a wider plate: nodes of the plate beside it have no gap."""
+    aluminium = pc.Elastic(young=70e9, poisson=0.3, density=2700.0, plane="stress")
+    plate = pc.Body(name="plate", mesh=pc.Mesh.rectangle(0.04, 0.01, nx=8, ny=2), material=aluminium)
+    block = pc.Body(
+        name="block", mesh=pc.Mesh.rectangle(0.01, 0.01, nx=3, ny=2), material=aluminium, origin=(0.013, 0.01001), velocity=(0, -20)
+    )
+    problem = pc.Problem(bodies=[plate, block], contacts=[pc.Interface(groups=("block.bottom", "plate.top"), friction=0.2, matching=False)])
+    pc.estimate(pc.simulate(problem, end=4e-6, courant=0.9)).save(tmp_path / "e.vtkhdf")
+    loaded = pc.open(tmp_path / "e.vtkhdf")
+    assert isinstance(loaded, pc.Estimate) and loaded.contact is not None
+    assert np.isinf(loaded.contact.gap).any() and loaded.contact.normal_force.max() > 0.0
+    loaded.report(tmp_path / "e.html")
+    assert "block" in (tmp_path / "e.html").read_text(encoding="utf-8")
+
+
 def test_the_outline_has_the_last_displacements(estimate: pc.Estimate) -> None:
     """Also where the nodes are solved in an order of their own."""
     order = np.random.default_rng(1).permutation(len(estimate.mesh.points))

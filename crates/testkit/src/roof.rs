@@ -1,12 +1,13 @@
 //! A symmetric impact: all of it, and its right half.
 
-use crate::image::{doubled, translated};
+use crate::image::{doubled, rotated, translated};
 use percute_core::contact::{Interface, Obstacle};
 use percute_core::load::{Support, Table};
 use percute_core::material::Elastic;
 use percute_core::mesh::{MeshError, TriangleMesh};
 use percute_core::problem::{Builder, Initial, TriangleProblem};
 use std::error::Error;
+use std::f64::consts::FRAC_PI_2;
 
 /// Height of both bodies (m).
 const HEIGHT: f64 = 0.025;
@@ -22,6 +23,7 @@ pub struct Roof {
     whole: [TriangleMesh; 2],
     speed: f64,
     along: f64,
+    quarters: u8,
 }
 
 impl Roof {
@@ -38,13 +40,19 @@ impl Roof {
             TriangleMesh::rectangle(plate, HEIGHT, cells[1], 4)?,
         ];
         let whole = [doubled(&halves[0])?, doubled(&halves[1])?];
-        Ok(Self { halves, whole, speed, along: 0.0 })
+        Ok(Self { halves, whole, speed, along: 0.0, quarters: 0 })
     }
 
     /// The same in a frame in which all moves along the plate with this speed (m/s).
     #[must_use]
     pub fn moving(self, along: f64) -> Self {
         Self { along, ..self }
+    }
+
+    /// The same turned about the origin by so many right angles, with the rounding of a cosine.
+    #[must_use]
+    pub fn turned(self, quarters: u8) -> Self {
+        Self { quarters, ..self }
     }
 
     /// All of it.
@@ -60,9 +68,8 @@ impl Roof {
     /// # Errors
     /// As [`Roof::whole`].
     pub fn half(&self) -> Result<Builder<2, 3>, Box<dyn Error>> {
-        let velocity = (self.along != 0.0).then(|| Table::constant([self.along, 0.0]));
-        let held =
-            |group: &str| Support { group: group.to_string(), components: [true, false], velocity: velocity.clone() };
+        let velocity = (self.along != 0.0).then(|| Table::constant(self.turn([self.along, 0.0])));
+        let held = |group: &str| Support { velocity: velocity.clone(), ..self.held(group) };
         Ok(self.builder(&self.halves)?.support(held("roof.left")).support(held("plate.left")))
     }
 
@@ -72,13 +79,13 @@ impl Roof {
     /// As [`Roof::whole`].
     pub fn alone(&self) -> Result<[Builder<2, 3>; 2], Box<dyn Error>> {
         let builder = |roof: &TriangleMesh| -> Result<Builder<2, 3>, Box<dyn Error>> {
-            Ok(TriangleProblem::builder(roof.clone())
+            let [point, normal] = [[0.0, HEIGHT], [0.0, 1.0]].map(|vector| self.turn(vector));
+            Ok(TriangleProblem::builder(self.mesh(roof)?)
                 .material(aluminium()?)
-                .initial_velocity(Initial::Uniform([0.0, -self.speed]))
-                .obstacle(Obstacle::plane([0.0, HEIGHT], [0.0, 1.0], FRICTION, Some("bottom".to_string()))?))
+                .initial_velocity(Initial::Uniform(self.turn([0.0, -self.speed])))
+                .obstacle(Obstacle::plane(point, normal, FRICTION, Some("bottom".to_string()))?))
         };
-        let held = Support { group: "left".to_string(), components: [true, false], velocity: None };
-        Ok([builder(&self.whole[0])?, builder(&self.halves[0])?.support(held)])
+        Ok([builder(&self.whole[0])?, builder(&self.halves[0])?.support(self.held("left"))])
     }
 
     /// The number in the whole of a node of the half.
@@ -90,12 +97,27 @@ impl Roof {
 
     fn builder(&self, [roof, plate]: &[TriangleMesh; 2]) -> Result<Builder<2, 3>, Box<dyn Error>> {
         let mesh = TriangleMesh::joined(&[("roof", roof), ("plate", plate)])?;
-        let velocity = |node: usize| [self.along, if node < roof.node_count() { -self.speed } else { 0.0 }];
+        let velocity = |node: usize| self.turn([self.along, if node < roof.node_count() { -self.speed } else { 0.0 }]);
         let velocity = Initial::Nodal((0..mesh.node_count()).map(velocity).collect());
-        Ok(TriangleProblem::builder(mesh)
+        Ok(TriangleProblem::builder(self.mesh(&mesh)?)
             .material(aluminium()?)
             .initial_velocity(velocity)
             .interface(Interface::sliding::<2>("roof.bottom", "plate.top", FRICTION)?))
+    }
+
+    fn mesh(&self, mesh: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
+        let angle = f64::from(self.quarters) * FRAC_PI_2;
+        if self.quarters == 0 { Ok(mesh.clone()) } else { rotated(mesh, angle) }
+    }
+
+    fn turn(&self, vector: [f64; 2]) -> [f64; 2] {
+        (0..self.quarters).fold(vector, |[x, y], _| [-y, x])
+    }
+
+    /// The support of a group on the line of symmetry.
+    fn held(&self, group: &str) -> Support<2> {
+        let along = self.quarters.is_multiple_of(2);
+        Support { group: group.to_string(), components: [along, !along], velocity: None }
     }
 }
 

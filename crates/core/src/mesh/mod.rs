@@ -320,13 +320,15 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         self.cell_geometry(owner).facet_normal(opposite)
     }
 
-    /// Whether all nodes of a facet have the same coordinate in a direction, to rounding.
+    /// Whether all nodes of a facet have the same coordinate in a direction, to the rounding of a mesh that was turned
+    /// and moved.
     #[must_use]
     pub fn stands_across(&self, facet: FacetId, direction: usize) -> bool {
         let nodes = &self.facets[facet.index()].nodes;
         let [low, high] = [f64::min, f64::max]
             .map(|choose| nodes.iter().map(|node| self.points[node.index()][direction]).reduce(choose).unwrap_or(0.0));
-        high - low <= 4.0 * f64::EPSILON * high.abs().max(low.abs())
+        // Some operations on coordinates as large as the mesh or as its distance from the origin.
+        high - low <= 16.0 * f64::EPSILON * (self.size + high.abs().max(low.abs()))
     }
 
     /// Facets that belong to one element only.

@@ -298,6 +298,13 @@ pub enum Cause {
          prescribe its motion along the interface alone"
     )]
     HeldAcross { node: usize },
+    /// Edges on both sides of an interface that slope at a line of symmetry.
+    #[error(
+        "the {} and the {} slope by more than 10° at a line of symmetry, where contact forces cannot be normal to both \
+         slopes of the whole model; take both out of their groups",
+        facet(&.edges[0]), facet(&.edges[1])
+    )]
+    TwoSlopes { edges: Box<[Vec<usize>; 2]> },
     /// Edges of one side of an interface that cover each other.
     #[error(
         "the {} and the {} of one group lie one above the other along the interface; take one of them out of the group",

@@ -26,6 +26,15 @@ pub(super) struct Bodies<'m, const D: usize, const N: usize> {
     pub(super) law: &'m dyn Fn(FacetId) -> &'m Elastic,
 }
 
+/// Places nearer than this part of the size of the mesh are one.
+pub(super) const ONE_PLACE: f64 = 1e-12;
+
+/// A line of symmetry of both sides of an interface: it stands across a direction, at a coordinate (m).
+pub(super) struct SymmetryLine {
+    across: usize,
+    place: f64,
+}
+
 /// One side of an interface.
 pub(super) struct Side<const D: usize> {
     /// Those of one body after those of the other.
@@ -34,7 +43,7 @@ pub(super) struct Side<const D: usize> {
     pub(super) nodes: Vec<NodeId>,
     /// Σ of outward normals times areas (m² or 1).
     pub(super) outward: [f64; D],
-    /// The same with the mirrored half of a symmetric body.
+    /// The same with the mirrored half of a symmetric model.
     pub(super) of_whole: [f64; D],
     /// The bodies that it belongs to, by their first nodes, ascending.
     pub(super) bodies: Vec<NodeId>,
@@ -50,7 +59,9 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
     /// may be of several bodies.
     pub(super) fn sides(&self, interface: &Interface) -> Result<[Side<D>; 2], Cause> {
         let [first, second] = interface.groups();
-        let sides = [self.side(first)?, self.side(second)?];
+        let mut sides = [self.side(first)?, self.side(second)?];
+        let lines = self.common_lines(&sides);
+        sides.iter_mut().for_each(|side| side.mirror(&lines));
         if sides[0].bodies.iter().any(|body| sides[1].bodies.contains(body)) {
             return Err(Cause::SameBody { groups: interface.groups().map(str::to_string) });
         }
@@ -95,23 +106,42 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         bodies.dedup();
         let nodes = along_the_boundary(self.mesh, &facets);
         let outward = outward(self.mesh, &facets);
-        Ok(Side { of_whole: self.of_whole(outward, &nodes), nodes, facets, outward, bodies })
+        Ok(Side { of_whole: outward, nodes, facets, outward, bodies })
     }
 
-    /// Σ of outward normals with those of the mirrored side, from that of a side with these nodes.
-    fn of_whole(&self, mut outward: [f64; D], nodes: &[NodeId]) -> [f64; D] {
-        let largest = outward.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
-        for c in 0..D {
-            if outward[c].abs() < largest && nodes.iter().any(|node| self.mirrors[node.index()][c]) {
-                outward[c] = 0.0;
+    /// The lines of symmetry that both sides meet.
+    pub(super) fn common_lines(&self, sides: &[Side<D>; 2]) -> Vec<SymmetryLine> {
+        let [own, other] = sides.each_ref().map(|side| side.nodes.as_slice());
+        let mut lines: Vec<SymmetryLine> = Vec::new();
+        for (node, across) in own.iter().flat_map(|&node| (0..D).map(move |c| (node, c))) {
+            let line = SymmetryLine { across, place: self.mesh.points()[node.index()][across] };
+            let is_on = |node: &NodeId| self.is_on(&line, *node);
+            if is_on(&node) && other.iter().any(is_on) {
+                lines.push(line);
             }
         }
-        outward
+        lines
+    }
+
+    /// Whether a node is on a line of symmetry.
+    pub(super) fn is_on(&self, line: &SymmetryLine, node: NodeId) -> bool {
+        let apart = self.mesh.points()[node.index()][line.across] - line.place;
+        self.mirrors[node.index()][line.across] && apart.abs() <= ONE_PLACE * self.mesh.size()
     }
 
     /// The body of a facet, by its first node.
     pub(super) fn body_of(&self, facet: FacetId) -> NodeId {
         self.body[self.mesh.facets()[facet.index()].nodes[0].index()]
+    }
+}
+
+impl<const D: usize> Side<D> {
+    /// Adds the outward normals of the mirrored side. A line along the surface is none of a half.
+    fn mirror(&mut self, lines: &[SymmetryLine]) {
+        let largest = self.outward.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
+        for line in lines.iter().filter(|line| self.outward[line.across].abs() < largest) {
+            self.of_whole[line.across] = 0.0;
+        }
     }
 }
 

@@ -1,14 +1,12 @@
 //! Two surfaces of different bodies that may slide along each other.
 
-use super::sides::{Bodies, Side, check_nodes};
+use super::sides::{Bodies, ONE_PLACE, Side, check_nodes};
 use super::{Cause, candidates};
 use crate::contact::{
     ContactFacet, ContactNode, ContactSurface, Interface, Obstacle, Side as Line, SlidingSurfaces, dot, tangent,
 };
 use crate::ids::{FacetId, NodeId};
 
-/// Places nearer than this part of the size of the mesh are one.
-const ONE_PLACE: f64 = 1e-12;
 /// The cosine of 10°: an edge with a larger slope does not stand across a line of symmetry.
 const RIDGE: f64 = 0.984_807_753_012_208;
 /// Velocities that differ by less than this part of the largest are one.
@@ -51,15 +49,16 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
     /// On a line of symmetry one of the surfaces at least stands across it: a force along the line is not normal to
     /// two slopes.
     fn check_ridge(&self, sides: &[Side<D>; 2], normal: &[f64; D]) -> Result<(), Cause> {
-        let on_line = |node: &NodeId| self.mirrors[node.index()].contains(&true);
-        let slopes = |&facet: &FacetId| {
-            let meets_line = self.mesh.facets()[facet.index()].nodes.iter().any(on_line);
-            meets_line && dot(&self.mesh.facet_normal(facet).0, normal).abs() < RIDGE
-        };
-        if sides.iter().all(|side| side.facets.iter().any(slopes))
-            && let Some(node) = sides.iter().flat_map(|side| &side.nodes).find(|node| on_line(node))
-        {
-            return Err(Cause::HeldAcross { node: node.index() });
+        for line in self.common_lines(sides) {
+            let slopes = |&&facet: &&FacetId| {
+                let meets_line = self.mesh.facets()[facet.index()].nodes.iter().any(|node| self.is_on(&line, *node));
+                meets_line && dot(&self.mesh.facet_normal(facet).0, normal).abs() < RIDGE
+            };
+            if let [Some(first), Some(second)] = sides.each_ref().map(|side| side.facets.iter().find(slopes)) {
+                let edges = [first, second].map(|facet| self.mesh.facets()[facet.index()].nodes);
+                let edges = edges.map(|nodes| nodes.map(NodeId::index).to_vec());
+                return Err(Cause::TwoSlopes { edges: Box::new(edges) });
+            }
         }
         Ok(())
     }

@@ -55,3 +55,15 @@ fn half_of_a_symmetric_body_on_a_plane_has_half_of_the_estimate() {
         check(&format!("{angle}° at {speed} m/s on a plane"), [&whole, &half], 0.0);
     }
 }
+
+/// Turned by right angles, points on the line of symmetry are beside it by the rounding of a cosine.
+#[test]
+fn half_of_a_turned_model_has_half_of_the_estimate() {
+    for quarters in 1..4 {
+        let roof = Roof::new(5.0, 20.0, 0.03, [5, 7]).unwrap().turned(quarters);
+        let [whole, half] = [roof.whole(), roof.half()].map(|builder| builder.unwrap().build().unwrap());
+        check(&format!("{quarters} right angles"), [&whole, &half], 0.055);
+        let [whole, half] = roof.alone().unwrap().map(|builder| builder.build().unwrap());
+        check(&format!("{quarters} right angles, on a plane"), [&whole, &half], 0.0);
+    }
+}

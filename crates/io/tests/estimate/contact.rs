@@ -61,6 +61,13 @@ fn contact_results_are_the_same_wherever_they_come_from() {
     let Some(AnyContact::Plane(back)) = contact(&error).unwrap() else { panic!("no contact") };
     assert_eq!(back, beside);
     without_steps(&problem, &times, &memory, &beside);
+    // Nodes of surfaces that slide may face nothing.
+    let mut apart = beside.clone();
+    apart.steps.as_mut().unwrap().gap[3] = f64::INFINITY;
+    let apart_file = folder.path().join("apart.vtkhdf");
+    with_contact(&apart_file, &problem, &estimated(&problem, 4, false), Some(&apart)).unwrap();
+    let Some(AnyContact::Plane(back)) = contact(&apart_file).unwrap() else { panic!("no contact") };
+    assert_eq!(back, apart);
 
     let bar_file = folder.path().join("bar.vtkhdf");
     let results = replayed(&bar(), &steps(&bar()));
@@ -159,6 +166,12 @@ fn a_file_without_and_damaged_ones() {
     });
     // Step 3, node 2 of 6, y.
     assert!(said.contains("`percute/contact/force`: entry 41 is NaN"), "{said}");
+    let said = damage("gap", &|contact| {
+        let gap = contact.dataset("gap").unwrap();
+        gap.write_slice(&[f64::NEG_INFINITY], (1, 1..2)).unwrap();
+        gap.delete_attr("checksum").unwrap();
+    });
+    assert!(said.contains("`percute/contact/gap`: entry 7 is -inf"), "{said}");
     let said = damage("status", &|contact| {
         let status = contact.dataset("status").unwrap();
         status.write_slice(&[3_u8], (1, 1..2)).unwrap();

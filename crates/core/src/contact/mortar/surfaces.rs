@@ -62,6 +62,30 @@ impl<const D: usize> SlidingSurfaces<D> {
         &self.tangent
     }
 
+    /// The largest angle (rad) by which both surfaces lean away from the normal together at one place of the undeformed
+    /// mesh: there they face each other along another direction. 0 where one of them is level, as under a corner.
+    #[must_use]
+    pub fn common_slope(&self) -> f64 {
+        let [slave, master] = &self.sides;
+        let slope = |side: &Side, first: usize| {
+            let [xi, eta] = [side.xi(), side.eta()].map(|values| values[first + 1] - values[first]);
+            eta.atan2(xi)
+        };
+        let mut largest = 0.0_f64;
+        for &own in slave.edges() {
+            let [from, to] = [slave.xi()[own], slave.xi()[own + 1]];
+            let before = master.edges().partition_point(|&other| master.xi()[other + 1] <= from + self.tolerance);
+            let facing = master.edges()[before..].iter().take_while(|&&other| master.xi()[other] < to - self.tolerance);
+            for &other in facing {
+                let [one, two] = [slope(slave, own), slope(master, other)];
+                if one * two > 0.0 {
+                    largest = largest.max(one.abs().min(two.abs()));
+                }
+            }
+        }
+        largest
+    }
+
     /// The law of contact.
     #[inline]
     #[must_use]
@@ -70,9 +94,8 @@ impl<const D: usize> SlidingSurfaces<D> {
     }
 
     /// How far each part of the slave has moved along the tangent against the master (m), from the tangential
-    /// displacements of their nodes: the difference of the means over both surfaces, by length. A part with nodes that
-    /// supports hold along the tangent moves as these do: not at all or, if all of them are driven, by their plain
-    /// mean.
+    /// displacements of their nodes: the difference of the means over both surfaces, by length. A part on a line of
+    /// symmetry moves as its nodes there do, if they go with it at the start.
     ///
     /// The mean over the bodies, Σmu/Σm, is not better: D and M take linear fields exactly at any shift, so that
     /// momentum, the couple of the normal forces at these places, and a uniform pressure are exact to rounding with

@@ -66,7 +66,7 @@ pub struct ContactPoint<const D: usize> {
 pub struct ContactSteps<const D: usize> {
     /// R_n (N), global axes. Over [`ContactPoint::area`] it is the density (Pa), eq. \[45\].
     pub force: Vec<[f64; D]>,
-    /// Gap at t_n (m), eq. \[3\].
+    /// Gap at t_n (m), eq. \[3\]; infinite at a node that faces nothing.
     pub gap: Vec<f64>,
     /// Tangential part of (u_{n+1} − u_n)/Δt_n (m/s), global axes, at the last instant that of the last step; 0 at a
     /// free node.

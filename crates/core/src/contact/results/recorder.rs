@@ -5,7 +5,7 @@ use super::rotation::Rotation;
 use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
 use crate::contact::coulomb::{Coulomb, Status, dissipation};
 use crate::contact::frame::{Frame, dot};
-use crate::contact::mortar::Facing;
+use crate::contact::mortar::{Facing, SlidingSurfaces};
 use crate::history::{SinkError, State, StateSink, Step, StepCheck, StepSource};
 use crate::problem::Problem;
 use crate::time::TimeGrid;
@@ -25,6 +25,9 @@ pub struct ContactMemoryError {
     /// Instants.
     pub instants: usize,
 }
+
+/// Forces of multipliers below this part of the largest one of their surface are the rounding of sums of both signs.
+const ROUNDING: f64 = 1e-12;
 
 /// Keeps the contact results of the steps that it takes: beside a run or from its history the same, bit by bit. They
 /// follow from displacements, reactions and touching status alone.
@@ -95,15 +98,25 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
         self.results
     }
 
-    /// Records one node; returns its share of the resultants.
-    fn node(&mut self, at: usize, step: &Step<'_, D>) -> Share<D> {
+    /// The normal force of each obstacle (N) up to which its nodes are free.
+    fn least_forces(&self, step: &Step<'_, D>) -> Vec<f64> {
+        let (surface, mut least) = (self.problem.surface(), vec![0.0_f64; self.results.obstacles.len()]);
+        for at in surface.sliding().iter().flat_map(SlidingSurfaces::positions) {
+            let (obstacle, frame) = (self.results.nodes[at].obstacle, surface.frame(at, &[0.0; D]));
+            least[obstacle] = least[obstacle].max(ROUNDING * frame.split(&step.reaction[at]).0);
+        }
+        least
+    }
+
+    /// Records one node, which is free up to this normal force (N); returns its share of the resultants.
+    fn node(&mut self, at: usize, step: &Step<'_, D>, least: f64) -> Share<D> {
         let ContactPoint { node, area, point, .. } = self.results.nodes[at];
         let (displacement, force) = (step.displacement[node.index()], step.reaction[at]);
         let surface = self.problem.surface();
         let relative = self.facing.relative(at, step.displacement);
         let frame = surface.frame(at, &relative);
-        let status = self.laws[at].status(&frame, &force);
         let normal_force = frame.split(&force).0;
+        let status = if normal_force <= least { Status::Free } else { self.laws[at].status(&frame, &force) };
         let is_of_pair = surface.nodes()[at].opposite.is_some();
         if status != Status::Free && is_of_pair {
             let (_, aside) = frame.split(&relative);
@@ -172,9 +185,11 @@ impl<const D: usize, const N: usize> ContactRecorder<'_, D, N> {
         let mut total = Sum::new();
         self.facing.update(step.displacement);
         self.results.rotation = self.results.rotation.max(self.rotation.at(step.index, step.displacement));
+        let least = self.least_forces(step);
         for at in 0..self.now.len() {
-            let share = self.node(at, step);
-            sums[self.results.nodes[at].obstacle].add(&share);
+            let obstacle = self.results.nodes[at].obstacle;
+            let share = self.node(at, step, least[obstacle]);
+            sums[obstacle].add(&share);
             // Two bodies that touch have one contact, that of the first one.
             if self.problem.surface().is_of_first(at) {
                 total.add(&share);

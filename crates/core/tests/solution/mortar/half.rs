@@ -2,6 +2,7 @@
 
 use super::setup::steps;
 use crate::run::{largest, run};
+use percute_core::contact::ContactRecorder;
 use percute_core::load::{Support, Table};
 use percute_core::problem::Builder;
 use percute_testkit::Roof;
@@ -49,5 +50,39 @@ fn half_of_a_symmetric_model_moves_as_the_whole() {
         }
         let contact = half_run.simulation.balance.work_of_contact;
         assert!(contact.abs() > 0.0, "{angle}°: {contact}");
+    }
+}
+
+/// Both sides of a surface that slides touch with twice the area of those of the half. Nodes with the rounding of sums
+/// of both signs do not count.
+#[test]
+fn half_of_a_symmetric_model_has_half_of_the_area() {
+    for (angle, speed, cells) in [(5.0, 20.0, [5, 7]), (40.0, 2.0, [6, 7]), (40.0, 20.0, [6, 7])] {
+        let roof = Roof::new(angle, speed, 0.02, cells).unwrap();
+        let [whole, half] = [roof.whole(), roof.half()].map(|builder| builder.unwrap().build().unwrap());
+        let times = steps(&whole, 10e-6);
+        let [whole, half] = [&whole, &half].map(|problem| {
+            let run = run(problem, &times);
+            ContactRecorder::new(problem, &times).replay(&run.history).unwrap()
+        });
+        for (side, (whole, half)) in whole.obstacles.iter().zip(&half.obstacles).enumerate() {
+            assert!(whole.iter().any(|resultant| resultant.in_contact > 0));
+            for (n, (whole, half)) in whole.iter().zip(half).enumerate() {
+                // Rounding of lengths.
+                let apart = (whole.area - 2.0 * half.area).abs();
+                assert!(apart <= 1e-12, "{angle}° at {speed} m/s, side {side}, step {n}: {} {}", whole.area, half.area);
+            }
+        }
+    }
+}
+
+/// Of a model turned by right angles, the line of symmetry is through the origin with the rounding of a cosine.
+#[test]
+fn lines_of_symmetry_are_found_beside_rounding() {
+    let roof = Roof::new(5.0, 20.0, 0.03, [5, 7]).unwrap();
+    for quarters in 0..4 {
+        let problem = roof.clone().turned(quarters).half().unwrap().build().unwrap();
+        let on_line = problem.on_lines_of_symmetry().iter().filter(|on_line| **on_line).count();
+        assert_eq!(on_line, 2, "{quarters} right angles");
     }
 }

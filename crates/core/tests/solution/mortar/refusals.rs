@@ -7,11 +7,11 @@ use percute_core::dynamics::{SimulationError, check_start};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, FacetGroups, TriangleMesh};
-use percute_core::problem::{Cause, Initial, TriangleProblem};
+use percute_core::problem::{Cause, Initial, InputError, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::translated;
 
-fn cause(problem: Result<TriangleProblem, percute_core::problem::InputError>) -> Option<Cause> {
+fn cause(problem: Result<TriangleProblem, InputError>) -> Option<Cause> {
     problem.err().map(|error| error.cause)
 }
 
@@ -31,29 +31,60 @@ fn wrong_groups_are_refused() {
     assert!(Interface::sliding::<1>("a", "b", 0.1).is_err());
 }
 
+/// Two bodies of 20 mm that face each other along a surface of this height above its level, with supports across x;
+/// `leans` is the slope of their sides.
+fn facing(height: impl Fn(f64) -> [f64; 2], leans: f64, supports: &[&str]) -> Result<TriangleProblem, InputError> {
+    let body = |side: usize, up: f64| {
+        let block = translated(&TriangleMesh::rectangle(0.02, 0.02, 4, 4).unwrap(), [0.0, up]).unwrap();
+        block.mapped(|p| [p[0] + leans * p[1], p[1] + height(p[0])[side]]).unwrap()
+    };
+    let mesh = TriangleMesh::joined(&[("upper", &body(0, 0.02 + GAP)), ("lower", &body(1, 0.0))]).unwrap();
+    let builder = TriangleProblem::builder(mesh)
+        .material(aluminium())
+        .interface(Interface::sliding::<2>("upper.bottom", "lower.top", 0.2).unwrap());
+    let support = |group: &str| Support { group: group.into(), components: [true, false], velocity: None };
+    supports.iter().fold(builder, |builder, group| builder.support(support(group))).build()
+}
+
 /// Two slopes at a line of symmetry have no normal there that is one of both, unless they are nearly level. A support
-/// that is not a line of symmetry does not make one of an oblique surface.
+/// that is not a line of symmetry does not make one of an oblique surface, nor do lines that are not common to both.
 #[test]
 fn slopes_at_a_line_of_symmetry_are_refused() {
-    let problem = |slope: f64, leans: f64| {
-        let place = |p: &[f64; 2]| [p[0] + leans * p[1], p[1] + slope * p[0]];
-        let body = |up: f64| {
-            let block = TriangleMesh::rectangle(0.02, 0.02, 4, 4).unwrap();
-            translated(&block, [0.0, up]).unwrap().mapped(place).unwrap()
-        };
-        let mesh = TriangleMesh::joined(&[("upper", &body(0.02 + GAP)), ("lower", &body(0.0))]).unwrap();
-        let support = |group: &str| Support { group: group.into(), components: [true, false], velocity: None };
-        TriangleProblem::builder(mesh)
-            .material(aluminium())
-            .support(support("upper.left"))
-            .support(support("lower.left"))
-            .interface(Interface::sliding::<2>("upper.bottom", "lower.top", 0.2).unwrap())
-            .build()
+    let both = |slope: f64| move |x: f64| [slope * x; 2];
+    let left = ["upper.left", "lower.left"];
+    assert_eq!(cause(facing(both(0.1), 0.0, &left)), None);
+    assert!(matches!(cause(facing(both(0.5), 0.0, &left)), Some(Cause::TwoSlopes { .. })));
+    assert_eq!(cause(facing(both(0.0), 0.3, &left)), None);
+    assert!(matches!(cause(facing(both(0.1), 0.3, &left)), Some(Cause::HeldAcross { .. })));
+    assert!(matches!(cause(facing(both(0.1), 0.0, &["upper.left"])), Some(Cause::HeldAcross { .. })));
+    let apart = ["upper.left", "lower.right"];
+    assert!(matches!(cause(facing(both(0.1), 0.0, &apart)), Some(Cause::HeldAcross { .. })));
+    assert_eq!(cause(facing(both(0.0), 0.0, &apart)), None);
+}
+
+/// A cell between two lines of symmetry: at each of them another surface is level.
+#[test]
+fn slopes_of_a_cell_count_at_their_own_line() {
+    let upper = |x: f64| 0.3 * (0.01 - x).max(0.0);
+    let lower = |x: f64| 0.3 * (0.01 - x).min(0.0);
+    let lines = ["upper.left", "lower.left", "upper.right", "lower.right"];
+    assert_eq!(cause(facing(|x| [upper(x), lower(x)], 0.0, &lines)), None);
+}
+
+/// Two chevrons lean together by the angle of both; a chevron on a level surface does not, nor do two that open.
+#[test]
+fn chevrons_lean_together() {
+    let degrees = |height: fn(f64) -> [f64; 2]| {
+        let problem = facing(height, 0.0, &[]).unwrap();
+        problem.surface().common_slope().unwrap().1.to_degrees()
     };
-    assert_eq!(cause(problem(0.1, 0.0)), None);
-    assert!(matches!(cause(problem(0.5, 0.0)), Some(Cause::HeldAcross { .. })));
-    assert_eq!(cause(problem(0.0, 0.3)), None);
-    assert!(matches!(cause(problem(0.1, 0.3)), Some(Cause::HeldAcross { .. })));
+    // Rounding of an arctangent.
+    assert!((degrees(|x| [0.3 * (x - 0.01).abs(); 2]) - 0.3_f64.atan().to_degrees()).abs() < 1e-10);
+    assert_eq!(degrees(|x| [0.3 * (x - 0.01).abs(), 0.0]), 0.0);
+    assert_eq!(degrees(|x| [0.3 * (x - 0.01).abs(), -0.3 * (x - 0.01).abs()]), 0.0);
+    assert!(
+        (degrees(|x| [0.3 * (x - 0.01).abs(), 0.1 * (x - 0.01).abs()]) - 0.1_f64.atan().to_degrees()).abs() < 1e-10
+    );
 }
 
 #[test]

@@ -151,13 +151,16 @@ impl Reader<'_, '_> {
         Ok(self.all(name, &[shape, &[D]].concat())?.as_chunks::<D>().0.to_vec())
     }
 
-    /// Numbers, all of them finite except where values may be missing.
+    /// Numbers, all of them finite except where values may be missing. The gap of a node that faces nothing is
+    /// infinite.
     fn all(&self, name: &str, shape: &[usize]) -> Result<Vec<f64>, FileCause> {
         let data = self.part.data(name)?;
         data.expect(shape, "as the other arrays of the group")?;
         let values = data.floats()?;
-        let missing = |x: &f64| x.is_nan() && MAY_BE_NONE.contains(&name);
-        match values.iter().position(|x| !x.is_finite() && !missing(x)) {
+        let allowed = |x: &f64| {
+            x.is_finite() || (x.is_nan() && MAY_BE_NONE.contains(&name)) || (*x == f64::INFINITY && name == "gap")
+        };
+        match values.iter().position(|x| !allowed(x)) {
             None => Ok(values),
             Some(at) => {
                 let detail = format!("entry {at} is {}; it must be a finite number", values[at]);

@@ -50,6 +50,8 @@ pub(in crate::report) struct Facts {
     pub(super) depth: f64,
     /// Whether a node of surfaces that slide that has touched was at the end of the other surface, or beyond it.
     pub(super) at_end: bool,
+    /// The largest angle by which two surfaces that slide lean together from their common normal (degrees).
+    pub(super) common_slope: f64,
     pub(super) supported: bool,
     /// Part of the squared mean error in elements with a node that touches.
     pub(super) at_contact: f64,
@@ -128,6 +130,7 @@ impl Facts {
             slip: results.slip,
             depth: results.depth,
             at_end: results.at_end,
+            common_slope: problem.surface().common_slope().map_or(0.0, |(_, slope)| slope.to_degrees()),
             supported: !problem.prescribed().is_empty(),
             at_contact: at_contact(problem, estimate, results),
             error: estimate.error,

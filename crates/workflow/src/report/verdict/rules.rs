@@ -5,6 +5,7 @@ use super::facts::Facts;
 use super::touches::Touches;
 use crate::message::percent;
 use crate::report::symptoms::{DEPTH, SLIP};
+use percute_core::problem::MOST_COMMON_SLOPE;
 use percute_estimator::{Acceleration, Reconstruction};
 
 /// A situation that the evidence has, and its effectivity indices.
@@ -276,6 +277,7 @@ pub(super) fn outside(facts: &Facts) -> Option<&'static str> {
         () if facts.by_a_penalty => Some(PENALTY),
         () if facts.acts_late() => Some(LATE),
         () if facts.at_end && touches_at_a_point => Some(AT_END),
+        () if facts.common_slope > MOST_COMMON_SLOPE => Some(LEANING),
         () => None,
     }
 }
@@ -289,6 +291,9 @@ const LATE: &str = "corners and curves that enter the edges that they strike";
 /// up to 9; that are beyond it by less than a thousandth of their edge: up to 41.
 const AT_END: &str =
     "corners and curves that slide off the end of the other surface, or strike within 1/16 of an edge of it";
+
+/// The motion differs by a tenth and more from that with a contact for each slope.
+const LEANING: &str = "surfaces that lean together from their common normal";
 
 /// The properties of a run that no case of the evidence has.
 pub(super) fn untested(facts: &Facts) -> Vec<String> {
