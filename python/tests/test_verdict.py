@@ -90,6 +90,24 @@ def test_properties_without_evidence_are_named() -> None:
 
 
 @pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
+@pytest.mark.parametrize(("slope", "ranged"), [(9.0, True), (16.0, False)])
+def test_chevrons_that_lean_together_have_no_range(slope: float, ranged: bool) -> None:
+    """The surfaces of both bodies touch where they lean away from the normal."""
+
+    def body(name: str, up: float, speed: float) -> pc.Body:
+        flat = pc.Mesh.rectangle(0.02, 0.01, nx=6, ny=3)
+        points = flat.points + np.outer(np.abs(flat.points[:, 0] - 0.01), [0.0, math.tan(math.radians(slope))])
+        mesh = pc.Mesh(points, flat.cells, edge_groups=flat.edge_groups)
+        material = pc.Elastic(**ALUMINIUM, plane="stress")
+        return pc.Body(name=name, mesh=mesh, material=material, origin=(0.0, up), velocity=(0.0, speed))
+
+    bodies = [body("lower", 0.0, 0.0), body("upper", 0.01001, -20.0)]
+    contact = pc.Interface(groups=("upper.bottom", "lower.top"), friction=0.2, matching=False)
+    estimate = pc.estimate(pc.simulate(pc.Problem(bodies=bodies, contacts=[contact]), end=8e-6, courant=0.9))
+    assert ("common_slope" in [warning["name"] for warning in json.loads(estimate.to_json())["warnings"]]) is not ranged
+    assert (facts(estimate)["effectivity"] is not None) is ranged
+
+
 def test_the_number_is_not_trusted_for_a_reason() -> None:
     mesh = pc.Mesh.rectangle(0.05, 0.04, nx=5, ny=4)
     history = struck(mesh).history

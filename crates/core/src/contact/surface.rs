@@ -87,14 +87,6 @@ impl<const D: usize> ContactSurface<D> {
         &self.sliding
     }
 
-    /// The surfaces that slide and lean most together from their normal, and by which angle (rad): see
-    /// [`SlidingSurfaces::common_slope`].
-    #[must_use]
-    pub fn common_slope(&self) -> Option<(&SlidingSurfaces<D>, f64)> {
-        let slopes = self.sliding.iter().map(|sliding| (sliding, sliding.common_slope()));
-        slopes.max_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
     /// Which of [`ContactSurface::sliding`] a node belongs to.
     #[inline]
     #[must_use]

@@ -301,7 +301,7 @@ pub enum Cause {
     /// Edges on both sides of an interface that slope at a line of symmetry.
     #[error(
         "the {} and the {} slope by more than 10° at a line of symmetry, where contact forces cannot be normal to both \
-         slopes of the whole model; take both out of their groups",
+         slopes of the whole model; take both out of their groups, with shorter edges if they are the only ones",
         facet(&.edges[0]), facet(&.edges[1])
     )]
     TwoSlopes { edges: Box<[Vec<usize>; 2]> },

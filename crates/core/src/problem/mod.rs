@@ -21,9 +21,7 @@ mod start_of_contact;
 pub use bodies::{Between, Contact};
 pub use builder::{Builder, Initial, Statement};
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
-pub use plausibility::{
-    MOST_COMMON_SLOPE, PlausibilityWarning, RefusedStart, cause_of_refused_start, plausibility_warnings,
-};
+pub use plausibility::{PlausibilityWarning, RefusedStart, cause_of_refused_start, plausibility_warnings};
 
 use crate::contact::{ContactNode, ContactSurface, Facing, Interface, Obstacle};
 use crate::ids::{ElementId, FacetId, NodeId};

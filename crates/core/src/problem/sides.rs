@@ -126,7 +126,9 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
     /// Whether a node is on a line of symmetry.
     pub(super) fn is_on(&self, line: &SymmetryLine, node: NodeId) -> bool {
         let apart = self.mesh.points()[node.index()][line.across] - line.place;
-        self.mirrors[node.index()][line.across] && apart.abs() <= ONE_PLACE * self.mesh.size()
+        // A line that is far from the origin has two places that differ by its rounding.
+        let rounding = ONE_PLACE * self.mesh.size() + 4.0 * f64::EPSILON * line.place.abs();
+        self.mirrors[node.index()][line.across] && apart.abs() <= rounding
     }
 
     /// The body of a facet, by its first node.

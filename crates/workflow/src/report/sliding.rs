@@ -18,6 +18,16 @@ pub struct SlidingReport {
     pub estimate: SurfaceEstimate,
 }
 
+/// The largest angle by which surfaces that slide and have touched lean together from their normal (degrees).
+pub(super) fn common_slope<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    contact: &ContactResults<D>,
+) -> f64 {
+    let touched = |at: usize| contact.summary[at].first_touch.is_some();
+    let slopes = problem.surface().sliding().iter().map(|sliding| sliding.common_slope(touched).to_degrees());
+    slopes.fold(0.0, f64::max)
+}
+
 /// One side of an interface, and the resultants of its forces at all instants.
 type SideResults<'a, const D: usize> = (&'a Obstacle<D>, &'a Vec<Resultant<D>>);
 

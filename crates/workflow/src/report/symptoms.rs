@@ -17,6 +17,10 @@ pub(crate) const SLIP: f64 = 0.1;
 /// Nodes of surfaces that slide that are deeper in the other body, over their edge, are outside of the evidence: there,
 /// up to 200 m/s, corners and curves are at most 0.021 of it inside.
 pub(crate) const DEPTH: f64 = 0.05;
+/// Surfaces that touch and lean together by more than this (degrees) face each other along another direction than their
+/// normal. Between chevrons of aluminium of 5, 15 and 30°, without friction, the motion differs by 2, 9 and 24 % from
+/// that with a contact for each slope.
+pub(crate) const COMMON_SLOPE: f64 = 10.0;
 /// The largest mean rotation of a body (rad) that is not warned of.
 const ROTATION: f64 = 0.02;
 /// The remedy for all figures of a history that contradicts itself or its problem.
@@ -62,6 +66,7 @@ pub(super) fn symptoms(facts: &Facts<'_>) -> impl Iterator<Item = Symptom> {
         no_contact(facts),
         slipped(facts.slip),
         entered(facts.depth),
+        leant(facts.common_slope),
         turned(facts.rotation),
     ];
     all.into_iter().flatten()
@@ -192,6 +197,20 @@ fn entered(depth: f64) -> Option<Symptom> {
     );
     let brief = format!("a node was {edges} of its edge inside the other body");
     symptom("depth", brief, figure, "use shorter edges on both surfaces")
+}
+
+/// Surfaces whose common normal is that of neither.
+fn leant(slope: f64) -> Option<Symptom> {
+    if slope <= COMMON_SLOPE {
+        return None;
+    }
+    let angle = short(slope, 2);
+    let figure = format!(
+        "surfaces that touch lean together by up to {angle}° from their normal, along which all contact forces act"
+    );
+    let remedy = "name groups of edges that face each other around the place where they touch, or of slopes of a ridge, \
+                  each in a contact of its own without the edges at the ridge";
+    symptom("common_slope", format!("surfaces lean together by {angle}° from their normal"), figure, remedy)
 }
 
 /// Bodies that turn farther than small rotations.

@@ -44,6 +44,8 @@ pub(super) struct Facts<'a> {
     pub(super) slip: f64,
     /// The deepest that a node of surfaces that slide was inside the other body, over its shortest edge.
     pub(super) depth: f64,
+    /// The largest angle by which surfaces that slide and touch lean together from their normal (degrees).
+    pub(super) common_slope: f64,
     /// The largest mean rotation of a body (rad); 0 unless bodies may touch each other.
     pub(super) rotation: f64,
     pub(super) residual: &'a LargestResidual,
@@ -66,6 +68,7 @@ impl Warning {
             "no_contact",
             "slip",
             "depth",
+            "common_slope",
             "rotation",
         ]
         .contains(&self.name)

@@ -34,6 +34,7 @@ mod surfaces;
 mod tests;
 
 pub use coupling::Coupling;
+pub(super) use coupling::LEAST_PART;
 pub use dual::DualShape;
 pub use facing::Facing;
 pub use partition::Segment;

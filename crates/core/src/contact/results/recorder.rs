@@ -5,7 +5,7 @@ use super::rotation::Rotation;
 use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
 use crate::contact::coulomb::{Coulomb, Status, dissipation};
 use crate::contact::frame::{Frame, dot};
-use crate::contact::mortar::{Facing, SlidingSurfaces};
+use crate::contact::mortar::{Facing, LEAST_PART, SlidingSurfaces};
 use crate::history::{SinkError, State, StateSink, Step, StepCheck, StepSource};
 use crate::problem::Problem;
 use crate::time::TimeGrid;
@@ -25,9 +25,6 @@ pub struct ContactMemoryError {
     /// Instants.
     pub instants: usize,
 }
-
-/// Forces of multipliers below this part of the largest one of their surface are the rounding of sums of both signs.
-const ROUNDING: f64 = 1e-12;
 
 /// Keeps the contact results of the steps that it takes: beside a run or from its history the same, bit by bit. They
 /// follow from displacements, reactions and touching status alone.
@@ -103,7 +100,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
         let (surface, mut least) = (self.problem.surface(), vec![0.0_f64; self.results.obstacles.len()]);
         for at in surface.sliding().iter().flat_map(SlidingSurfaces::positions) {
             let (obstacle, frame) = (self.results.nodes[at].obstacle, surface.frame(at, &[0.0; D]));
-            least[obstacle] = least[obstacle].max(ROUNDING * frame.split(&step.reaction[at]).0);
+            least[obstacle] = least[obstacle].max(LEAST_PART * frame.split(&step.reaction[at]).0);
         }
         least
     }

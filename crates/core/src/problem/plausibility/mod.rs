@@ -1,11 +1,8 @@
 //! What is possible, but more likely a slip: a mixture of units, a body that never touches, a run that is too short.
 
 mod motion;
-mod slopes;
 mod time;
 mod units;
-
-pub use slopes::MOST_COMMON_SLOPE;
 
 use super::{Place, Problem};
 use crate::time::TimeGrid;
@@ -41,10 +38,8 @@ pub fn plausibility_warnings<const D: usize, const N: usize>(
     let mixed = all.iter().any(|plausibility_warning| {
         plausibility_warning.name == "units" && ["mesh", "material"].contains(&plausibility_warning.place.table)
     });
-    let others = motion::plausibility_warnings(problem, times)
-        .into_iter()
-        .chain(slopes::plausibility_warnings(problem))
-        .chain(time::plausibility_warnings(problem, times));
+    let others =
+        motion::plausibility_warnings(problem, times).into_iter().chain(time::plausibility_warnings(problem, times));
     all.extend(
         others.filter(|plausibility_warning| {
             !mixed || !["supersonic", "single_step"].contains(&plausibility_warning.name)

@@ -1,11 +1,12 @@
 //! Half of a symmetric model.
 
 use super::setup::steps;
-use crate::run::{largest, run};
-use percute_core::contact::ContactRecorder;
+use crate::run::{aluminium, largest, run};
+use percute_core::contact::{ContactRecorder, Interface, Status};
 use percute_core::load::{Support, Table};
-use percute_core::problem::Builder;
-use percute_testkit::Roof;
+use percute_core::mesh::TriangleMesh;
+use percute_core::problem::{Builder, Initial, TriangleProblem};
+use percute_testkit::{Roof, translated};
 
 /// Drives far sides of the roof inwards, from the speed of all (m/s) up to another one within 5 µs.
 fn driven(builder: Builder<2, 3>, sides: &[(&str, f64)], [along, speed]: [f64; 2]) -> Builder<2, 3> {
@@ -74,6 +75,37 @@ fn half_of_a_symmetric_model_has_half_of_the_area() {
             }
         }
     }
+}
+
+/// Of a block of 20 mm on a wider plate, which nodes of the plate are in contact by their forces agrees with which of
+/// them touch at the next instant: the block widens and passes some by the rounding of their places.
+#[test]
+fn nodes_in_contact_touch() {
+    let plate = TriangleMesh::rectangle(0.04, 0.01, 40, 2).unwrap();
+    let block = translated(&TriangleMesh::rectangle(0.02, 0.01, 17, 2).unwrap(), [0.01, 0.01001]).unwrap();
+    let mesh = TriangleMesh::joined(&[("plate", &plate), ("block", &block)]).unwrap();
+    let velocity = |node: usize| [0.0, if node < plate.node_count() { 0.0 } else { -20.0 }];
+    let velocity = Initial::Nodal((0..mesh.node_count()).map(velocity).collect());
+    let problem = TriangleProblem::builder(mesh)
+        .material(aluminium())
+        .initial_velocity(velocity)
+        .interface(Interface::sliding::<2>("block.bottom", "plate.top", 0.2).unwrap())
+        .build()
+        .unwrap();
+    let times = steps(&problem, 8e-6);
+    let run = run(&problem, &times);
+    let recorder = ContactRecorder::new(&problem, &times).keeping_steps().unwrap();
+    let results = recorder.replay(&run.history).unwrap();
+    let (status, count) = (results.steps.unwrap().status, results.nodes.len());
+    let mut touches = 0;
+    for n in 0..run.last() {
+        let touching = run.history.step(n + 1).unwrap().touching;
+        for at in (0..count).filter(|&at| status[n * count + at] != Status::Free) {
+            assert!(touching[at], "{:?}, step {n}", results.nodes[at].point);
+            touches += 1;
+        }
+    }
+    assert!(touches > 200);
 }
 
 /// Of a model turned by right angles, the line of symmetry is through the origin with the rounding of a cosine.

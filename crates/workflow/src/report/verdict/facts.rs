@@ -4,6 +4,7 @@ use super::touches::Contact;
 use crate::foreign::{Checked, Contradiction, by_a_penalty, is_off_contact, off_contact};
 use crate::report::flat::FlatElements;
 use crate::report::rebound::Rebound;
+use crate::report::sliding::common_slope;
 use percute_core::contact::ContactResults;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
@@ -130,7 +131,7 @@ impl Facts {
             slip: results.slip,
             depth: results.depth,
             at_end: results.at_end,
-            common_slope: problem.surface().common_slope().map_or(0.0, |(_, slope)| slope.to_degrees()),
+            common_slope: common_slope(problem, results),
             supported: !problem.prescribed().is_empty(),
             at_contact: at_contact(problem, estimate, results),
             error: estimate.error,

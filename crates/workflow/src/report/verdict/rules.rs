@@ -4,8 +4,7 @@
 use super::facts::Facts;
 use super::touches::Touches;
 use crate::message::percent;
-use crate::report::symptoms::{DEPTH, SLIP};
-use percute_core::problem::MOST_COMMON_SLOPE;
+use crate::report::symptoms::{COMMON_SLOPE, DEPTH, SLIP};
 use percute_estimator::{Acceleration, Reconstruction};
 
 /// A situation that the evidence has, and its effectivity indices.
@@ -277,7 +276,7 @@ pub(super) fn outside(facts: &Facts) -> Option<&'static str> {
         () if facts.by_a_penalty => Some(PENALTY),
         () if facts.acts_late() => Some(LATE),
         () if facts.at_end && touches_at_a_point => Some(AT_END),
-        () if facts.common_slope > MOST_COMMON_SLOPE => Some(LEANING),
+        () if facts.common_slope > COMMON_SLOPE => Some(LEANING),
         () => None,
     }
 }
