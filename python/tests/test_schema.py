@@ -83,6 +83,7 @@ BEYOND = {
     "a contact of surfaces that are meshed differently": "the geometry of the bodies",
     "a contact of surfaces that are aside of each other": "the geometry of the bodies",
     "a contact of surfaces that look the same way": "the geometry of the bodies",
+    "slopes at a line of symmetry": "the geometry of the bodies",
     "two contacts at a node": "the groups of the mesh",
     "a contact of a surface that is held": "two groups of the mesh",
     "a contact of a surface that is loaded": "two groups of the mesh",

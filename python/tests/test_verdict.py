@@ -108,6 +108,7 @@ def test_chevrons_that_lean_together_have_no_range(slope: float, ranged: bool) -
     assert (facts(estimate)["effectivity"] is not None) is ranged
 
 
+@pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
 def test_the_number_is_not_trusted_for_a_reason() -> None:
     mesh = pc.Mesh.rectangle(0.05, 0.04, nx=5, ny=4)
     history = struck(mesh).history
