@@ -1,6 +1,7 @@
 //! How two bodies lie to each other, and how they meet if nothing else acts on them.
 
 use super::outline::{Outline, Vector};
+use crate::contact::CORNER;
 
 /// Bodies that are nearer than this part of the larger one touch, wherever the origin is.
 const TOUCHES: f64 = 1e-12;
@@ -33,9 +34,18 @@ pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
     if gaps[widest] < -tolerance {
         return None;
     }
+    // Where a node of a curve meets one, two edges on either side are as far: the normal is midway between theirs.
+    let midway = |at: usize| {
+        let is_alike = |k: &usize| (gaps[*k] - gaps[at]).abs() <= ROUNDING * gaps[at].abs() + tolerance;
+        let turns_little = |k: &usize| dot(&normals[*k], &normals[at]) > CORNER.cos();
+        let alike = (0..gaps.len()).filter(is_alike).filter(turns_little).map(|k| normals[k]);
+        let sum = alike.fold([0.0; 2], |sum: Vector, normal| [sum[0] + normal[0], sum[1] + normal[1]]);
+        let length = sum[0].hypot(sum[1]);
+        sum.map(|x| x / length)
+    };
     if gaps[widest] <= tolerance {
         // They touch: whatever moves them, there is contact.
-        return Some(Approach { normal: normals[widest], gap: 0.0, meeting: Some((normals[widest], 0.0)) });
+        return Some(Approach { normal: midway(widest), gap: 0.0, meeting: Some((midway(widest), 0.0)) });
     }
     let speed = relative[0].hypot(relative[1]);
     let (mut latest, mut parting) = ((f64::NEG_INFINITY, widest), f64::INFINITY);
@@ -56,8 +66,8 @@ pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
         }
     }
     let (time, at) = latest;
-    let meeting = (time.is_finite() && time < parting).then_some((normals[at], time));
-    Some(Approach { normal: normals[widest], gap: gaps[widest], meeting })
+    let meeting = (time.is_finite() && time < parting).then_some((midway(at), time));
+    Some(Approach { normal: midway(widest), gap: gaps[widest], meeting })
 }
 
 /// Outward normals of the edges of a convex polygon.
@@ -84,6 +94,24 @@ mod tests {
         let [x, y] = corner;
         let hull = vec![[x, y], [x + side, y], [x + side, y + side], [x, y + side]];
         Outline { name: String::new(), edges: Vec::new(), hull, velocity, size: side * 2.0_f64.sqrt(), passage: 1.0 }
+    }
+
+    /// Polygons of 18 sides, one above the other, meet with a node of each: their normal is that of neither side.
+    #[test]
+    fn nodes_of_curves_meet_along_the_line_between_them() {
+        let disc = |height: f64, speed: f64| {
+            let corner = |k: usize| (k as f64 * std::f64::consts::TAU / 18.0 + std::f64::consts::FRAC_PI_2).sin_cos();
+            let hull = (0..18).map(corner).map(|(sin, cos)| [cos, sin + height]).collect();
+            Outline { hull, velocity: [0.0, speed], ..square([0.0, 0.0], 1.0, [0.0, 0.0]) }
+        };
+        for (height, speed) in [(2.5, -1.0), (2.5, 0.0), (2.0, 0.0)] {
+            let found = approach(&disc(0.0, 0.0), &disc(height, speed)).unwrap();
+            assert_eq!(found.meeting.is_some(), speed != 0.0 || height == 2.0);
+            for normal in [Some(found.normal), found.meeting.map(|(normal, _)| normal)].into_iter().flatten() {
+                // Rounding of some sines.
+                assert!(normal[0].abs() < 1e-14 && (normal[1] - 1.0).abs() < 1e-14, "{height}: {normal:?}");
+            }
+        }
     }
 
     #[test]
