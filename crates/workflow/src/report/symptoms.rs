@@ -208,8 +208,8 @@ fn leant(slope: f64) -> Option<Symptom> {
     let figure = format!(
         "surfaces that touch lean together by up to {angle}° from their normal, along which all contact forces act"
     );
-    let remedy = "name groups of edges that face each other around the place where they touch, or of slopes of a ridge, \
-                  each in a contact of its own without the edges at the ridge";
+    let remedy = "name groups of edges that face each other around the place where they touch, or of slopes of a \
+                  ridge, each in a contact of its own without the edges at the ridge";
     symptom("common_slope", format!("surfaces lean together by {angle}° from their normal"), figure, remedy)
 }
 
