@@ -2,6 +2,7 @@
 
 use super::outline::{Outline, Vector};
 use crate::contact::CORNER;
+use crate::problem::alignment::unit;
 
 /// Bodies that are nearer than this part of the larger one touch, wherever the origin is.
 const TOUCHES: f64 = 1e-12;
@@ -39,9 +40,7 @@ pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
         let is_alike = |k: &usize| (gaps[*k] - gaps[at]).abs() <= ROUNDING * gaps[at].abs() + tolerance;
         let turns_little = |k: &usize| dot(&normals[*k], &normals[at]) > CORNER.cos();
         let alike = (0..gaps.len()).filter(is_alike).filter(turns_little).map(|k| normals[k]);
-        let sum = alike.fold([0.0; 2], |sum: Vector, normal| [sum[0] + normal[0], sum[1] + normal[1]]);
-        let length = sum[0].hypot(sum[1]);
-        sum.map(|x| x / length)
+        unit(&alike.fold([0.0; 2], |sum: Vector, normal| [sum[0] + normal[0], sum[1] + normal[1]]))
     };
     if gaps[widest] <= tolerance {
         // They touch: whatever moves them, there is contact.
