@@ -11,10 +11,12 @@ use percute_core::observer::{Observer, Progress, StopFlag};
 use pyo3::prelude::*;
 use std::any::Any;
 use std::borrow::Cow;
+use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// How often signals are checked.
@@ -140,60 +142,68 @@ fn carry_out<T: Send + 'static>(
     task: &Arc<Task>,
     work: impl FnOnce(Watch) -> T + Send + 'static,
 ) -> PyResult<T> {
-    let watch = Watch(task.clone());
-    let (sender, mut receiver) = sync_channel(1);
-    // Nothing receives the result of a task that was left.
-    let job = move || _ = sender.send(work(watch));
-    let worker = std::thread::Builder::new().name("percute".into()).spawn(job)?;
-    let waited = wait(py, task, &mut receiver, tell);
-    if waited.is_err() {
-        task.stop.set(true);
-        leave(py, task, &mut receiver);
-    }
-    match waited? {
-        Some(done) => Ok(done),
-        // Only a panic ends the work without an outcome.
-        None => {
-            Err(percute_error(py, &format!("internal error, please report it: {}", panic_message(worker.join().err()))))
-        }
-    }
+    let outcome = Arc::new(Mutex::new(None));
+    let (watch, place) = (Watch(task.clone()), outcome.clone());
+    // The thread and the wait for it do not know the outcome, so that they are compiled once for all kinds.
+    let job = Box::new(move || {
+        let done = work(watch);
+        *place.lock().unwrap_or_else(PoisonError::into_inner) = Some(done);
+    });
+    let end = run(py, tell, task, job)?;
+    let done = outcome.lock().unwrap_or_else(PoisonError::into_inner).take();
+    // Only a panic ends the work without an outcome.
+    done.ok_or_else(|| {
+        percute_error(py, &format!("internal error, please report it: {}", panic_message(end.join().err())))
+    })
 }
 
-/// Waits for the outcome; `None` if the work ended without.
-fn wait<T: Send>(
+/// Does a job in a thread of its own and waits for its end.
+fn run(
     py: Python<'_>,
-    task: &Task,
-    receiver: &mut Receiver<T>,
     tell: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Option<T>> {
-    let mut told = None;
-    loop {
-        let receiver = &mut *receiver;
-        match py.detach(move || receiver.recv_timeout(POLL)) {
-            Ok(outcome) => {
-                tell_progress(tell, task, &mut told)?;
-                return Ok(Some(outcome));
-            }
-            Err(RecvTimeoutError::Disconnected) => return Ok(None),
-            Err(RecvTimeoutError::Timeout) => {
-                py.check_signals()?;
-                tell_progress(tell, task, &mut told)?;
-            }
-        }
+    task: &Arc<Task>,
+    job: Box<dyn FnOnce() + Send>,
+) -> PyResult<JoinHandle<()>> {
+    let (sender, mut end) = sync_channel(0);
+    let thread = move || {
+        // Dropped at the end, by a panic as well: the receiver then knows it.
+        let _sender = sender;
+        job();
+    };
+    let worker = std::thread::Builder::new().name("percute".into()).spawn(thread)?;
+    let waited = wait(py, task, &mut end, tell);
+    if waited.is_err() {
+        task.stop.set(true);
+        leave(py, task, &mut end);
     }
+    waited.map(|()| worker)
+}
+
+/// Waits for the end of the work.
+fn wait(py: Python<'_>, task: &Task, end: &mut Receiver<Infallible>, tell: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+    let mut told = None;
+    while is_at_work(py, end) {
+        py.check_signals()?;
+        tell_progress(tell, task, &mut told)?;
+    }
+    tell_progress(tell, task, &mut told)
 }
 
 /// Waits for a task that has the order to stop: for [`GRACE`], and as long as it writes a file. A second signal ends
 /// the wait; the end of the interpreter then waits for the file.
-fn leave<T: Send>(py: Python<'_>, task: &Task, receiver: &mut Receiver<T>) {
+fn leave(py: Python<'_>, task: &Task, end: &mut Receiver<Infallible>) {
     let start = Instant::now();
     while start.elapsed() < GRACE || task.is_writing() {
-        let receiver = &mut *receiver;
-        let answer = py.detach(move || receiver.recv_timeout(POLL));
-        if !matches!(answer, Err(RecvTimeoutError::Timeout)) || py.check_signals().is_err() {
+        if !is_at_work(py, end) || py.check_signals().is_err() {
             return;
         }
     }
+}
+
+/// Whether the work goes on after [`POLL`].
+fn is_at_work(py: Python<'_>, end: &mut Receiver<Infallible>) -> bool {
+    let answer = py.detach(move || end.recv_timeout(POLL));
+    matches!(answer, Err(RecvTimeoutError::Timeout))
 }
 
 /// Stops all tasks that write a file and waits until the files are closed: the last act before the interpreter ends.

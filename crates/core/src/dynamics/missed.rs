@@ -11,6 +11,8 @@ use std::collections::{BTreeMap, BTreeSet};
 const EVERY: usize = 8;
 /// How deep a node may be in another body, over the height of the element there.
 const DEEP: f64 = 0.1;
+/// A node on a line of symmetry is looked at beside it, in the body, by this part of the height of its element.
+const BESIDE: f64 = 1e-3;
 
 /// A point of the plane; a bar is on the first axis.
 type Point = [f64; 2];
@@ -27,9 +29,18 @@ pub struct MissedContact<'p, const D: usize, const N: usize> {
 
 /// The boundary of a body.
 struct Body {
-    nodes: Vec<NodeId>,
-    /// Facets, each with the height of its element there (m).
-    facets: Vec<(FacetId, f64)>,
+    /// Nodes, each with the way to the place at which it is looked at (m).
+    nodes: BTreeMap<NodeId, Point>,
+    facets: Vec<Side>,
+}
+
+/// A facet of a boundary.
+struct Side {
+    facet: FacetId,
+    /// The height of its element there (m).
+    height: f64,
+    /// Whether it is on a line of symmetry: the other half of the body is behind it.
+    is_cut: bool,
 }
 
 impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
@@ -42,17 +53,21 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
             return made;
         }
         let of_node = mesh.part_numbers();
-        made.bodies = (0..mesh.parts()).map(|_| Body { nodes: Vec::new(), facets: Vec::new() }).collect();
+        made.bodies = (0..mesh.parts()).map(|_| Body { nodes: BTreeMap::new(), facets: Vec::new() }).collect();
         for facet in mesh.boundary() {
             let (nodes, owner) = (mesh.facets()[facet.index()].nodes, mesh.facets()[facet.index()].owner);
-            let height = D as f64 * mesh.cell_geometry(owner).volume / mesh.facet_normal(facet).1;
+            let (normal, area) = mesh.facet_normal(facet);
+            let height = D as f64 * mesh.cell_geometry(owner).volume / area;
+            let is_cut = (0..D).any(|c| problem.supported(facet)[c] && mesh.stands_across(facet, c));
             let body = &mut made.bodies[of_node[nodes[0].index()]];
-            body.facets.push((facet, height));
-            body.nodes.extend(nodes);
+            body.facets.push(Side { facet, height, is_cut });
+            for node in nodes {
+                let way = body.nodes.entry(node).or_default();
+                (0..D).filter(|_| is_cut).for_each(|c| way[c] = -BESIDE * height * normal[c]);
+            }
         }
-        for body in &mut made.bodies {
-            body.nodes.sort_unstable();
-            body.nodes.dedup();
+        for body in made.bodies.iter_mut().filter(|body| body.facets.iter().all(|side| side.is_cut)) {
+            body.facets.iter_mut().for_each(|side| side.is_cut = false);
         }
         let mut bodies = vec![BTreeSet::new(); problem.obstacles().len()];
         for contact in problem.surface().nodes() {
@@ -84,8 +99,8 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
     /// Lower and upper ends of a body along each axis (m).
     fn limits(&self, displacement: &[[f64; D]], body: &Body) -> [[f64; 2]; 2] {
         let mut limits = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-        for &node in &body.nodes {
-            let place = self.place(displacement, node);
+        for node in body.nodes.keys() {
+            let place = self.place(displacement, *node);
             limits.iter_mut().zip(place).for_each(|([low, high], x)| (*low, *high) = (low.min(x), high.max(x)));
         }
         limits
@@ -94,7 +109,7 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
     /// How deep a point is in a body (m), if it is deeper than allowed.
     fn depth(&self, displacement: &[[f64; D]], body: &Body, point: &Point) -> Option<f64> {
         let (mut inside, mut nearest) = (false, (f64::INFINITY, 0.0));
-        for &(facet, height) in &body.facets {
+        for &Side { facet, height, is_cut } in &body.facets {
             let [a, b] = self.ends(displacement, facet);
             // How often a line to the right crosses the boundary.
             if (a[1] > point[1]) != (b[1] > point[1]) {
@@ -102,7 +117,7 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
                 inside ^= x > point[0];
             }
             let distance = distance(point, &a, &b);
-            if distance < nearest.0 {
+            if !is_cut && distance < nearest.0 {
                 nearest = (distance, height);
             }
         }
@@ -123,8 +138,9 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
                 if apart {
                     continue;
                 }
-                for &node in own.nodes.iter().filter(|node| !is_solved(**node, b)) {
+                for (&node, way) in own.nodes.iter().filter(|(node, _)| !is_solved(**node, b)) {
                     let place = self.place(displacement, node);
+                    let place = [place[0] + way[0], place[1] + way[1]];
                     let near = (0..D).all(|c| limits[b][c][0] < place[c] && place[c] < limits[b][c][1]);
                     if near && let Some(depth) = self.depth(displacement, other, &place) {
                         return Some((node, [a, b], depth));

@@ -265,7 +265,7 @@ impl Pairs {
         }
         let law = |facet| (bodies.law)(facet);
         let free = |facet: FacetId| bodies.held[facet.index()].is_none();
-        let outlines = outlines(mesh, names.clone(), start, free, |facet| law(facet).wave_speed());
+        let outlines = outlines(mesh, names.clone(), start, free, |facet| law(facet).wave_speed(), &bodies.mirrors);
         let held = |node: NodeId| {
             let held = &bodies.fixed[node.index()];
             [held[0], held.get(1).copied().unwrap_or(false)]

@@ -1,7 +1,6 @@
 //! Pairs of nodes of two bodies that face each other across an interface.
 
 use super::Cause;
-use super::alignment::unit;
 use super::sides::{Bodies, Side, check_nodes};
 use crate::contact::{ContactFacet, ContactNode, ContactSurface, Frame, Interface, Obstacle, dot};
 use crate::ids::{FacetId, NodeId};
@@ -54,7 +53,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
     /// Both sides of an interface, which face each other in pairs.
     fn facing(&self, surface: &ContactSurface<D>, interface: &Interface) -> Result<Facing<D>, Cause> {
         let sides = self.sides(interface)?;
-        let outward = sides.each_ref().map(|side| unit(&side.outward));
+        let outward = self.outward(&sides);
         // The surface of either body may be the one that the normal stands on.
         let mut normal = outward[0].map(|n| -n);
         let mut partners = self.partners(&sides, &normal);

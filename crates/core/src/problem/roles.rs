@@ -61,7 +61,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let spread = sides.each_ref().map(|side| self.spread(side));
         let alike = (spread[0] - spread[1]).abs() <= FLAT * (spread[0].max(spread[1]) + FLAT);
         let flatter = if alike { 1 - slave } else { usize::from(spread[1] < spread[0]) };
-        let outward = unit(&sides[flatter].of_whole);
+        let outward = self.outward(sides)[flatter];
         if flatter == slave { outward.map(|n| -n) } else { outward }
     }
 

@@ -1,7 +1,8 @@
 //! The two sides of an interface.
 
-use super::alignment::{FACES, outward};
+use super::alignment::{FACES, outward, unit};
 use super::candidates::along_the_boundary;
+use super::symmetry::SymmetryLine;
 use super::{Cause, HeldBy, boundary};
 use crate::contact::{ContactSurface, Interface, dot};
 use crate::ids::{ElementId, FacetId, NodeId};
@@ -26,14 +27,8 @@ pub(super) struct Bodies<'m, const D: usize, const N: usize> {
     pub(super) law: &'m dyn Fn(FacetId) -> &'m Elastic,
 }
 
-/// Places nearer than this part of the size of the mesh are one.
-pub(super) const ONE_PLACE: f64 = 1e-12;
-
-/// A line of symmetry of both sides of an interface: it stands across a direction, at a coordinate (m).
-pub(super) struct SymmetryLine {
-    across: usize,
-    place: f64,
-}
+/// A normal with a smaller component stands across the others.
+const UPRIGHT: f64 = 1e-9;
 
 /// One side of an interface.
 pub(super) struct Side<const D: usize> {
@@ -74,6 +69,20 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let first = hypothesis(&sides[0].facets[0]);
         let all = sides.iter().flat_map(|side| &side.facets).all(|facet| hypothesis(facet) == first);
         if all { Ok(sides) } else { Err(Cause::PlanesDiffer) }
+    }
+
+    /// The mean outward unit normals of two sides. Rounding of places does not lean them across a support.
+    pub(super) fn outward(&self, sides: &[Side<D>; 2]) -> [[f64; D]; 2] {
+        let fixed = |c: usize| sides.iter().flat_map(|side| &side.nodes).any(|node| self.fixed[node.index()][c]);
+        let fixed: [bool; D] = std::array::from_fn(fixed);
+        sides.each_ref().map(|side| {
+            let mut normal = unit(&side.of_whole);
+            if let Some(c) = (0..D).find(|&c| fixed[c] && normal[c] != 0.0 && normal[c].abs() <= UPRIGHT) {
+                normal[c] = 0.0;
+                normal = unit(&normal);
+            }
+            normal
+        })
     }
 
     /// Whether all edges face the other side, with the normal from the second one to the first.
@@ -125,10 +134,8 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
 
     /// Whether a node is on a line of symmetry.
     pub(super) fn is_on(&self, line: &SymmetryLine, node: NodeId) -> bool {
-        let apart = self.mesh.points()[node.index()][line.across] - line.place;
-        // A line that is far from the origin has two places that differ by its rounding.
-        let rounding = ONE_PLACE * self.mesh.size() + 4.0 * f64::EPSILON * line.place.abs();
-        self.mirrors[node.index()][line.across] && apart.abs() <= rounding
+        let point = &self.mesh.points()[node.index()];
+        self.mirrors[node.index()][line.across] && line.beyond(point, self.mesh.size()) == 0.0
     }
 
     /// The body of a facet, by its first node.

@@ -1,6 +1,7 @@
 //! Two surfaces of different bodies that may slide along each other.
 
-use super::sides::{Bodies, ONE_PLACE, Side, check_nodes};
+use super::sides::{Bodies, Side, check_nodes};
+use super::symmetry::ONE_PLACE;
 use super::{Cause, candidates};
 use crate::contact::{
     ContactFacet, ContactNode, ContactSurface, Interface, Obstacle, Side as Line, SlidingSurfaces, dot, tangent,

@@ -1,6 +1,6 @@
 //! Contact and estimate at surfaces that slide along each other.
 
-use percute_core::contact::{ContactResults, Frame, Interface, Obstacle, Resultant};
+use percute_core::contact::{self, ContactResults, Frame, Interface, Obstacle, Resultant};
 use percute_core::problem::Problem;
 use percute_core::ratio;
 use percute_estimator::SurfaceEstimate;
@@ -18,14 +18,14 @@ pub struct SlidingReport {
     pub estimate: SurfaceEstimate,
 }
 
-/// The largest angle by which surfaces that slide and have touched lean together from their normal (degrees).
+/// The largest angle by which surfaces of bodies that have touched lean together from their normal (degrees).
 pub(super) fn common_slope<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
-    contact: &ContactResults<D>,
+    results: &ContactResults<D>,
 ) -> f64 {
-    let touched = |at: usize| contact.summary[at].first_touch.is_some();
-    let slopes = problem.surface().sliding().iter().map(|sliding| sliding.common_slope(touched).to_degrees());
-    slopes.fold(0.0, f64::max)
+    let touched = |at: usize| results.summary[at].first_touch.is_some();
+    let on_line = problem.on_lines_of_symmetry();
+    contact::common_slope(problem.surface(), problem.mesh(), touched, |at| on_line[at]).to_degrees()
 }
 
 /// One side of an interface, and the resultants of its forces at all instants.

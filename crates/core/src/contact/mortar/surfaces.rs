@@ -62,31 +62,9 @@ impl<const D: usize> SlidingSurfaces<D> {
         &self.tangent
     }
 
-    /// The largest angle (rad) by which edges with a node that has `touched`, by its position in the contact surface,
-    /// lean away from the normal together at one place of the undeformed mesh: there the surfaces face each other along
-    /// another direction. 0 where one of them is level, as under a corner.
-    #[must_use]
-    pub fn common_slope(&self, touched: impl Fn(usize) -> bool) -> f64 {
-        let [slave, master] = &self.sides;
-        let slope = |side: &Side, first: usize| {
-            let [xi, eta] = [side.xi(), side.eta()].map(|values| values[first + 1] - values[first]);
-            eta.atan2(xi)
-        };
-        let has_touched =
-            |side: &Side, first: usize| [first, first + 1].iter().any(|&node| touched(side.position(node)));
-        let mut largest = 0.0_f64;
-        for &own in slave.edges().iter().filter(|&&own| has_touched(slave, own)) {
-            let [from, to] = [slave.xi()[own], slave.xi()[own + 1]];
-            let before = master.edges().partition_point(|&other| master.xi()[other + 1] <= from + self.tolerance);
-            let facing = master.edges()[before..].iter().take_while(|&&other| master.xi()[other] < to - self.tolerance);
-            for &other in facing.filter(|&&other| has_touched(master, other)) {
-                let [one, two] = [slope(slave, own), slope(master, other)];
-                if one * two > 0.0 {
-                    largest = largest.max(one.abs().min(two.abs()));
-                }
-            }
-        }
-        largest
+    /// Nodes nearer than this along the interface are at one place (m).
+    pub(in crate::contact) fn tolerance(&self) -> f64 {
+        self.tolerance
     }
 
     /// The law of contact.

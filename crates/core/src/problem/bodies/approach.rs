@@ -3,8 +3,9 @@
 use super::outline::{Outline, Vector};
 use crate::contact::CORNER;
 use crate::problem::alignment::unit;
+use crate::problem::symmetry::SymmetryLine;
 
-/// Bodies that are nearer than this part of the larger one touch, wherever the origin is.
+/// Bodies that are nearer than this part of the larger one touch.
 const TOUCHES: f64 = 1e-12;
 /// Smaller parts of a speed, and of a time, are rounding.
 pub(super) const ROUNDING: f64 = 1e-9;
@@ -20,10 +21,18 @@ pub(super) struct Approach {
 }
 
 /// The way of two convex hulls to each other, `None` if they overlap: two convex polygons touch as soon as the edges of
-/// neither separate them.
+/// neither separate them. Halves of a symmetric model meet along its line of symmetry: of all directions, whole hulls
+/// are furthest apart along it.
 pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
-    let mut normals = outward(&first.hull);
-    normals.extend(outward(&second.hull).into_iter().map(|n| n.map(|x| -x)));
+    let normals = match common_line(first, second) {
+        Some(line) if line.across == 0 => vec![[0.0, 1.0], [0.0, -1.0]],
+        Some(_) => vec![[1.0, 0.0], [-1.0, 0.0]],
+        None => {
+            let mut normals = outward(&first.hull);
+            normals.extend(outward(&second.hull).into_iter().map(|n| n.map(|x| -x)));
+            normals
+        }
+    };
     let gap = |n: &Vector| {
         let reach = first.hull.iter().map(|p| dot(p, n)).fold(f64::NEG_INFINITY, f64::max);
         second.hull.iter().map(|p| dot(p, n)).fold(f64::INFINITY, f64::min) - reach
@@ -31,26 +40,24 @@ pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
     let relative: Vector = std::array::from_fn(|c| second.velocity[c] - first.velocity[c]);
     let gaps: Vec<f64> = normals.iter().map(gap).collect();
     let widest = (0..gaps.len()).reduce(|a, b| if gaps[b] > gaps[a] { b } else { a })?;
-    let tolerance = TOUCHES * first.size.max(second.size);
+    let farthest = first.hull.iter().chain(&second.hull).flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let tolerance = TOUCHES * first.size.max(second.size) + 4.0 * f64::EPSILON * farthest;
     if gaps[widest] < -tolerance {
         return None;
     }
-    // Where a node of a curve meets one, two edges on either side are as far: the normal is midway between theirs.
-    let midway = |at: usize| {
-        let is_alike = |k: &usize| (gaps[*k] - gaps[at]).abs() <= ROUNDING * gaps[at].abs() + tolerance;
-        let turns_little = |k: &usize| dot(&normals[*k], &normals[at]) > CORNER.cos();
-        let alike = (0..gaps.len()).filter(is_alike).filter(turns_little).map(|k| normals[k]);
-        unit(&alike.fold([0.0; 2], |sum: Vector, normal| [sum[0] + normal[0], sum[1] + normal[1]]))
-    };
+    let normal = midway(&normals, widest, |k| gaps[k] >= (1.0 - ROUNDING) * gaps[widest] - tolerance);
     if gaps[widest] <= tolerance {
         // They touch: whatever moves them, there is contact.
-        return Some(Approach { normal: midway(widest), gap: 0.0, meeting: Some((midway(widest), 0.0)) });
+        return Some(Approach { normal, gap: 0.0, meeting: Some((normal, 0.0)) });
     }
     let speed = relative[0].hypot(relative[1]);
     let (mut latest, mut parting) = ((f64::NEG_INFINITY, widest), f64::INFINITY);
-    for (k, (normal, &gap)) in normals.iter().zip(&gaps).enumerate() {
+    let closing = |normal: &Vector| {
         let closing = -dot(&relative, normal);
-        let closing = if closing.abs() > ROUNDING * speed { closing } else { 0.0 };
+        if closing.abs() > ROUNDING * speed { closing } else { 0.0 }
+    };
+    for (k, (normal, &gap)) in normals.iter().zip(&gaps).enumerate() {
+        let closing = closing(normal);
         match gap > 0.0 {
             true => {
                 let time = if closing > 0.0 { gap / closing } else { f64::INFINITY };
@@ -64,9 +71,31 @@ pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
             false => {}
         }
     }
-    let (time, at) = latest;
-    let meeting = (time.is_finite() && time < parting).then_some((midway(at), time));
-    Some(Approach { normal: midway(widest), gap: gaps[widest], meeting })
+    let (last, at) = latest;
+    let meets = last.is_finite() && last < parting;
+    let reached = |k: usize| (gaps[k] - last * closing(&normals[k])).abs() <= ROUNDING * gaps[k] + tolerance;
+    let meeting = meets.then(|| (midway(&normals, at, reached), last));
+    Some(Approach { normal, gap: gaps[widest], meeting })
+}
+
+/// The direction midway between those of the edges that are `alike` one of them: where a node of a curve meets one, two
+/// edges on either side do so.
+fn midway(normals: &[Vector], at: usize, alike: impl Fn(usize) -> bool) -> Vector {
+    let turns_little = |k: &usize| dot(&normals[*k], &normals[at]) > CORNER.cos();
+    let alike = (0..normals.len()).filter(|&k| k == at || alike(k)).filter(turns_little).map(|k| normals[k]);
+    unit(&alike.fold([0.0; 2], |sum: Vector, normal| [sum[0] + normal[0], sum[1] + normal[1]]))
+}
+
+/// The line of symmetry of which both bodies are halves, if there is one alone.
+fn common_line(first: &Outline, second: &Outline) -> Option<SymmetryLine> {
+    let size = first.size.max(second.size);
+    let of_both = |line: &&SymmetryLine| {
+        let points = first.hull.iter().chain(&second.hull);
+        second.lines.iter().any(|other| line.is_at(other, size)) && line.bounds(points, size)
+    };
+    let mut lines = first.lines.iter().filter(of_both);
+    let line = *lines.next()?;
+    lines.all(|other| other.across == line.across).then_some(line)
 }
 
 /// Outward normals of the edges of a convex polygon.
@@ -92,7 +121,8 @@ mod tests {
     fn square(corner: Vector, side: f64, velocity: Vector) -> Outline {
         let [x, y] = corner;
         let hull = vec![[x, y], [x + side, y], [x + side, y + side], [x, y + side]];
-        Outline { name: String::new(), edges: Vec::new(), hull, velocity, size: side * 2.0_f64.sqrt(), passage: 1.0 }
+        let (name, size) = (String::new(), side * 2.0_f64.sqrt());
+        Outline { name, edges: Vec::new(), hull, lines: Vec::new(), velocity, size, passage: 1.0 }
     }
 
     /// Polygons of 18 sides, one above the other, meet with a node of each: their normal is that of neither side.
@@ -111,6 +141,44 @@ mod tests {
                 assert!(normal[0].abs() < 1e-14 && (normal[1] - 1.0).abs() < 1e-14, "{height}: {normal:?}");
             }
         }
+    }
+
+    /// Two slopes beside a line of symmetry meet along it, unless they are on different sides of it or on other lines.
+    #[test]
+    fn halves_meet_along_their_line() {
+        let line = |across: usize, place: f64| SymmetryLine { across, place };
+        let halves = |at: f64, lines: [Vec<SymmetryLine>; 2]| {
+            let [of_first, own] = lines;
+            let hull = vec![[at, 0.0], [at + 1.0, 0.0], [at + 1.0, 0.5], [at, 1.0]];
+            let fixed = Outline { hull, lines: of_first, ..square([0.0, 0.0], 1.0, [0.0, 0.0]) };
+            let hull = vec![[0.0, 1.5], [1.0, 2.0], [0.0, 2.5]];
+            let slope = Outline { hull, lines: own, ..square([0.0, 0.0], 1.0, [0.0, -1.0]) };
+            let found = approach(&fixed, &slope).unwrap();
+            (found.normal, found.meeting)
+        };
+        let along = ([0.0, 1.0], Some(([0.0, 1.0], 0.5)));
+        assert_eq!(halves(0.0, [vec![line(0, 0.0)], vec![line(0, 0.0)]]), along);
+        // Beside rounding.
+        assert_eq!(halves(1e-16, [vec![line(0, 1e-16)], vec![line(0, 0.0)]]), along);
+        let whole = |at: f64| halves(at, [vec![], vec![]]);
+        assert_ne!(whole(0.0).0, along.0);
+        assert_eq!(halves(-1.0, [vec![line(0, 0.0)], vec![line(0, 0.0)]]), whole(-1.0));
+        assert_eq!(halves(0.0, [vec![line(0, 1.0)], vec![line(0, 0.0)]]), whole(0.0));
+        assert_eq!(halves(0.0, [vec![line(0, 0.0), line(1, 0.0)], vec![line(0, 0.0), line(1, 0.0)]]), whole(0.0));
+    }
+
+    /// After an oblique way nodes meet in the same direction, although other gaps are between them at the start.
+    #[test]
+    fn nodes_of_curves_meet_at_any_speed() {
+        let disc = |at: Vector, velocity: Vector| {
+            let corner = |k: usize| (k as f64 * std::f64::consts::TAU / 18.0 + std::f64::consts::FRAC_PI_2).sin_cos();
+            let hull = (0..18).map(corner).map(|(sin, cos)| [cos + at[0], sin + at[1]]).collect();
+            Outline { hull, ..square([0.0, 0.0], 1.0, velocity) }
+        };
+        let (normal, time) =
+            approach(&disc([0.0; 2], [0.0; 2]), &disc([0.5, 2.1], [-5.0, -1.0])).unwrap().meeting.unwrap();
+        // Rounding of a time of 0.1 s.
+        assert!((time - 0.1).abs() < 1e-14 && normal[0].abs() < 1e-13, "{time}, {normal:?}");
     }
 
     #[test]

@@ -81,7 +81,7 @@ pub(super) fn find(
 ) -> Result<Vec<Found>, (usize, Cause)> {
     let ways = Ways::new(outlines);
     let held = |edge: &Edge, normal: &Vector| {
-        edge.nodes.iter().any(|&node| (0..2).any(|c| held(node)[c] && normal[c].abs() > super::candidates::ALIGNED))
+        edge.nodes.iter().any(|&node| (0..2).any(|c| held(node)[c] && normal[c].abs() > ROUNDING))
     };
     let mut all = Vec::new();
     for (at, one) in wanted.iter().enumerate() {

@@ -2,6 +2,8 @@
 
 use crate::ids::{FacetId, NodeId};
 use crate::mesh::Mesh;
+use crate::problem::symmetry::SymmetryLine;
+use std::collections::BTreeSet;
 
 /// A point or a vector of the plane.
 pub(in crate::problem) type Vector = [f64; 2];
@@ -24,6 +26,8 @@ pub(in crate::problem) struct Outline {
     pub(in crate::problem) edges: Vec<Edge>,
     /// Corners of its convex hull, counterclockwise.
     pub(in crate::problem) hull: Vec<Vector>,
+    /// The lines of symmetry that it meets.
+    pub(in crate::problem) lines: Vec<SymmetryLine>,
     /// Velocity of the centre of mass at the start (m/s).
     pub(in crate::problem) velocity: Vector,
     /// The largest distance of two of its points (m).
@@ -47,13 +51,14 @@ pub(in crate::problem) struct Start<'a, const D: usize> {
 }
 
 /// The bodies of a mesh, with these names; `free` says whether an edge may touch, `wave_speed` is that at an edge
-/// (m/s).
+/// (m/s). `mirrors` has the directions across which each node is on a line of symmetry.
 pub(in crate::problem) fn outlines<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
     names: Vec<String>,
     start: &Start<'_, D>,
     free: impl Fn(FacetId) -> bool,
     wave_speed: impl Fn(FacetId) -> f64,
+    mirrors: &[[bool; D]],
 ) -> Vec<Outline> {
     let body_of_node = mesh.part_numbers();
     let mut edges: Vec<Vec<Edge>> = names.iter().map(|_| Vec::new()).collect();
@@ -82,9 +87,25 @@ pub(in crate::problem) fn outlines<const D: usize, const N: usize>(
         let size = hull.iter().map(apart).fold(0.0, f64::max);
         let slowest = edges.iter().map(|edge| wave_speed(edge.facet)).fold(f64::INFINITY, f64::min);
         let velocity = momentum[body].map(|p| p / mass[body]);
-        Outline { name, edges, hull, velocity, size, passage: size / slowest }
+        let lines = lines(&edges, mirrors);
+        Outline { name, edges, hull, lines, velocity, size, passage: size / slowest }
     };
     names.into_iter().zip(edges).enumerate().map(outline).collect()
+}
+
+/// The lines of symmetry across the ends of some edges. Bars have none: nothing is beside them.
+fn lines<const D: usize>(edges: &[Edge], mirrors: &[[bool; D]]) -> Vec<SymmetryLine> {
+    let (mut lines, mut known) = (Vec::new(), BTreeSet::new());
+    for edge in edges.iter().filter(|_| D == 2) {
+        for (&node, end) in edge.nodes.iter().zip(&edge.ends) {
+            for across in (0..D).filter(|&c| mirrors[node.index()][c]) {
+                if known.insert((across, end[across].to_bits())) {
+                    lines.push(SymmetryLine { across, place: end[across] });
+                }
+            }
+        }
+    }
+    lines
 }
 
 fn in_plane<const D: usize>(vector: &[f64; D]) -> Vector {

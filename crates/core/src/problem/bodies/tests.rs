@@ -1,5 +1,6 @@
 //! Surfaces that are found are those that a picture of the bodies shows.
 
+mod halves;
 mod shifted;
 mod turned;
 

@@ -2,12 +2,12 @@
 
 use super::setup::{Blocks, GAP, steps};
 use crate::run::{aluminium, fixed, run};
-use percute_core::contact::{Interface, Obstacle};
+use percute_core::contact::{Interface, Obstacle, common_slope};
 use percute_core::dynamics::{SimulationError, check_start};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, FacetGroups, TriangleMesh};
-use percute_core::problem::{Cause, Initial, InputError, TriangleProblem};
+use percute_core::problem::{Builder, Cause, Initial, InputError, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::translated;
 
@@ -40,16 +40,19 @@ fn facing(height: impl Fn(f64) -> [f64; 2], leans: f64, supports: &[&str]) -> Re
 
 /// The same with the places of the points of each body in the undeformed blocks, the upper one first.
 fn placed(place: impl Fn(usize, [f64; 2]) -> [f64; 2], supports: &[&str]) -> Result<TriangleProblem, InputError> {
+    let builder = joined(place).interface(Interface::sliding::<2>("upper.bottom", "lower.top", 0.2).unwrap());
+    let support = |group: &str| Support { group: group.into(), components: [true, false], velocity: None };
+    supports.iter().fold(builder, |builder, group| builder.support(support(group))).build()
+}
+
+/// Both bodies without contact.
+fn joined(place: impl Fn(usize, [f64; 2]) -> [f64; 2]) -> Builder<2, 3> {
     let body = |side: usize, up: f64| {
         let block = translated(&TriangleMesh::rectangle(0.02, 0.02, 4, 4).unwrap(), [0.0, up]).unwrap();
         block.mapped(|p| place(side, *p)).unwrap()
     };
     let mesh = TriangleMesh::joined(&[("upper", &body(0, 0.02 + GAP)), ("lower", &body(1, 0.0))]).unwrap();
-    let builder = TriangleProblem::builder(mesh)
-        .material(aluminium())
-        .interface(Interface::sliding::<2>("upper.bottom", "lower.top", 0.2).unwrap());
-    let support = |group: &str| Support { group: group.into(), components: [true, false], velocity: None };
-    supports.iter().fold(builder, |builder, group| builder.support(support(group))).build()
+    TriangleProblem::builder(mesh).material(aluminium())
 }
 
 /// Two slopes at a line of symmetry have no normal there that is one of both, unless they are nearly level. A support
@@ -86,13 +89,26 @@ fn slopes_of_a_cell_count_at_their_own_line() {
     assert_eq!(cause(facing(|x| [upper(x), lower(x)], 0.0, &lines)), None);
 }
 
-/// Two chevrons lean together by the smaller angle; a chevron on a level surface does not, nor do two that open.
+/// Two chevrons lean together by the smaller angle, as surfaces that slide and as pairs; a chevron on a level surface
+/// does not, nor do two that open. Edges of which one node touches do not count, and corners do.
 #[test]
 fn chevrons_lean_together() {
-    let degrees = |height: fn(f64) -> [f64; 2]| {
-        let problem = facing(height, 0.0, &[]).unwrap();
-        problem.surface().sliding()[0].common_slope(|_| true).to_degrees()
+    let slope = |problem: &TriangleProblem, ends: bool| {
+        let (surface, mesh) = (problem.surface(), problem.mesh());
+        let apex = |at: usize| (mesh.points()[surface.nodes()[at].node.index()][0] - 0.01).abs() < 1e-9;
+        assert_eq!(common_slope(surface, mesh, apex, |_| true), 0.0);
+        common_slope(surface, mesh, |_| true, |_| !ends).to_degrees()
     };
+    let degrees = |height: fn(f64) -> [f64; 2]| {
+        let angle = slope(&facing(height, 0.0, &[]).unwrap(), false);
+        let pairs = |side: usize, [x, y]: [f64; 2]| [x, y + height(x)[side]];
+        let paired = joined(pairs).interface(Interface::matching::<2>("upper.bottom", "lower.top", 0.2).unwrap());
+        assert!((slope(&paired.build().unwrap(), false) - angle).abs() < 1e-9);
+        angle
+    };
+    // Ends of the level surface are on the slopes.
+    let ends = facing(|x| [0.0, 0.3 * (x - 0.01).abs() - 0.01], 0.0, &[]).unwrap();
+    assert!((slope(&ends, true) - 0.3_f64.atan().to_degrees()).abs() < 1e-10);
     // Rounding of an arctangent.
     assert!((degrees(|x| [0.3 * (x - 0.01).abs(); 2]) - 0.3_f64.atan().to_degrees()).abs() < 1e-10);
     assert_eq!(degrees(|x| [0.3 * (x - 0.01).abs(), 0.0]), 0.0);

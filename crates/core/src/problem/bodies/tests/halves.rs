@@ -1,0 +1,51 @@
+//! Halves of symmetric models.
+
+use super::all;
+use crate::load::Support;
+use crate::material::Elastic;
+use crate::mesh::Mesh;
+use crate::problem::{Builder, Cause, Initial, Problem};
+
+/// A half of two bodies of 20 mm, 4 cells wide, beside the line of symmetry x = 0: a height above the level of each
+/// surface (m), and the way of the lower one from the other (m).
+fn halves(heights: impl Fn(f64) -> [f64; 2], gap: f64, [x, y]: [f64; 2]) -> Builder<2, 3> {
+    let block = |side: usize, up: f64| {
+        let mesh = Mesh::<2, 3>::rectangle(0.02, 0.01, 4, 2).unwrap();
+        mesh.mapped(|p| [x + p[0], y + up + p[1] + heights(p[0])[side]]).unwrap()
+    };
+    let (lower, upper) = (block(0, -0.01), block(1, gap));
+    let velocity = [vec![[0.0; 2]; lower.node_count()], vec![[0.0, -20.0]; upper.node_count()]].concat();
+    // Those that touch have no speed, which would be an impact at the start.
+    let velocity = velocity.into_iter().map(|v| if gap > 0.0 { v } else { [0.0; 2] }).collect();
+    let held = |group: &str| Support { group: group.into(), components: [true, false], velocity: None };
+    Problem::builder(Mesh::joined(&[("lower", &lower), ("upper", &upper)]).unwrap())
+        .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
+        .initial_velocity(Initial::Nodal(velocity))
+        .support(held("lower.left"))
+        .support(held("upper.left"))
+        .automatic_contact()
+        .contact(all(0.2))
+}
+
+/// The normal is along the line of symmetry, and no edge is left out, with slopes of one or both, in contact or not,
+/// beside rounding and far from the origin.
+#[test]
+fn halves_meet_along_the_line_of_symmetry() {
+    // The lower surface falls by the first slope, the upper one rises by the second one.
+    for [fall, rise] in [[0.06, 0.04], [0.04, 0.06], [0.1, 0.03], [0.0, 0.1], [0.0, 0.0], [0.1, 0.1]] {
+        for gap in [0.0, 1e-4] {
+            for place in [[0.0, 0.0], [0.3, 150.0], [-1000.3, 1000.3]] {
+                let far = |x: f64| if x > 0.019 { -5e-14 } else { 0.0 };
+                let builder = halves(|x| [far(x) - fall * x, rise * x], gap, place);
+                let problem =
+                    builder.build().unwrap_or_else(|error| panic!("{fall}, {rise}, {gap}, {place:?}: {error}"));
+                let edges = problem.surface().facets().len();
+                let normal = problem.obstacles()[0].flat_frame().normal()[0];
+                assert_eq!((edges, normal), (8, 0.0), "{fall}, {rise}, {gap}, {place:?}");
+            }
+        }
+    }
+    // A ridge in a valley, as the whole bodies would be.
+    let cause = halves(|x| [0.05 * x, 0.06 * x], 1e-4, [0.0, 0.0]).build().unwrap_err().cause;
+    assert!(matches!(cause, Cause::Interlocked { .. }), "{cause}");
+}
