@@ -1,5 +1,6 @@
 //! What is possible, but more likely a slip: a mixture of units, a body that never touches, a run that is too short.
 
+mod held;
 mod motion;
 mod time;
 mod units;
@@ -40,6 +41,7 @@ pub fn plausibility_warnings<const D: usize, const N: usize>(
     });
     let others =
         motion::plausibility_warnings(problem, times).into_iter().chain(time::plausibility_warnings(problem, times));
+    let others = others.chain(held::plausibility_warnings(problem));
     all.extend(
         others.filter(|plausibility_warning| {
             !mixed || !["supersonic", "single_step"].contains(&plausibility_warning.name)

@@ -3,9 +3,11 @@
 use super::setup::steps;
 use crate::run::{aluminium, largest, run};
 use percute_core::contact::{ContactRecorder, Interface, Status};
+use percute_core::dynamics::{MissedContact, simulate};
 use percute_core::load::{Support, Table};
 use percute_core::mesh::TriangleMesh;
-use percute_core::problem::{Builder, Initial, TriangleProblem};
+use percute_core::observer::Unobserved;
+use percute_core::problem::{Between, Builder, Contact, Initial, TriangleProblem, plausibility_warnings};
 use percute_testkit::{Roof, translated};
 
 /// Drives far sides of the roof inwards, from the speed of all (m/s) up to another one within 5 µs.
@@ -117,4 +119,56 @@ fn lines_of_symmetry_are_found_beside_rounding() {
         let on_line = problem.on_lines_of_symmetry().iter().filter(|on_line| **on_line).count();
         assert_eq!(on_line, 2, "{quarters} right angles");
     }
+}
+
+/// A block of 5 by 2 cells, 20 mm wide, with its lowest side at a height; its lower side rises to the right.
+fn block(height: f64, rise: f64) -> TriangleMesh {
+    let mesh = TriangleMesh::rectangle(0.02, 0.01, 5, 2).unwrap();
+    mesh.mapped(|p| [p[0], p[1] + height + rise * p[0]]).unwrap()
+}
+
+/// Two bodies of which the second one comes down at 20 m/s, with supports.
+fn falling(lower: &TriangleMesh, upper: &TriangleMesh, supports: &[(&str, [bool; 2])]) -> Builder<2, 3> {
+    let mesh = TriangleMesh::joined(&[("lower", lower), ("upper", upper)]).unwrap();
+    let velocity = [vec![[0.0; 2]; lower.node_count()], vec![[0.0, -20.0]; upper.node_count()]].concat();
+    let builder = TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity));
+    supports.iter().fold(builder, |builder, (group, components)| {
+        builder.support(Support { group: group.to_string(), components: *components, velocity: None })
+    })
+}
+
+/// A tip on the line of symmetry, either side of it, enters a body without contact with it: the run ends when it is
+/// deeper than a tenth of an element.
+#[test]
+fn a_tip_on_the_line_of_symmetry_is_missed() {
+    for mirrored in [false, true] {
+        let [lower, upper] = [block(-0.01, 0.0), block(1e-5, 0.8)]
+            .map(|mesh| if mirrored { percute_testkit::mirrored(&mesh).unwrap() } else { mesh });
+        // Groups keep their names in the image.
+        let held = ["lower.left", "upper.left"].map(|group| (group, [true, false]));
+        let problem = falling(&lower, &upper, &held).build().unwrap();
+        let times = steps(&problem, 60e-6);
+        let mut missed = MissedContact::new(&problem, times.step_count());
+        let run = simulate(&problem, &times, &mut missed, &mut Unobserved);
+        let error = run.err().map(|error| error.to_string()).unwrap_or_default();
+        // The other nodes of the upper body are 3 mm higher, and the bodies move by 1.2 mm.
+        assert!(error.contains(" m inside "), "{mirrored}: {error}");
+    }
+}
+
+/// An edge next to a support across the contact has none, and percute warns where the other body faces it.
+#[test]
+fn an_edge_beside_a_support_is_left_out() {
+    let warns = |wide: f64, components: [bool; 2]| {
+        let lower = TriangleMesh::rectangle(0.045, 0.01, 9, 2).unwrap();
+        let upper = block(0.01001, 0.0).mapped(|p| [p[0] + wide, p[1]]).unwrap();
+        let contact = Contact::new::<2>(Between::All, 0.2, None).unwrap();
+        let builder = falling(&lower, &upper, &[("lower.left", components)]);
+        let problem = builder.automatic_contact().contact(contact).build().unwrap();
+        let warnings = plausibility_warnings(&problem, &steps(&problem, 20e-6));
+        warnings.iter().any(|warning| warning.name == "edge_left_out")
+    };
+    assert!(warns(0.0, [true, true]) && warns(0.002, [false, true]));
+    // Beside the edge, which is 5 mm long, and with a support along the surface alone.
+    assert!(!warns(0.005, [true, true]) && !warns(0.0, [true, false]));
 }

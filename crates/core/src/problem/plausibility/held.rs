@@ -1,0 +1,64 @@
+//! An edge beside a contact that a support keeps out of it.
+
+use super::{PlausibilityWarning, at, plausibility_warning};
+use crate::contact::{dot, tangent};
+use crate::ids::{FacetId, NodeId};
+use crate::problem::Problem;
+use crate::problem::alignment::FACES;
+use std::collections::BTreeSet;
+
+/// Smaller components of a normal, and parts of an edge, are rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// An edge next to a surface that faces the other surface without belonging to its own, because a support holds one of
+/// its nodes across: the other body may enter there without a force.
+pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+) -> Option<PlausibilityWarning> {
+    let (mesh, surface) = (problem.mesh(), problem.surface());
+    let held: BTreeSet<(NodeId, usize)> = problem.prescribed().iter().map(|p| (p.node, p.component)).collect();
+    let in_contact: BTreeSet<FacetId> = surface.facets().iter().map(|facet| facet.facet).collect();
+    for index in 0..problem.obstacles().len() {
+        let Some(opposite) = problem.opposite_obstacle(index) else { continue };
+        let normal = *problem.obstacles()[index].flat_frame().normal();
+        let along = tangent(&normal);
+        let range = |facet: FacetId| {
+            let nodes = mesh.facets()[facet.index()].nodes.iter();
+            nodes
+                .map(|node| dot(&mesh.points()[node.index()], &along))
+                .fold(NOTHING, |[low, high], xi| [low.min(xi), high.max(xi)])
+        };
+        let of = |obstacle: usize| surface.facets().iter().filter(move |facet| facet.obstacle == obstacle);
+        let other = of(opposite)
+            .map(|facet| range(facet.facet))
+            .fold(NOTHING, |[low, high], [from, to]| [low.min(from), high.max(to)]);
+        let own: BTreeSet<NodeId> = of(index).flat_map(|facet| mesh.facets()[facet.facet.index()].nodes).collect();
+        for facet in mesh.boundary().filter(|facet| !in_contact.contains(facet)) {
+            let nodes = mesh.facets()[facet.index()].nodes;
+            let is_across = |node: &NodeId| (0..D).any(|c| normal[c].abs() > ROUNDING && held.contains(&(*node, c)));
+            let beside = nodes.iter().any(|node| own.contains(node)) && problem.supported(facet) == [false; D];
+            let faces = -dot(&mesh.facet_normal(facet).0, &normal) >= FACES;
+            let [low, high] = range(facet);
+            let common = high.min(other[1]) - low.max(other[0]) > ROUNDING * (high - low);
+            if let Some(node) = nodes.iter().find(|node| is_across(node)).filter(|_| beside && faces && common) {
+                let edge = nodes.map(|node| node.index().to_string()).join(", ");
+                let surface = problem.obstacles()[opposite].group().unwrap_or_default();
+                let message = format!(
+                    "the edge of nodes {edge} is left out of the contact with \"{surface}\", because a support holds \
+                     node {} across it: the other body may enter there; support the body away from the contact",
+                    node.index()
+                );
+                return Some(plausibility_warning(
+                    at("contact", None, ""),
+                    "edge_left_out",
+                    "an edge beside a support that is left out of the contact",
+                    message,
+                ));
+            }
+        }
+    }
+    None
+}
+
+/// An interval without a point.
+const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
