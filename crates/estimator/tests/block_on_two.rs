@@ -1,12 +1,6 @@
 //! A block on two blocks: the estimate against a finer run.
 
-// Clippy allows this in test functions only; what they share is a test as well.
-#![allow(clippy::unwrap_used)]
-
-#[path = "common/finer.rs"]
-mod finer;
-
-use finer::indices;
+use crate::common::finer::indices;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Between, Contact, Initial, TriangleProblem};

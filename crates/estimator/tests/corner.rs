@@ -1,15 +1,7 @@
 //! A body in the corner of two planes: the estimate against a finer run.
 
-// Clippy allows this in test functions only; what they share is a test as well.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-#[path = "common/corner.rs"]
-mod corner;
-#[path = "common/finer.rs"]
-mod finer;
-
-use corner::{Corner, open_corner};
-use finer::indices;
+use crate::common::corner::{Corner, open_corner};
+use crate::common::finer::indices;
 use percute_core::problem::TriangleProblem;
 
 /// A body on a mesh of so many cells, thrown into a corner.

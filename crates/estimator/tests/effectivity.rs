@@ -1,11 +1,6 @@
 //! Effectivity in 2D: the estimated error over the true one, against a finer run.
 
-// Clippy allows this in test functions only; what they share is a test as well.
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{MESHES, assert_close, block};
+use crate::common::{MESHES, assert_close, block};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;

@@ -1,12 +1,6 @@
 //! Two blocks whose meshes do not match: the estimate against a finer run.
 
-// Clippy allows this in test functions only; what they share is a test as well.
-#![allow(clippy::unwrap_used)]
-
-#[path = "common/finer.rs"]
-mod finer;
-
-use finer::indices;
+use crate::common::finer::indices;
 use percute_core::contact::Interface;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;

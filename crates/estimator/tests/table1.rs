@@ -1,13 +1,7 @@
 //! The absolute errors of the paper's table 1, under the assumptions that it leaves open.
 
-// Clippy allows this in test functions only; what they share is a test as well.
-#![allow(clippy::unwrap_used)]
-
-#[path = "common/beside.rs"]
-mod beside;
-mod common;
-
-use common::{MESHES, assert_close, block};
+use crate::common::beside;
+use crate::common::{MESHES, assert_close, block};
 use percute_core::dynamics::critical_time_step;
 use percute_core::observer::Unobserved;
 use percute_core::time::TimeGrid;

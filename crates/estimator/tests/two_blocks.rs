@@ -1,12 +1,6 @@
 //! Two blocks that strike each other: the estimate against a finer run, and against an independent program.
 
-// Clippy allows this in test functions only; what they share is a test as well.
-#![allow(clippy::unwrap_used)]
-
-#[path = "common/finer.rs"]
-mod finer;
-
-use finer::indices;
+use crate::common::finer::indices;
 use percute_core::contact::Interface;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;

@@ -1,8 +1,5 @@
 //! Runs of a shuffled mesh: the solver has an order of its own, and results and messages have the numbers of the mesh.
 
-// What helpers unwrap makes a test fail too; the general allowance covers test functions only.
-#![allow(clippy::unwrap_used)]
-
 use percute_core::contact::{ContactResults, Obstacle};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{History, SinkError, Step, StepSource};

@@ -1,8 +1,5 @@
 //! The schema of case files has the keys and the names that the readers accept, no more and no fewer.
 
-// A test that cannot go on fails.
-#![allow(clippy::unwrap_used)]
-
 use percute_estimator::{Acceleration, Reconstruction};
 use percute_workflow::case::{FIELDS, SCHEMA, Source, parse};
 use serde_json::Value;

@@ -1,9 +1,6 @@
 //! The seeds of the fuzz targets, and the inputs that fuzzing found, through the readers that it calls: no panic, and a
 //! success or a refusal in words, as the names of the files say.
 
-// A test that cannot go on fails.
-#![allow(clippy::unwrap_used)]
-
 #[path = "../../../fuzz/src/entry.rs"]
 #[allow(unreachable_pub)]
 mod entry;

@@ -1,8 +1,5 @@
 //! Problems written down and read again: the same problems, bit by bit.
 
-// A test that cannot go on fails.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 use percute_core::contact::Obstacle;
 use percute_core::each_dimension;
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};

@@ -1,6 +1,6 @@
 //! Energy and momentum: identities of the scheme that hold to rounding.
 
-use crate::run::{Run, aluminium, fixed, gravity, run};
+use crate::solution::run::{Run, aluminium, fixed, gravity, run};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{Balance, critical_time_step};
 use percute_core::load::{Profile, Table, Traction};

@@ -1,6 +1,6 @@
 //! The impact of a uniform bar, for which the exact solution is known (§7.1).
 
-use crate::run::{Run, mean_rate, run};
+use crate::solution::run::{Run, mean_rate, run};
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::mesh::BarMesh;

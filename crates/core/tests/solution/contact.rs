@@ -1,6 +1,6 @@
 //! The contact law at every step (eq. \[2\]): no penetration, Coulomb's cone, complementarity.
 
-use crate::run::{Run, aluminium, gravity, run, swinging_steps};
+use crate::solution::run::{Run, aluminium, gravity, run, swinging_steps};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::History;

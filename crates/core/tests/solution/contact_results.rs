@@ -1,6 +1,6 @@
 //! Contact results against exact solutions, the contact law and the balances.
 
-use crate::run::{Run, aluminium, fixed, run, swinging_steps};
+use crate::solution::run::{Run, aluminium, fixed, run, swinging_steps};
 use percute_core::contact::Obstacle;
 use percute_core::contact::{ContactRecorder, ContactResults, ContactSteps, Status};
 use percute_core::dynamics::critical_time_step;

@@ -1,6 +1,6 @@
 //! Contact of nodes at two planes.
 
-use crate::run::{Run, aluminium, difference, largest, run};
+use crate::solution::run::{Run, aluminium, difference, largest, run};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{Stiffness, critical_time_step};
 use percute_core::mesh::TriangleMesh;

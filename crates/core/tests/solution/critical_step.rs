@@ -1,6 +1,6 @@
 //! The critical time step against eigenvalues known in closed form or by a dense solver.
 
-use crate::run::{aluminium, fixed};
+use crate::solution::run::{aluminium, fixed};
 use nalgebra::DMatrix;
 use percute_core::dynamics::{Stiffness, critical_time_step, element_time_step};
 use percute_core::load::Support;

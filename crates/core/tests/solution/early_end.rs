@@ -1,6 +1,6 @@
 //! Runs that end early: unstable, too near to the plane at the start, interrupted, refused by the sink.
 
-use crate::run::{aluminium, run};
+use crate::solution::run::{aluminium, run};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
 use percute_core::history::{Discard, History, SinkError, State, StateSink};

@@ -1,6 +1,6 @@
 //! Standing waves.
 
-use crate::run::{mean_rate, on_rollers, run};
+use crate::solution::run::{mean_rate, on_rollers, run};
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::Support;
 use percute_core::material::Elastic;

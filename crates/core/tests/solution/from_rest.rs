@@ -4,7 +4,7 @@
 //! T_n + V_n = T_0 + V_0 + W_n + (Δt²/8)(a_n·M a_n − a_0·M a_0): the last term is there before any
 //! work is, and rounding is there without any.
 
-use crate::run::{aluminium, fixed, gravity, largest, run};
+use crate::solution::run::{aluminium, fixed, gravity, largest, run};
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
 use percute_core::problem::{Builder, Initial, TriangleProblem};
@@ -56,7 +56,7 @@ fn a_body_turned_at_rest_stays_at_rest() {
     let problem = builder.initial_displacement(Initial::Nodal(turned.clone())).build().unwrap();
     let run = run(&problem, &TimeGrid::uniform(500.0 * 0.9 * critical_time_step(&problem), 500).unwrap());
     // Rounding of displacements of 5e-5 m that vibrations carry on.
-    assert!(crate::run::difference(run.displacement(500), &turned) < 1e-10 * 5e-5);
+    assert!(crate::solution::run::difference(run.displacement(500), &turned) < 1e-10 * 5e-5);
 }
 
 /// What does have energy from the first step on goes through.

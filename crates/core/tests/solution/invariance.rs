@@ -1,6 +1,6 @@
 //! What must not depend on axes, mirrors or numbers, on meshes drawn at random.
 
-use crate::run::{Run, aluminium, fixed, run};
+use crate::solution::run::{Run, aluminium, fixed, run};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{Profile, Table, Traction};

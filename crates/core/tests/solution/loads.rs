@@ -1,6 +1,6 @@
 //! Tractions and body forces.
 
-use crate::run::{aluminium, difference, fixed, gravity, largest, run};
+use crate::solution::run::{aluminium, difference, fixed, gravity, largest, run};
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Profile, Table, Traction};
 use percute_core::material::Elastic;

@@ -1,6 +1,6 @@
 //! Renumbered problems, and the local order.
 
-use crate::run::{aluminium, difference, fixed, run};
+use crate::solution::run::{aluminium, difference, fixed, run};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::ids::{ElementId, NodeId};

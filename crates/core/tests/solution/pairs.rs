@@ -1,6 +1,6 @@
 //! Contact of two bodies whose nodes face each other in pairs.
 
-use crate::run::{Run, aluminium, difference, largest, run};
+use crate::solution::run::{Run, aluminium, difference, largest, run};
 use percute_core::contact::{Interface, Obstacle};
 use percute_core::dynamics::critical_time_step;
 use percute_core::material::Elastic;

@@ -1,6 +1,6 @@
 //! A run that goes on from a checkpoint gives the bits of one that was not interrupted.
 
-use crate::run::aluminium;
+use crate::solution::run::aluminium;
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{Simulation, replay, resume, simulate};
 use percute_core::history::{Checkpoint, History, SinkError, State, StateSink};
@@ -99,7 +99,9 @@ fn a_replayed_step_is_no_checkpoint() {
 /// Two blocks that slide along each other: D and M follow from the fields alone.
 #[test]
 fn blocks_that_slide_go_on_from_every_step() {
-    let problem = crate::mortar::setup::Blocks { aside: 0.003, ..crate::mortar::setup::Blocks::oblique() }.problem();
+    let problem =
+        crate::solution::mortar::setup::Blocks { aside: 0.003, ..crate::solution::mortar::setup::Blocks::oblique() }
+            .problem();
     let step = 0.9 * percute_core::dynamics::critical_time_step(&problem);
     goes_on_from_every_step(&problem, &TimeGrid::uniform(STEPS as f64 * step, STEPS).unwrap());
 }

@@ -1,6 +1,6 @@
 //! Prescribed motion \[4\].
 
-use crate::run::{aluminium, fixed, nodes_of, run};
+use crate::solution::run::{aluminium, fixed, nodes_of, run};
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{Support, Table};
 use percute_core::problem::{Initial, TriangleProblem};

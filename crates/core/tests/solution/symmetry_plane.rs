@@ -1,7 +1,7 @@
 //! Half a body on its plane of symmetry moves as the whole: a node that a support guides along the
 //! obstacle touches it like any other.
 
-use crate::run::{aluminium, run};
+use crate::solution::run::{aluminium, run};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::Support;

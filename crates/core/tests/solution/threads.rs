@@ -1,6 +1,6 @@
 //! Threads and strips change no bit.
 
-use crate::run::aluminium;
+use crate::solution::run::aluminium;
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{Balancing, Simulation, replay, simulate, simulate_threaded};
 use percute_core::history::History;

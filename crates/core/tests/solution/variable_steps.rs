@@ -1,6 +1,6 @@
 //! Steps of different lengths.
 
-use crate::run::{aluminium, difference, largest, mean_rate, on_rollers, run, swinging_steps};
+use crate::solution::run::{aluminium, difference, largest, mean_rate, on_rollers, run, swinging_steps};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
 use percute_core::history::Discard;

@@ -1,6 +1,8 @@
 //! Problems that several tests share.
 
-#![allow(dead_code)]
+pub(crate) mod beside;
+pub(crate) mod corner;
+pub(crate) mod finer;
 
 use percute_core::contact::Obstacle;
 use percute_core::load::Support;

@@ -1,7 +1,7 @@
 //! Admissible fields for problems drawn at random.
 
-use crate::bodies::{aluminium, fixed, gravity, plane_below, steps, swinging};
-use crate::estimating::check;
+use crate::properties::bodies::{aluminium, fixed, gravity, plane_below, steps, swinging};
+use crate::properties::estimating::check;
 use percute_core::load::{Profile, Table, Traction};
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Initial, Problem, TriangleProblem};

@@ -1,7 +1,7 @@
 //! Sampling as sparse as keeps the mean, on meshes so fine that not all steps are samples.
 
-use crate::bodies::{plane_below, steps, thrown};
-use crate::estimating::{estimate, estimate_with_maps, history};
+use crate::properties::bodies::{plane_below, steps, thrown};
+use crate::properties::estimating::{estimate, estimate_with_maps, history};
 use percute_core::history::History;
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::TriangleProblem;

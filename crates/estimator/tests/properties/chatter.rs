@@ -1,6 +1,6 @@
 //! Admissible fields when contact comes and goes.
-use crate::bodies::{aluminium, bouncing_bar, gravity, plane_below, steps, thrown};
-use crate::estimating::check;
+use crate::properties::bodies::{aluminium, bouncing_bar, gravity, plane_below, steps, thrown};
+use crate::properties::estimating::check;
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::problem::{Initial, Problem};

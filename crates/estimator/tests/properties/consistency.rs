@@ -1,7 +1,7 @@
 //! Numbers of one estimate that must agree with each other.
 
-use crate::bodies::{aluminium, gravity, plane_below, steps, swinging, thrown};
-use crate::estimating::{all_choices, estimate, history};
+use crate::properties::bodies::{aluminium, gravity, plane_below, steps, swinging, thrown};
+use crate::properties::estimating::{all_choices, estimate, history};
 use percute_core::dynamics::critical_time_step;
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Initial, Problem, TriangleProblem};

@@ -1,8 +1,8 @@
 //! Nodes at two planes.
 
-use crate::bodies::{steps, swinging};
-use crate::corner::{Corner, open_corner};
-use crate::estimating::{all_choices, check, estimate, estimate_with_maps, history};
+use crate::common::corner::{Corner, open_corner};
+use crate::properties::bodies::{steps, swinging};
+use crate::properties::estimating::{all_choices, check, estimate, estimate_with_maps, history};
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::problem::{Initial, TriangleProblem};

@@ -1,8 +1,8 @@
 //! The same bits for all numbers of threads and window sizes, beside the run and from a history.
 
-use crate::beside::run;
-use crate::bodies::{bouncing_bar, gravity, plane_below, steps, thrown};
-use crate::estimating::{estimate, estimate_with_maps, history, reactions};
+use crate::common::beside::run;
+use crate::properties::bodies::{bouncing_bar, gravity, plane_below, steps, thrown};
+use crate::properties::estimating::{estimate, estimate_with_maps, history, reactions};
 use percute_core::history::Discard;
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::observer::Unobserved;

@@ -1,8 +1,8 @@
 //! Edge cases: defined, and admissible like all others.
 
-use crate::beside::run;
-use crate::bodies::{gravity, plane_below, steps, swinging, thrown};
-use crate::estimating::{all_choices, assert_admissible, check, estimate, history};
+use crate::common::beside::run;
+use crate::properties::bodies::{gravity, plane_below, steps, swinging, thrown};
+use crate::properties::estimating::{all_choices, assert_admissible, check, estimate, history};
 use percute_core::contact::Obstacle;
 use percute_core::history::History;
 use percute_core::load::{Support, Table};

@@ -1,7 +1,7 @@
 //! Histories that bring velocities and accelerations of their own.
 
-use crate::bodies::{fixed, gravity, plane_below, steps, swinging, thrown};
-use crate::estimating::{Evaluated, all_choices, assert_admissible, cause, estimate, history};
+use crate::properties::bodies::{fixed, gravity, plane_below, steps, swinging, thrown};
+use crate::properties::estimating::{Evaluated, all_choices, assert_admissible, cause, estimate, history};
 use percute_core::dynamics::Evaluation;
 use percute_core::history::{History, Step, StepError};
 use percute_core::load::{Support, Table};

@@ -1,7 +1,7 @@
 //! Half of a symmetric model.
 
-use crate::bodies::steps;
-use crate::estimating::{assert_admissible, estimate, history};
+use crate::properties::bodies::steps;
+use crate::properties::estimating::{assert_admissible, estimate, history};
 use percute_core::problem::TriangleProblem;
 use percute_estimator::{Options, Sampling};
 use percute_testkit::Roof;

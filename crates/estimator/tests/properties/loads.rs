@@ -1,7 +1,7 @@
 //! Admissible fields under supports and loads.
 
-use crate::bodies::{aluminium, fixed, gravity, in_two_groups, plane_below, steps, swinging, thrown};
-use crate::estimating::{check, history};
+use crate::properties::bodies::{aluminium, fixed, gravity, in_two_groups, plane_below, steps, swinging, thrown};
+use crate::properties::estimating::{check, history};
 use percute_core::contact::Obstacle;
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
 use percute_core::material::Elastic;

@@ -1,7 +1,7 @@
 //! Steps that do not fit: an error that says what is wrong, never a panic.
 
-use crate::bodies::{plane_below, steps, thrown};
-use crate::estimating::{Evaluated, cause, history};
+use crate::properties::bodies::{plane_below, steps, thrown};
+use crate::properties::estimating::{Evaluated, cause, history};
 use percute_core::history::{Step, StepError};
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;

@@ -1,7 +1,7 @@
 //! Maps of element contributions and fields, at the instants requested.
 
-use crate::bodies::{aluminium, bouncing_bar, gravity, plane_below, steps, swinging, thrown};
-use crate::estimating::{all_choices, estimate_with_maps, history};
+use crate::properties::bodies::{aluminium, bouncing_bar, gravity, plane_below, steps, swinging, thrown};
+use crate::properties::estimating::{all_choices, estimate_with_maps, history};
 use percute_core::history::History;
 use percute_core::load::{Profile, Table, Traction};
 use percute_core::material::Law;

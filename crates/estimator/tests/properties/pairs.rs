@@ -1,7 +1,7 @@
 //! Bodies that touch each other in pairs of nodes.
 
-use crate::bodies::{aluminium, steps, swinging};
-use crate::estimating::{all_choices, assert_admissible, check, estimate, estimate_with_maps, history};
+use crate::properties::bodies::{aluminium, steps, swinging};
+use crate::properties::estimating::{all_choices, assert_admissible, check, estimate, estimate_with_maps, history};
 use percute_core::contact::{Interface, Obstacle};
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};

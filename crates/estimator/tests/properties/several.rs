@@ -1,7 +1,7 @@
 //! A block on two blocks: a surface that slides along those of two bodies.
 
-use crate::bodies::{aluminium, steps};
-use crate::estimating::{assert_admissible, estimate, history};
+use crate::properties::bodies::{aluminium, steps};
+use crate::properties::estimating::{assert_admissible, estimate, history};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Between, Contact, Initial, TriangleProblem};

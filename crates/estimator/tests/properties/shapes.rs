@@ -1,7 +1,7 @@
 //! Admissible fields whatever the mesh, the plane's angle and the body's shape.
 
-use crate::bodies::{aluminium, plane_below, steps, swinging, thrown};
-use crate::estimating::{assert_admissible, check, estimate, history, reactions};
+use crate::properties::bodies::{aluminium, plane_below, steps, swinging, thrown};
+use crate::properties::estimating::{assert_admissible, check, estimate, history, reactions};
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;

@@ -1,7 +1,7 @@
 //! Surfaces of two bodies that slide along each other.
 
-use crate::bodies::{aluminium, steps};
-use crate::estimating::{assert_admissible, estimate, estimate_with_maps, history};
+use crate::properties::bodies::{aluminium, steps};
+use crate::properties::estimating::{assert_admissible, estimate, estimate_with_maps, history};
 use percute_core::contact::{Interface, Side};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;

@@ -1,7 +1,7 @@
 //! The sources of the error add up, and are what they are said to be.
 
-use crate::bodies::{aluminium, bouncing_bar, plane_below, steps, thrown};
-use crate::estimating::{estimate, history};
+use crate::properties::bodies::{aluminium, bouncing_bar, plane_below, steps, thrown};
+use crate::properties::estimating::{estimate, history};
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_estimator::{Ablation, Estimate, Options, Reconstruction, Sampling, Separation};

@@ -4,8 +4,8 @@
 //! for the image. The gap is 2.4 steps of the flight: no node lands on the plane at an instant, where
 //! rounding would decide whether it touches.
 
-use crate::bodies::{aluminium, steps};
-use crate::estimating::{all_choices, estimate, history, reactions};
+use crate::properties::bodies::{aluminium, steps};
+use crate::properties::estimating::{all_choices, estimate, history, reactions};
 use percute_core::contact::Obstacle;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::load::{Profile, Support, Table, Traction};

@@ -18,7 +18,8 @@ fn assert_no_error<const D: usize, const N: usize>(problem: &Problem<D, N>, ener
     for &reconstruction in Reconstruction::ALL {
         for &acceleration in Acceleration::of(reconstruction) {
             let options = Options { acceleration: Some(acceleration), reconstruction, ..Options::default() };
-            let (_, estimate) = crate::beside::run(problem, &times, options, &Request::default(), &mut Unobserved);
+            let (_, estimate) =
+                crate::common::beside::run(problem, &times, options, &Request::default(), &mut Unobserved);
             let error = estimate.error.sup / energy.sqrt();
             assert!(error < 1e-12, "{acceleration}, {reconstruction}: {error}");
         }

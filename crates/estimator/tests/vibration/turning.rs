@@ -1,6 +1,6 @@
 //! Free bodies whose elements turn: the estimate over the true error with `mixed`, and with `closest`.
 
-use crate::block::true_error;
+use crate::vibration::block::true_error;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;

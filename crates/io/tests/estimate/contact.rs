@@ -1,6 +1,6 @@
 //! Contact results in estimate files.
 
-use crate::{block, estimated, stored, with_contact, written};
+use crate::estimate::{block, estimated, stored, with_contact, written};
 use percute_core::contact::Obstacle;
 use percute_core::contact::{ContactRecorder, ContactResults, Status};
 use percute_core::dynamics::{critical_time_step, simulate};
@@ -44,7 +44,7 @@ fn contact_results_are_the_same_wherever_they_come_from() {
     let (problem, times) = (block(), times(&block()));
     let mut beside = ContactRecorder::new(&problem, &times).keeping_steps().unwrap();
     let path = folder.path().join("block.vtkhdf");
-    let plan = history::Plan::new(&problem, &times, crate::STATEMENT, None);
+    let plan = history::Plan::new(&problem, &times, crate::estimate::STATEMENT, None);
     let mut sinks = (plan.create(&path, Overwrite::Refuse).unwrap(), (History::new(&times), &mut beside));
     simulate(&problem, &times, &mut sinks, &mut Unobserved).unwrap();
     let (writer, (memory, _)) = sinks;

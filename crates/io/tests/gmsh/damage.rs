@@ -1,6 +1,6 @@
 //! Files that were cut or changed: an error or a mesh, never a panic or memory without end.
 
-use crate::common::*;
+use crate::gmsh::common::*;
 use percute_testkit::Random;
 use std::process::Command;
 
@@ -52,7 +52,7 @@ fn child() {
 #[test]
 fn cut_and_changed_files_are_survived() {
     let output = Command::new("sh")
-        .args(["-c", "ulimit -v 500000; exec \"$0\" --exact damage::child"])
+        .args(["-c", "ulimit -v 500000; exec \"$0\" --exact gmsh::damage::child"])
         .arg(std::env::current_exe().unwrap())
         .env(CHILD, "1")
         .env("RUST_TEST_THREADS", "1")

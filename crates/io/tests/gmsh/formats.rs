@@ -1,6 +1,6 @@
 //! Files that Gmsh itself wrote (`files/make.py`): the same mesh from all four formats.
 
-use crate::common::*;
+use crate::gmsh::common::*;
 use percute_io::gmsh::read;
 
 fn names(groups: &[String]) -> Vec<&str> {

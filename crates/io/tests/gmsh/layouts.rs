@@ -1,6 +1,6 @@
 //! What a file may look like: the same mesh whatever its order, its bytes and what else it holds.
 
-use crate::common::*;
+use crate::gmsh::common::*;
 
 /// Numbers in either order of bytes, with tags of 4 or 8 bytes.
 struct Binary {

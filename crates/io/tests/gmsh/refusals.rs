@@ -1,6 +1,6 @@
 //! Files that are refused: each with its place, in the tags of Gmsh, and with what to do there.
 
-use crate::common::*;
+use crate::gmsh::common::*;
 use percute_io::gmsh::{Place, parse, read};
 
 /// What is said of a file, and where.

@@ -1,6 +1,6 @@
 //! What is written is read again, bit by bit.
 
-use crate::common::*;
+use crate::gmsh::common::*;
 use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh};
 use percute_io::gmsh::{Format, GmshCause, MeshFile, Version, read, write};
 use percute_io::{FileCause, Overwrite};

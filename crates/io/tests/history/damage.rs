@@ -1,7 +1,7 @@
 //! Files that were cut or changed: an error or numbers, never a panic, a crash or memory without end.
 
-use crate::common::*;
-use crate::foreign::{Style, rewrite};
+use crate::history::common::*;
+use crate::history::foreign::{Style, rewrite};
 use percute_core::history::History;
 use percute_io::{FileCause, kind};
 use percute_testkit::Random;
@@ -133,7 +133,7 @@ fn a_changed_number_is_refused() {
 fn cut_and_changed_files_are_survived() {
     let folder = folder();
     let output = Command::new("sh")
-        .args(["-c", "ulimit -v 2000000; exec \"$0\" --exact damage::child"])
+        .args(["-c", "ulimit -v 2000000; exec \"$0\" --exact history::damage::child"])
         .arg(std::env::current_exe().unwrap())
         .env(FOLDER, folder.path())
         .env("RUST_TEST_THREADS", "1")

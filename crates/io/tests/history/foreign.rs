@@ -1,6 +1,6 @@
 //! Files as other programs write them: any layout, width and byte order.
 
-use crate::common::*;
+use crate::history::common::*;
 use hdf5::dataset::AllocTime;
 use hdf5::file::LibraryVersion;
 use hdf5::types::{FloatSize, IntSize, TypeDescriptor, VarLenUnicode};

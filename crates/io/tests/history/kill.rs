@@ -1,6 +1,6 @@
 //! Runs that are killed at any moment leave files that open, with all whole steps.
 
-use crate::common::*;
+use crate::history::common::*;
 use percute_core::dynamics::simulate;
 use percute_core::history::Discard;
 use percute_core::observer::Unobserved;
@@ -55,7 +55,7 @@ enum When {
 /// Starts a run and kills it.
 fn kill(run: usize, path: &Path, when: When, random: &mut Random) {
     let mut command = Command::new(std::env::current_exe().unwrap());
-    command.args(["--exact", "kill::child"]).stdout(Stdio::null());
+    command.args(["--exact", "history::kill::child"]).stdout(Stdio::null());
     command.envs([(RUN, run.to_string()), (FILE, path.to_str().unwrap().to_string())]);
     if when == When::Ending {
         command.env(STEPS, "few");
@@ -86,7 +86,7 @@ fn check(runs: std::ops::Range<usize>, when: When) -> (usize, usize) {
         let (problem, times) = problem(run, when);
         let file = plane_file(&path);
         unfinished += usize::from(!file.is_complete());
-        let undisturbed = crate::common::run(&problem, &times);
+        let undisturbed = crate::history::common::run(&problem, &times);
         let replayed = replayed(&path, &problem).unwrap();
         assert_eq!(replayed.len(), file.count());
         assert_same(&replayed, &undisturbed, file.count());

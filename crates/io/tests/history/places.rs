@@ -1,6 +1,6 @@
 //! Where files go: names that are taken, folders that are not there, full disks, locks.
 
-use crate::common::*;
+use crate::history::common::*;
 use percute_io::history::{Plan, Writer, open, recover};
 use percute_io::{FileCause, FileError, Overwrite};
 use std::fs::{self, File};

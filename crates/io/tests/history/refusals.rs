@@ -1,6 +1,6 @@
 //! Files that are whole, but wrong: each error names the part and what is needed.
 
-use crate::common::*;
+use crate::history::common::*;
 use hdf5::types::VarLenUnicode;
 use hdf5::{File, H5Type, OpenMode};
 use percute_io::history::open;

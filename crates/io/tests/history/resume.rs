@@ -1,6 +1,6 @@
 //! Runs that were killed or stopped go on: their files are, byte by byte, those of runs that were not.
 
-use crate::common::*;
+use crate::history::common::*;
 use percute_core::dynamics::{resume, simulate};
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Problem, TriangleProblem};
@@ -81,7 +81,7 @@ fn child() {
 /// Starts a process that begins a run or goes on with it, and kills it once its file is there.
 fn kill(run: usize, path: &Path, random: &mut Random) {
     let mut command = Command::new(std::env::current_exe().unwrap());
-    command.args(["--exact", "resume::child"]).stdout(Stdio::null()).stderr(Stdio::null());
+    command.args(["--exact", "history::resume::child"]).stdout(Stdio::null()).stderr(Stdio::null());
     command.envs([(RUN, run.to_string()), (FILE, path.to_str().unwrap().to_string())]);
     let mut child = command.spawn().unwrap();
     let start = Instant::now();

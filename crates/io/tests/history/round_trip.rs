@@ -1,6 +1,6 @@
 //! What was written comes back with the same bits.
 
-use crate::common::*;
+use crate::history::common::*;
 use hdf5::OpenMode;
 use percute_core::dynamics::{Balancing, replay, simulate};
 use percute_core::history::{Discard, History, Step, StepSource};

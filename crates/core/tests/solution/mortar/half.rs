@@ -1,7 +1,7 @@
 //! Half of a symmetric model.
 
 use super::setup::steps;
-use crate::run::{aluminium, largest, run};
+use crate::solution::run::{aluminium, largest, run};
 use percute_core::contact::{ContactRecorder, Interface, Status};
 use percute_core::dynamics::{MissedContact, simulate};
 use percute_core::load::{Support, Table};

@@ -1,7 +1,7 @@
 //! Turned, mirrored, renumbered and exchanged bodies.
 
 use super::setup::{Blocks, steps};
-use crate::run::{difference, largest, run};
+use crate::solution::run::{difference, largest, run};
 use percute_core::contact::Interface;
 use percute_core::problem::TriangleProblem;
 use percute_testkit::{mirrored, renumbered, rotated};

@@ -1,7 +1,7 @@
 //! The law of contact, momentum and energy where surfaces slide.
 
 use super::setup::{Blocks, steel, steps};
-use crate::run::{Run, run, swinging_steps};
+use crate::solution::run::{Run, run, swinging_steps};
 use percute_core::contact::{Coupling, SlidingSurfaces};
 use percute_core::dynamics::critical_time_step;
 

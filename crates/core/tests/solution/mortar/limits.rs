@@ -1,7 +1,7 @@
 //! Special cases with another solution: pairs of nodes, and a rigid plane.
 
 use super::setup::{Blocks, GAP, HEIGHT, steps};
-use crate::run::{aluminium, difference, largest, run};
+use crate::solution::run::{aluminium, difference, largest, run};
 use percute_core::contact::{ContactRecorder, Interface, Obstacle};
 use percute_core::history::StepSource;
 use percute_core::material::Elastic;
@@ -32,7 +32,7 @@ fn matching_surfaces_are_pairs() {
     let times = steps(&pairs, 25e-6);
     let (expected, found) = (run(&pairs, &times), run(&mortar, &times));
     // Rows by their nodes: the order along the surface is another one.
-    let rows = |run: &crate::run::Run<'_, 2, 3>, n: usize| {
+    let rows = |run: &crate::solution::run::Run<'_, 2, 3>, n: usize| {
         let step = run.history.step(n).unwrap();
         let mut rows = vec![([0.0; 2], false); run.problem.mesh().node_count()];
         for (at, node) in run.contact_nodes().into_iter().enumerate() {

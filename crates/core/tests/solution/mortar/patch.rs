@@ -1,7 +1,7 @@
 //! The contact patch test: surfaces of any nodes hand on a uniform pressure.
 
 use super::setup::{Blocks, GAP, HEIGHT, steps};
-use crate::run::{difference, largest, run};
+use crate::solution::run::{difference, largest, run};
 use percute_core::load::{Profile, Table, Traction};
 use percute_core::material::{Elastic, Law};
 use percute_core::problem::Initial;

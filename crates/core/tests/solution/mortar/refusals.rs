@@ -1,7 +1,7 @@
 //! Statements that are refused, and starts.
 
 use super::setup::{Blocks, GAP, steps};
-use crate::run::{aluminium, fixed, run};
+use crate::solution::run::{aluminium, fixed, run};
 use percute_core::contact::{Interface, Obstacle, common_slope};
 use percute_core::dynamics::{SimulationError, check_start};
 use percute_core::load::Support;

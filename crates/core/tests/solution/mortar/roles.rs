@@ -1,7 +1,7 @@
 //! Which of two surfaces is the slave does not depend on the order of the bodies.
 
 use super::setup::steel;
-use crate::run::aluminium;
+use crate::solution::run::aluminium;
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Between, Contact, Initial, TriangleProblem};

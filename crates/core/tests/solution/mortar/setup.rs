@@ -1,6 +1,6 @@
 //! Two blocks, one above the other.
 
-use crate::run::aluminium;
+use crate::solution::run::aluminium;
 use percute_core::contact::Interface;
 use percute_core::dynamics::critical_time_step;
 use percute_core::material::Elastic;

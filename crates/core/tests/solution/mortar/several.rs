@@ -2,7 +2,7 @@
 
 use super::law::{check_energy, check_steps};
 use super::setup::{GAP, HEIGHT, steel, steps};
-use crate::run::{Run, aluminium, run};
+use crate::solution::run::{Run, aluminium, run};
 use percute_core::contact::Obstacle;
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Between, Contact, Initial, TriangleProblem};

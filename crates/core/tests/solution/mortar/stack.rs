@@ -2,7 +2,7 @@
 
 use super::law::{check_energy, check_law, check_steps};
 use super::setup::{GAP, HEIGHT, steel, steps};
-use crate::run::{aluminium, run};
+use crate::solution::run::{aluminium, run};
 use percute_core::contact::{Interface, Obstacle};
 use percute_core::mesh::TriangleMesh;
 use percute_core::problem::{Initial, TriangleProblem};

@@ -2,7 +2,7 @@
 
 use super::law::check_steps;
 use super::setup::{Blocks, steps};
-use crate::run::run;
+use crate::solution::run::run;
 use percute_core::contact::Interface;
 use percute_core::load::{BodyForce, Profile, Table, Traction};
 use percute_core::material::Elastic;

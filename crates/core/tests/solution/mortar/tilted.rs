@@ -1,7 +1,7 @@
 //! A block that strikes a plate with a corner.
 
 use super::setup::steps;
-use crate::run::{aluminium, run};
+use crate::solution::run::{aluminium, run};
 use percute_core::contact::ContactRecorder;
 use percute_core::history::StepSource;
 use percute_core::mesh::TriangleMesh;

@@ -1,8 +1,5 @@
 //! The explicit solution against mathematics: exact solutions, convergence, balances, invariance.
 
-// What helpers unwrap makes a test fail too; the general allowance covers test functions only.
-#![allow(clippy::unwrap_used)]
-
 mod balance;
 mod bar_impact;
 mod contact;

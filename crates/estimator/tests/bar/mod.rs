@@ -1,15 +1,9 @@
 //! The impact of a bar: against a computation by hand, and against the exact solution.
 
-// Clippy allows this in test functions only; what they share is a test as well.
-#![allow(clippy::unwrap_used)]
-
-#[path = "../common/beside.rs"]
-mod beside;
-#[path = "../common/mod.rs"]
-mod common;
 mod hand;
 mod strip;
 
+use crate::common::beside;
 use hand::Bar;
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::simulate;

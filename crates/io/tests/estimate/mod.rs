@@ -1,8 +1,5 @@
 //! Estimate files: what was estimated is in them, bit by bit.
 
-// What helpers unwrap makes a test fail too; the general allowance covers test functions only.
-#![allow(clippy::unwrap_used)]
-
 use percute_core::contact::ContactResults;
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{critical_time_step, simulate};

@@ -1,0 +1,9 @@
+//! Cases and their runs.
+
+// Clippy allows this in test functions only; what they share is a test as well.
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+
+mod numbering;
+mod schema;
+mod seeds;
+mod statement;
