@@ -89,10 +89,22 @@ def test_properties_without_evidence_are_named() -> None:
         assert named in facts(estimate)["untested"][0] and "not tested" in str(estimate.verdict)
 
 
+@pytest.mark.parametrize(("slope", "curvature", "touches"), [(0.0, 0.0, "edge"), (0.0, 4.0, "curve"), (0.2, 0.0, "curve"), (1.0, 0.0, "corner")])
+def test_half_of_a_body_touches_as_the_whole(slope: float, curvature: float, touches: str) -> None:
+    """On the line of symmetry, a flat side goes on and a roof turns by twice its slope."""
+    for width, cells, supports in ((0.02, 10, []), (0.01, 5, [pc.Support(group="left", components="x")])):
+        flat = pc.Mesh.rectangle(width, 0.02, nx=cells, ny=10)
+        aside = np.abs(flat.points[:, 0] - (width - 0.01))
+        points = flat.points + np.outer(slope * aside + curvature * aside**2, [0.0, 1.0])
+        mesh = pc.Mesh(points, flat.cells, edge_groups=flat.edge_groups)
+        assert facts(struck(mesh, supports=supports))["touches"] == touches
+
+
 @pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
+@pytest.mark.parametrize("matching", [True, False])
 @pytest.mark.parametrize(("slope", "ranged"), [(9.0, True), (16.0, False)])
-def test_chevrons_that_lean_together_have_no_range(slope: float, ranged: bool) -> None:
-    """The surfaces of both bodies touch where they lean away from the normal."""
+def test_chevrons_that_lean_together_have_no_range(slope: float, ranged: bool, matching: bool) -> None:
+    """The surfaces of both bodies touch where they lean away from the normal, as pairs of nodes or sliding."""
 
     def body(name: str, up: float, speed: float) -> pc.Body:
         flat = pc.Mesh.rectangle(0.02, 0.01, nx=6, ny=3)
@@ -102,7 +114,7 @@ def test_chevrons_that_lean_together_have_no_range(slope: float, ranged: bool) -
         return pc.Body(name=name, mesh=mesh, material=material, origin=(0.0, up), velocity=(0.0, speed))
 
     bodies = [body("lower", 0.0, 0.0), body("upper", 0.01001, -20.0)]
-    contact = pc.Interface(groups=("upper.bottom", "lower.top"), friction=0.2, matching=False)
+    contact = pc.Interface(groups=("upper.bottom", "lower.top"), friction=0.2, matching=matching)
     estimate = pc.estimate(pc.simulate(pc.Problem(bodies=bodies, contacts=[contact]), end=8e-6, courant=0.9))
     assert ("common_slope" in [warning["name"] for warning in json.loads(estimate.to_json())["warnings"]]) is not ranged
     assert (facts(estimate)["effectivity"] is not None) is ranged

@@ -6,10 +6,10 @@ use super::{dot, tangent};
 use crate::mesh::Mesh;
 use std::collections::BTreeMap;
 
-/// The largest angle (rad) by which surfaces of bodies lean away from the normal of their contact where they touch: that
-/// by which two edges of which all nodes have `touched` lean to the same side, and that of an edge that a corner of the
-/// slave has touched. Of surfaces that slide, places are those of the undeformed mesh. Nodes are given by their positions in the
-/// contact surface; those that are `inside` a surface end it nowhere, as on a line of symmetry.
+/// The largest angle (rad) by which surfaces of two bodies lean away from the normal of their contact where they
+/// touch: that by which two edges of which all nodes have `touched` lean to the same side, and that of an edge that a
+/// corner of the slave has touched. Of surfaces that slide, places are those of the undeformed mesh. Nodes are given by
+/// their positions in the contact surface. Nodes `inside` a surface, as those on a line of symmetry, are no corners.
 #[must_use]
 pub fn common_slope<const D: usize, const N: usize>(
     surface: &ContactSurface<D>,

@@ -51,7 +51,9 @@ impl Contact {
             return Self { touches: Touches::None, zones: 0, single_element: false, strikes_flat_slave: false };
         };
         let (touches, places) = surface.situation(&start);
-        let single = |&at: &usize| surface.turn(at) < PI - OBTUSE && surface.elements(at).len() == 1;
+        let single = |&at: &usize| {
+            !surface.on_line[at] && surface.turn(at) < PI - OBTUSE && surface.elements(at).len() == 1
+        };
         let single_element = D > 1 && places.iter().any(single);
         let strikes = matches!(touches, Touches::Corner | Touches::Curve);
         let strikes_flat_slave = strikes && surface.striking(&start).is_some_and(|(_, is_master)| is_master);
@@ -67,6 +69,8 @@ struct Surface<'a, const D: usize, const N: usize> {
     beside: Vec<Vec<usize>>,
     /// Gaps at the start of the run (m).
     gap: Vec<f64>,
+    /// Whether each node is on a line of symmetry: the other half of the body is beyond it.
+    on_line: Vec<bool>,
 }
 
 impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
@@ -79,7 +83,7 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
             }
         }
         let gap = problem.starts_of_contact().into_iter().map(|(gap, _)| gap).collect();
-        Self { problem, first_touch, beside, gap }
+        Self { problem, first_touch, beside, gap, on_line: problem.on_lines_of_symmetry() }
     }
 
     /// The nodes that touch first.
@@ -101,7 +105,7 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
             };
             return (if turns { Touches::Corner } else { Touches::Curve }, start.to_vec());
         }
-        let inside = |at: usize| self.beside[at].iter().filter(|&&other| zone[other]).count() > 1;
+        let inside = |at: usize| self.on_line[at] || self.beside[at].iter().filter(|&&other| zone[other]).count() > 1;
         let ends: Vec<_> = (0..zone.len()).filter(|&at| zone[at] && !inside(at)).collect();
         let goes_on = |&at: &usize| {
             let touched = self.beside[at].iter().any(|&next| !zone[next] && self.first_touch[next].is_some());
@@ -161,7 +165,8 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
 
     /// By how much the outline turns at a node (rad): π less the angle inside the body.
     fn turn(&self, at: usize) -> f64 {
-        PI - self.elements(at).iter().map(|&element| angle(self.problem.mesh(), element, self.node(at))).sum::<f64>()
+        let angles = self.elements(at).iter().map(|&element| angle(self.problem.mesh(), element, self.node(at)));
+        PI - angles.sum::<f64>() * if self.on_line[at] { 2.0 } else { 1.0 }
     }
 
     /// Of nodes on surfaces that slide, the one that strikes the other surface, and whether it is of the master: there
