@@ -51,9 +51,8 @@ impl Contact {
             return Self { touches: Touches::None, zones: 0, single_element: false, strikes_flat_slave: false };
         };
         let (touches, places) = surface.situation(&start);
-        let single = |&at: &usize| {
-            !surface.on_line[at] && surface.turn(at) < PI - OBTUSE && surface.elements(at).len() == 1
-        };
+        let single =
+            |&at: &usize| !surface.on_line[at] && surface.turn(at) < PI - OBTUSE && surface.elements(at).len() == 1;
         let single_element = D > 1 && places.iter().any(single);
         let strikes = matches!(touches, Touches::Corner | Touches::Curve);
         let strikes_flat_slave = strikes && surface.striking(&start).is_some_and(|(_, is_master)| is_master);
