@@ -8,16 +8,22 @@ use std::collections::BTreeMap;
 
 /// The largest angle (rad) by which surfaces of two bodies lean away from the normal of their contact where they
 /// touch: that by which two edges of which all nodes have `touched` lean to the same side, and that of an edge that a
-/// corner of the slave has touched. Of surfaces that slide, places are those of the undeformed mesh. Nodes are given by
-/// their positions in the contact surface. Nodes `inside` a surface, as those on a line of symmetry, are no corners.
+/// corner of the slave has touched. Nodes are given by their positions in the contact surface. Nodes `inside` a surface,
+/// as those on a line of symmetry, are no corners. `shifts` has how far the parts of the slave of surfaces that slide
+/// have moved along their tangent against the master where the surfaces are looked at (m).
 #[must_use]
 pub fn common_slope<const D: usize, const N: usize>(
     surface: &ContactSurface<D>,
     mesh: &Mesh<D, N>,
     touched: impl Fn(usize) -> bool,
     inside: impl Fn(usize) -> bool,
+    shifts: impl Fn(&SlidingSurfaces<D>) -> Vec<f64>,
 ) -> f64 {
-    let slopes = surface.sliding().iter().map(|sliding| of_sliding(sliding, &touched, &inside));
+    // Bars are in a row.
+    if D == 1 {
+        return 0.0;
+    }
+    let slopes = surface.sliding().iter().map(|sliding| of_sliding(sliding, &touched, &inside, &shifts(sliding)));
     slopes.fold(of_pairs(surface, mesh, &touched), f64::max)
 }
 
@@ -56,12 +62,14 @@ fn of_sliding<const D: usize>(
     sliding: &SlidingSurfaces<D>,
     touched: &impl Fn(usize) -> bool,
     inside: &impl Fn(usize) -> bool,
+    shifts: &[f64],
 ) -> f64 {
     let [slave, master] = [sliding.slave(), sliding.master()].map(Line);
     let tolerance = sliding.tolerance();
+    let place = |node: usize| slave.0.xi()[node] + shifts[slave.0.part_of(node)];
     let mut largest = 0.0_f64;
     for &own in slave.0.edges().iter().filter(|&&own| slave.has_touched(own, touched)) {
-        let ends = [slave.0.xi()[own] + tolerance, slave.0.xi()[own + 1] - tolerance];
+        let ends = [place(own) + tolerance, place(own + 1) - tolerance];
         for other in master.edges_between(ends).filter(|&other| master.has_touched(other, touched)) {
             largest = largest.max(common(slave.slope(own), master.slope(other)));
         }
@@ -70,7 +78,7 @@ fn of_sliding<const D: usize>(
         let at = slave.0.position(node);
         touched(at) && !inside(at) && slave.0.is_corner(node)
     };
-    for xi in (0..slave.0.len()).filter(strikes).map(|node| slave.0.xi()[node]) {
+    for xi in (0..slave.0.len()).filter(strikes).map(place) {
         // Between two edges that lean to different sides, the direction is one between theirs.
         let slopes = master.edges_between([xi - tolerance, xi + tolerance]).map(|edge| master.slope(edge));
         largest = largest.max(slopes.reduce(|a, b| common(a, b).copysign(a)).unwrap_or(0.0).abs());

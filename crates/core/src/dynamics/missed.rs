@@ -4,6 +4,7 @@ use super::SimulationError;
 use crate::history::{SinkError, State, StateSink};
 use crate::ids::{FacetId, NodeId};
 use crate::problem::Problem;
+use crate::problem::symmetry::{self, SymmetryLine, common_line, distinct};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Bodies are looked at after so many steps. A wave passes an element in a step, and bodies move at a small part of its
@@ -11,7 +12,8 @@ use std::collections::{BTreeMap, BTreeSet};
 const EVERY: usize = 8;
 /// How deep a node may be in another body, over the height of the element there.
 const DEEP: f64 = 0.1;
-/// A node on a line of symmetry is looked at beside it, in the body, by this part of the height of its element.
+/// Of halves of a symmetric model, a node on their line is looked at beside it, in the body, by this part of the height
+/// of its element.
 const BESIDE: f64 = 1e-3;
 
 /// A point of the plane; a bar is on the first axis.
@@ -22,16 +24,20 @@ pub struct MissedContact<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     last: usize,
     bodies: Vec<Body>,
+    /// For each two bodies, the direction across which the line of symmetry stands of which they are halves.
+    halves: BTreeMap<[usize; 2], usize>,
     /// Nodes that may touch another body, with that body: contact is solved for. With the place in the contact surface,
     /// where it is only while the node faces the other surface.
     solved: BTreeMap<(NodeId, usize), Option<usize>>,
 }
 
 /// The boundary of a body.
+#[derive(Default)]
 struct Body {
-    /// Nodes, each with the way to the place at which it is looked at (m).
+    /// Nodes, each with the way from a line of symmetry into the body (m), if it is on one.
     nodes: BTreeMap<NodeId, Point>,
     facets: Vec<Side>,
+    lines: Vec<SymmetryLine>,
 }
 
 /// A facet of a boundary.
@@ -39,8 +45,8 @@ struct Side {
     facet: FacetId,
     /// The height of its element there (m).
     height: f64,
-    /// Whether it is on a line of symmetry: the other half of the body is behind it.
-    is_cut: bool,
+    /// The direction across which it is on a line of symmetry.
+    across: Option<usize>,
 }
 
 impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
@@ -48,26 +54,39 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
     #[must_use]
     pub fn new(problem: &'p Problem<D, N>, steps: usize) -> Self {
         let mesh = problem.mesh();
-        let mut made = Self { problem, last: steps, bodies: Vec::new(), solved: BTreeMap::new() };
+        let mut made =
+            Self { problem, last: steps, bodies: Vec::new(), halves: BTreeMap::new(), solved: BTreeMap::new() };
         if mesh.parts() == 1 {
             return made;
         }
         let of_node = mesh.part_numbers();
-        made.bodies = (0..mesh.parts()).map(|_| Body { nodes: BTreeMap::new(), facets: Vec::new() }).collect();
+        made.bodies = (0..mesh.parts()).map(|_| Body::default()).collect();
         for facet in mesh.boundary() {
             let (nodes, owner) = (mesh.facets()[facet.index()].nodes, mesh.facets()[facet.index()].owner);
             let (normal, area) = mesh.facet_normal(facet);
             let height = D as f64 * mesh.cell_geometry(owner).volume / area;
-            let is_cut = (0..D).any(|c| problem.supported(facet)[c] && mesh.stands_across(facet, c));
+            let across = symmetry::across(mesh, &problem.supported(facet), facet);
             let body = &mut made.bodies[of_node[nodes[0].index()]];
-            body.facets.push(Side { facet, height, is_cut });
+            body.facets.push(Side { facet, height, across });
             for node in nodes {
                 let way = body.nodes.entry(node).or_default();
-                (0..D).filter(|_| is_cut).for_each(|c| way[c] = -BESIDE * height * normal[c]);
+                across.into_iter().for_each(|c| way[c] = -BESIDE * height * normal[c]);
             }
         }
-        for body in made.bodies.iter_mut().filter(|body| body.facets.iter().all(|side| side.is_cut)) {
-            body.facets.iter_mut().for_each(|side| side.is_cut = false);
+        for body in &mut made.bodies {
+            let nodes = |side: &Side| mesh.facets()[side.facet.index()].nodes;
+            let line = |side: &Side| {
+                let across = side.across?;
+                Some(SymmetryLine { across, place: mesh.points()[nodes(side)[0].index()][across] })
+            };
+            body.lines = distinct(body.facets.iter().filter_map(line));
+        }
+        for (a, own) in made.bodies.iter().enumerate() {
+            for (b, other) in made.bodies.iter().enumerate().filter(|(b, _)| *b != a) {
+                let points = own.nodes.keys().chain(other.nodes.keys()).map(|node| &mesh.points()[node.index()]);
+                let line = common_line([&own.lines, &other.lines], points, mesh.size());
+                made.halves.extend(line.map(|line| ([a, b], line.across)));
+            }
         }
         let mut bodies = vec![BTreeSet::new(); problem.obstacles().len()];
         for contact in problem.surface().nodes() {
@@ -106,10 +125,11 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
         limits
     }
 
-    /// How deep a point is in a body (m), if it is deeper than allowed.
-    fn depth(&self, displacement: &[[f64; D]], body: &Body, point: &Point) -> Option<f64> {
+    /// How deep a point is in a body (m), if it is deeper than allowed. Edges on the line of symmetry that stands across
+    /// a direction do not count: the other half of the body is beyond.
+    fn depth(&self, displacement: &[[f64; D]], body: &Body, point: &Point, line: Option<usize>) -> Option<f64> {
         let (mut inside, mut nearest) = (false, (f64::INFINITY, 0.0));
-        for &Side { facet, height, is_cut } in &body.facets {
+        for &Side { facet, height, across } in &body.facets {
             let [a, b] = self.ends(displacement, facet);
             // How often a line to the right crosses the boundary.
             if (a[1] > point[1]) != (b[1] > point[1]) {
@@ -117,7 +137,7 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
                 inside ^= x > point[0];
             }
             let distance = distance(point, &a, &b);
-            if !is_cut && distance < nearest.0 {
+            if distance < nearest.0 && (line.is_none() || line != across) {
                 nearest = (distance, height);
             }
         }
@@ -138,11 +158,12 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
                 if apart {
                     continue;
                 }
+                let line = self.halves.get(&[a, b]).copied();
                 for (&node, way) in own.nodes.iter().filter(|(node, _)| !is_solved(**node, b)) {
-                    let place = self.place(displacement, node);
-                    let place = [place[0] + way[0], place[1] + way[1]];
+                    let mut place = self.place(displacement, node);
+                    line.into_iter().for_each(|c| place[c] += way[c]);
                     let near = (0..D).all(|c| limits[b][c][0] < place[c] && place[c] < limits[b][c][1]);
-                    if near && let Some(depth) = self.depth(displacement, other, &place) {
+                    if near && let Some(depth) = self.depth(displacement, other, &place, line) {
                         return Some((node, [a, b], depth));
                     }
                 }

@@ -195,9 +195,10 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let facet_loads = boundary::tractions(mesh, &self.stated.tractions, &supported)?;
         let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.stated.body_forces, volume)?;
 
-        let of_facet = |f: FacetId| &materials[usize::from(element_material[mesh.facets()[f.index()].owner.index()])];
+        let law = |f: FacetId| &materials[usize::from(element_material[mesh.facets()[f.index()].owner.index()])];
         let (body, held, velocity) = (Vec::new(), boundary::held(mesh, &self.stated), &initial_velocity[..]);
-        let bodies = Bodies { mesh, body, held, fixed, mirrors, velocity, mass: &mass, law: &of_facet };
+        let bodies =
+            Bodies { mesh, body, held, fixed, supported: &supported, mirrors, velocity, mass: &mass, law: &law };
         let start = Start { displacement: &initial_displacement, velocity: &initial_velocity, mass: &mass };
         // One body costs no search.
         let contact = Stated { contacts: &self.contacts, automatic: self.automatic && mesh.parts() > 1 };
@@ -315,10 +316,12 @@ fn add_interface<const D: usize, const N: usize>(
         true => pairs::add(surface, bodies, interface),
         false => sliding::add(surface, bodies, interface, displacement),
     };
+    let slides = |cause: &Cause| {
+        use Cause::{EdgesDiffer, HeldPair, NotMatching, SeveralBodies};
+        matches!(cause, NotMatching { .. } | EdgesDiffer { .. } | SeveralBodies { .. } | HeldPair { .. })
+    };
     match (add(first), otherwise) {
-        (Err(Cause::NotMatching { .. } | Cause::EdgesDiffer { .. } | Cause::SeveralBodies { .. }), Some(other)) => {
-            add(other).map(|()| other.clone())
-        }
+        (Err(cause), Some(other)) if slides(&cause) => add(other).map(|()| other.clone()),
         (added, _) => added.map(|()| first.clone()),
     }
 }

@@ -131,7 +131,7 @@ impl Surfaces {
             sides.iter_mut().zip(&found.beside).for_each(|(side, beside)| side.extend(beside));
             sides.iter_mut().for_each(|side| side.sort_unstable());
         }
-        let mut sides = facing_each_other(mesh, sides);
+        let mut sides = facing_each_other(mesh, sides, found.across);
         [0, 1].map(|side| {
             let facets = std::mem::take(&mut sides[side]);
             let [own, other] = [side, 1 - side].map(|k| &names[found.pair[k]]);
@@ -191,19 +191,22 @@ fn facets_of_several<const D: usize, const N: usize>(
     members: &[Member],
 ) -> [Vec<FacetId>; 2] {
     let mut sides = [BTreeSet::new(), BTreeSet::new()];
-    let mut named = false;
+    let (mut named, mut across) = (false, None);
     for Member { contact, common } in members {
         let Proposal { facets, source, .. } = &proposals[*contact];
         for (side, all) in [*common, 1 - common].into_iter().zip(&mut sides) {
             all.extend(&facets[side]);
             match source {
                 Source::Groups(_) => named = true,
-                Source::Found(found) => all.extend(&found.beside[side]),
+                Source::Found(found) => {
+                    across = across.or(found.across);
+                    all.extend(&found.beside[side]);
+                }
             }
         }
     }
     let sides = sides.map(|side| side.into_iter().collect());
-    if named { sides } else { facing_each_other(mesh, sides) }
+    if named { sides } else { facing_each_other(mesh, sides, across) }
 }
 
 /// The pairs of bodies whose surfaces were looked for.
@@ -265,7 +268,8 @@ impl Pairs {
         }
         let law = |facet| (bodies.law)(facet);
         let free = |facet: FacetId| bodies.held[facet.index()].is_none();
-        let outlines = outlines(mesh, names.clone(), start, free, |facet| law(facet).wave_speed(), &bodies.mirrors);
+        let outlines =
+            outlines(mesh, names.clone(), start, free, |facet| law(facet).wave_speed(), |facet| bodies.line_of(facet));
         let held = |node: NodeId| {
             let held = &bodies.fixed[node.index()];
             [held[0], held.get(1).copied().unwrap_or(false)]

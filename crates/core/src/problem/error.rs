@@ -232,10 +232,11 @@ pub enum Cause {
     NoFriction { bodies: [String; 2] },
     /// Bodies that no straight line separates.
     #[error(
-        "no straight line separates \"{}\" and \"{}\": one reaches around the other, and the surfaces that may touch \
-         cannot be found; name them by `groups`, for each direction two of their own", .bodies[0], .bodies[1]
+        "no straight line separates \"{}\" and \"{}\"{}: one reaches around the other, and the surfaces that may \
+         touch cannot be found; name them by `groups`, for each direction two of their own", .bodies[0], .bodies[1],
+        if *.halves { " with their halves beyond the line of symmetry" } else { "" }
     )]
-    Interlocked { bodies: [String; 2] },
+    Interlocked { bodies: [String; 2], halves: bool },
     /// Bodies of which no edges see each other.
     #[error(
         "no free edges of \"{}\" and \"{}\" see each other: another body, a support or a load is on or between them, \

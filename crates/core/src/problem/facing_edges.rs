@@ -9,13 +9,19 @@ use crate::mesh::Mesh;
 const ALIKE: f64 = 1e-9;
 
 /// The facets of both sides without those that face away from the mean normal of their own side or towards that of the
-/// other one. The normal of an interface is one of these two. The worst ones leave first, because the mean changes.
+/// other one. The normal of an interface is one of these two. The worst ones leave first, because the mean changes. That
+/// of halves is of the whole ones, whose line of symmetry stands `across` a direction.
 pub(super) fn facing_each_other<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
     mut sides: [Vec<FacetId>; 2],
+    across: Option<usize>,
 ) -> [Vec<FacetId>; 2] {
     loop {
-        let outward = sides.each_ref().map(|facets| unit(&outward(mesh, facets)));
+        let outward = sides.each_ref().map(|facets| {
+            let mut sum = outward(mesh, facets);
+            across.into_iter().for_each(|c| sum[c] = 0.0);
+            unit(&sum)
+        });
         let cosine = |side: usize, facet: FacetId| {
             let normal = mesh.facet_normal(facet).0;
             dot(&normal, &outward[side]).min(-dot(&normal, &outward[1 - side]))

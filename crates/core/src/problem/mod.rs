@@ -17,7 +17,7 @@ mod roles;
 mod sides;
 mod sliding;
 mod start_of_contact;
-mod symmetry;
+pub(crate) mod symmetry;
 
 pub use bodies::{Between, Contact};
 pub use builder::{Builder, Initial, Statement};

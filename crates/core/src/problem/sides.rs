@@ -2,7 +2,7 @@
 
 use super::alignment::{FACES, outward, unit};
 use super::candidates::along_the_boundary;
-use super::symmetry::SymmetryLine;
+use super::symmetry::{self, SymmetryLine};
 use super::{Cause, HeldBy, boundary};
 use crate::contact::{ContactSurface, Interface, dot};
 use crate::ids::{ElementId, FacetId, NodeId};
@@ -17,6 +17,8 @@ pub(super) struct Bodies<'m, const D: usize, const N: usize> {
     pub(super) body: Vec<NodeId>,
     pub(super) held: Vec<Option<HeldBy>>,
     pub(super) fixed: Vec<[bool; D]>,
+    /// Which components of each facet supports hold.
+    pub(super) supported: &'m [[bool; D]],
     /// The directions across which each node is on a line of symmetry that stands still or moves uniformly.
     pub(super) mirrors: Vec<[bool; D]>,
     /// The initial velocity of each node (m/s).
@@ -116,6 +118,13 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let nodes = along_the_boundary(self.mesh, &facets);
         let outward = outward(self.mesh, &facets);
         Ok(Side { of_whole: outward, nodes, facets, outward, bodies })
+    }
+
+    /// The direction across which an edge is on a line of symmetry that stands still or moves uniformly.
+    pub(super) fn line_of(&self, facet: FacetId) -> Option<usize> {
+        let across = symmetry::across(self.mesh, &self.supported[facet.index()], facet)?;
+        let nodes = self.mesh.facets()[facet.index()].nodes;
+        nodes.iter().all(|node| self.mirrors[node.index()][across]).then_some(across)
     }
 
     /// The lines of symmetry that both sides meet.

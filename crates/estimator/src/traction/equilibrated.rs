@@ -154,7 +154,7 @@ impl<'a, const D: usize> EquilibratedLevel<'a, D> {
         match self.moments {
             Moments::Some(links, moments) => {
                 let at = links.partition_point(|&kept| (kept as usize) < link);
-                debug_assert_eq!(links[at] as usize, link, "only the links of near elements are kept");
+                assert_eq!(links[at] as usize, link, "only the links of near elements are kept");
                 moments[at]
             }
             Moments::Lane(moments, lane) => moments[link].map(|m| m.0[lane]),

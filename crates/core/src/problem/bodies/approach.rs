@@ -3,7 +3,6 @@
 use super::outline::{Outline, Vector};
 use crate::contact::CORNER;
 use crate::problem::alignment::unit;
-use crate::problem::symmetry::SymmetryLine;
 
 /// Bodies that are nearer than this part of the larger one touch.
 const TOUCHES: f64 = 1e-12;
@@ -18,21 +17,23 @@ pub(super) struct Approach {
     pub(super) gap: f64,
     /// The normal where they meet, and when (s), if their velocities at the start bring them together.
     pub(super) meeting: Option<(Vector, f64)>,
+    /// Of halves, the direction across which their line of symmetry stands.
+    pub(super) across: Option<usize>,
 }
 
 /// The way of two convex hulls to each other, `None` if they overlap: two convex polygons touch as soon as the edges of
-/// neither separate them. Halves of a symmetric model meet along its line of symmetry: of all directions, whole hulls
-/// are furthest apart along it.
+/// neither separate them. Halves of a symmetric model meet along its line of symmetry: of all directions, the hulls of
+/// the whole bodies are furthest apart along it.
 pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
-    let normals = match common_line(first, second) {
-        Some(line) if line.across == 0 => vec![[0.0, 1.0], [0.0, -1.0]],
+    let across = first.line_with(second);
+    let own = match across {
+        Some(0) => vec![[0.0, 1.0], [0.0, -1.0]],
         Some(_) => vec![[1.0, 0.0], [-1.0, 0.0]],
-        None => {
-            let mut normals = outward(&first.hull);
-            normals.extend(outward(&second.hull).into_iter().map(|n| n.map(|x| -x)));
-            normals
-        }
+        None => outward(&first.hull),
     };
+    let other = if across.is_none() { outward(&second.hull) } else { Vec::new() };
+    let (edges, mut normals) = (own.len(), own);
+    normals.extend(other.into_iter().map(|n| n.map(|x| -x)));
     let gap = |n: &Vector| {
         let reach = first.hull.iter().map(|p| dot(p, n)).fold(f64::NEG_INFINITY, f64::max);
         second.hull.iter().map(|p| dot(p, n)).fold(f64::INFINITY, f64::min) - reach
@@ -45,10 +46,10 @@ pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
     if gaps[widest] < -tolerance {
         return None;
     }
-    let normal = midway(&normals, widest, |k| gaps[k] >= (1.0 - ROUNDING) * gaps[widest] - tolerance);
+    let normal = midway(&normals, edges, widest, |k| gaps[k] >= (1.0 - ROUNDING) * gaps[widest] - tolerance);
     if gaps[widest] <= tolerance {
         // They touch: whatever moves them, there is contact.
-        return Some(Approach { normal, gap: 0.0, meeting: Some((normal, 0.0)) });
+        return Some(Approach { normal, gap: 0.0, meeting: Some((normal, 0.0)), across });
     }
     let speed = relative[0].hypot(relative[1]);
     let (mut latest, mut parting) = ((f64::NEG_INFINITY, widest), f64::INFINITY);
@@ -74,28 +75,19 @@ pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
     let (last, at) = latest;
     let meets = last.is_finite() && last < parting;
     let reached = |k: usize| (gaps[k] - last * closing(&normals[k])).abs() <= ROUNDING * gaps[k] + tolerance;
-    let meeting = meets.then(|| (midway(&normals, at, reached), last));
-    Some(Approach { normal, gap: gaps[widest], meeting })
+    let meeting = meets.then(|| (midway(&normals, edges, at, reached), last));
+    Some(Approach { normal, gap: gaps[widest], meeting, across })
 }
 
-/// The direction midway between those of the edges that are `alike` one of them: where a node of a curve meets one, two
-/// edges on either side do so.
-fn midway(normals: &[Vector], at: usize, alike: impl Fn(usize) -> bool) -> Vector {
+/// The direction midway between that of an edge and those of the edges beside it that are `alike` it: where a node of a
+/// curve meets one, two edges on either side of it do so. The first polygon has so many edges.
+fn midway(normals: &[Vector], first: usize, at: usize, alike: impl Fn(usize) -> bool) -> Vector {
+    let polygon = if at < first { 0..first } else { first..normals.len() };
+    let (start, count) = (polygon.start, polygon.len());
+    let beside = [count - 1, 1].map(|step| start + (at - start + step) % count);
     let turns_little = |k: &usize| dot(&normals[*k], &normals[at]) > CORNER.cos();
-    let alike = (0..normals.len()).filter(|&k| k == at || alike(k)).filter(turns_little).map(|k| normals[k]);
-    unit(&alike.fold([0.0; 2], |sum: Vector, normal| [sum[0] + normal[0], sum[1] + normal[1]]))
-}
-
-/// The line of symmetry of which both bodies are halves, if there is one alone.
-fn common_line(first: &Outline, second: &Outline) -> Option<SymmetryLine> {
-    let size = first.size.max(second.size);
-    let of_both = |line: &&SymmetryLine| {
-        let points = first.hull.iter().chain(&second.hull);
-        second.lines.iter().any(|other| line.is_at(other, size)) && line.bounds(points, size)
-    };
-    let mut lines = first.lines.iter().filter(of_both);
-    let line = *lines.next()?;
-    lines.all(|other| other.across == line.across).then_some(line)
+    let alike = beside.into_iter().filter(|&k| alike(k)).filter(turns_little).map(|k| normals[k]);
+    unit(&alike.fold(normals[at], |sum: Vector, normal| [sum[0] + normal[0], sum[1] + normal[1]]))
 }
 
 /// Outward normals of the edges of a convex polygon.
@@ -116,6 +108,7 @@ pub(super) fn dot(a: &Vector, b: &Vector) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::problem::symmetry::SymmetryLine;
 
     /// A box with this lower left corner and side.
     fn square(corner: Vector, side: f64, velocity: Vector) -> Outline {

@@ -52,6 +52,8 @@ pub(super) struct Found {
     pub(super) beside: [Vec<FacetId>; 2],
     /// How far they slide along each other while they touch, with their velocities at the start (m).
     pub(super) slide: f64,
+    /// Of halves, the direction across which their line of symmetry stands.
+    pub(super) across: Option<usize>,
 }
 
 /// Two bodies in the view in which they could meet.
@@ -64,6 +66,7 @@ struct Candidates<'w> {
     /// When they meet with their velocities at the start, if they do (s).
     meets: Option<f64>,
     slide: f64,
+    across: Option<usize>,
     sides: [Facing; 2],
 }
 
@@ -87,7 +90,8 @@ pub(super) fn find(
     for (at, one) in wanted.iter().enumerate() {
         let names = || one.pair.map(|body| outlines[body].name.clone());
         let Some((normal, time, way)) = ways.view(one.pair) else {
-            return Err((at, Cause::Interlocked { bodies: names() }));
+            let [first, second] = one.pair.map(|body| &outlines[body]);
+            return Err((at, Cause::Interlocked { bodies: names(), halves: first.line_with(second).is_some() }));
         };
         let sides = View::new(outlines, time, normal).facing(one.pair, held);
         if sides.iter().any(|side| side.seeing.is_empty()) {
@@ -104,6 +108,7 @@ pub(super) fn find(
             gap: way.gap,
             meets: way.meeting.map(|(_, time)| time),
             slide,
+            across: way.across,
             sides,
         });
     }
@@ -262,7 +267,7 @@ fn claimed(
     }
     let mut found = Vec::new();
     for (k, candidates) in all.iter().enumerate() {
-        let (room, Candidates { at, wanted, slide, sides, .. }) = (candidates.room(outlines), candidates);
+        let (room, Candidates { at, wanted, slide, across, sides, .. }) = (candidates.room(outlines), candidates);
         let beside = [0, 1].map(|side| {
             let edges = &outlines[wanted.pair[side]].edges;
             let near = sides[side].beside.iter().filter(|(_, aside)| !less(room, *aside)).map(|&(at, _)| &edges[at]);
@@ -283,7 +288,7 @@ fn claimed(
             facets
         });
         if seeing.iter().all(|facets| !facets.is_empty()) {
-            found.push(Found { wanted: *at, pair: wanted.pair, seeing, beside, slide: *slide });
+            found.push(Found { wanted: *at, pair: wanted.pair, seeing, beside, slide: *slide, across: *across });
         }
     }
     found.sort_by_key(|found| found.wanted);

@@ -2,8 +2,7 @@
 
 use crate::ids::{FacetId, NodeId};
 use crate::mesh::Mesh;
-use crate::problem::symmetry::SymmetryLine;
-use std::collections::BTreeSet;
+use crate::problem::symmetry::{SymmetryLine, common_line, distinct};
 
 /// A point or a vector of the plane.
 pub(in crate::problem) type Vector = [f64; 2];
@@ -37,6 +36,12 @@ pub(in crate::problem) struct Outline {
 }
 
 impl Outline {
+    /// The direction across which the line of symmetry stands of which this body and another one are halves.
+    pub(in crate::problem) fn line_with(&self, other: &Self) -> Option<usize> {
+        let (points, size) = (self.hull.iter().chain(&other.hull), self.size.max(other.size));
+        common_line([&self.lines, &other.lines], points, size).map(|line| line.across)
+    }
+
     /// The place of a point after a time (s).
     pub(in crate::problem) fn moved(&self, point: &Vector, time: f64) -> Vector {
         std::array::from_fn(|c| point[c] + self.velocity[c] * time)
@@ -51,14 +56,14 @@ pub(in crate::problem) struct Start<'a, const D: usize> {
 }
 
 /// The bodies of a mesh, with these names; `free` says whether an edge may touch, `wave_speed` is that at an edge
-/// (m/s). `mirrors` has the directions across which each node is on a line of symmetry.
+/// (m/s). `across` says across which direction an edge is on a line of symmetry.
 pub(in crate::problem) fn outlines<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
     names: Vec<String>,
     start: &Start<'_, D>,
     free: impl Fn(FacetId) -> bool,
     wave_speed: impl Fn(FacetId) -> f64,
-    mirrors: &[[bool; D]],
+    across: impl Fn(FacetId) -> Option<usize>,
 ) -> Vec<Outline> {
     let body_of_node = mesh.part_numbers();
     let mut edges: Vec<Vec<Edge>> = names.iter().map(|_| Vec::new()).collect();
@@ -87,25 +92,16 @@ pub(in crate::problem) fn outlines<const D: usize, const N: usize>(
         let size = hull.iter().map(apart).fold(0.0, f64::max);
         let slowest = edges.iter().map(|edge| wave_speed(edge.facet)).fold(f64::INFINITY, f64::min);
         let velocity = momentum[body].map(|p| p / mass[body]);
-        let lines = lines(&edges, mirrors);
+        let lines = lines(&edges, &across);
         Outline { name, edges, hull, lines, velocity, size, passage: size / slowest }
     };
     names.into_iter().zip(edges).enumerate().map(outline).collect()
 }
 
-/// The lines of symmetry across the ends of some edges. Bars have none: nothing is beside them.
-fn lines<const D: usize>(edges: &[Edge], mirrors: &[[bool; D]]) -> Vec<SymmetryLine> {
-    let (mut lines, mut known) = (Vec::new(), BTreeSet::new());
-    for edge in edges.iter().filter(|_| D == 2) {
-        for (&node, end) in edge.nodes.iter().zip(&edge.ends) {
-            for across in (0..D).filter(|&c| mirrors[node.index()][c]) {
-                if known.insert((across, end[across].to_bits())) {
-                    lines.push(SymmetryLine { across, place: end[across] });
-                }
-            }
-        }
-    }
-    lines
+/// The lines of symmetry on which edges are.
+fn lines(edges: &[Edge], across: impl Fn(FacetId) -> Option<usize>) -> Vec<SymmetryLine> {
+    let on_line = edges.iter().filter_map(|edge| Some((across(edge.facet)?, edge.ends[0])));
+    distinct(on_line.map(|(across, end)| SymmetryLine { across, place: end[across] }))
 }
 
 fn in_plane<const D: usize>(vector: &[f64; D]) -> Vector {

@@ -7,16 +7,20 @@ use crate::problem::Problem;
 use crate::problem::alignment::FACES;
 use std::collections::BTreeSet;
 
-/// Smaller components of a normal, and parts of an edge, are rounding.
+/// Smaller parts of an edge are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// An edge next to a surface that faces the other surface without belonging to its own, because a support holds one of
-/// its nodes across: the other body may enter there without a force.
+/// An edge next to a surface that faces the other surface at the start without belonging to its own, because a support
+/// holds one of its nodes: the other body may enter there without a force.
 pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
 ) -> Option<PlausibilityWarning> {
     let (mesh, surface) = (problem.mesh(), problem.surface());
-    let held: BTreeSet<(NodeId, usize)> = problem.prescribed().iter().map(|p| (p.node, p.component)).collect();
+    let held: BTreeSet<NodeId> = problem.prescribed().iter().map(|p| p.node).collect();
+    // None of them has a node that is held.
+    if held.is_empty() {
+        return None;
+    }
     let in_contact: BTreeSet<FacetId> = surface.facets().iter().map(|facet| facet.facet).collect();
     for index in 0..problem.obstacles().len() {
         let Some(opposite) = problem.opposite_obstacle(index) else { continue };
@@ -35,17 +39,17 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
         let own: BTreeSet<NodeId> = of(index).flat_map(|facet| mesh.facets()[facet.facet.index()].nodes).collect();
         for facet in mesh.boundary().filter(|facet| !in_contact.contains(facet)) {
             let nodes = mesh.facets()[facet.index()].nodes;
-            let is_across = |node: &NodeId| (0..D).any(|c| normal[c].abs() > ROUNDING && held.contains(&(*node, c)));
             let beside = nodes.iter().any(|node| own.contains(node)) && problem.supported(facet) == [false; D];
             let faces = -dot(&mesh.facet_normal(facet).0, &normal) >= FACES;
             let [low, high] = range(facet);
             let common = high.min(other[1]) - low.max(other[0]) > ROUNDING * (high - low);
-            if let Some(node) = nodes.iter().find(|node| is_across(node)).filter(|_| beside && faces && common) {
+            if let Some(node) = nodes.iter().find(|node| held.contains(node)).filter(|_| beside && faces && common) {
                 let edge = nodes.map(|node| node.index().to_string()).join(", ");
                 let surface = problem.obstacles()[opposite].group().unwrap_or_default();
                 let message = format!(
                     "the edge of nodes {edge} is left out of the contact with \"{surface}\", because a support holds \
-                     node {} across it: the other body may enter there; support the body away from the contact",
+                     node {}: the other body may enter there; support the body away from the contact, or name the \
+                     edges by `groups` if the support is along the surface",
                     node.index()
                 );
                 return Some(plausibility_warning(

@@ -156,6 +156,20 @@ fn a_tip_on_the_line_of_symmetry_is_missed() {
     }
 }
 
+/// A side that a support clamps is the end of a body: what has entered there by less than a tenth of an element is not
+/// missed.
+#[test]
+fn a_clamped_side_is_the_end_of_a_body() {
+    let problem = falling(&block(-0.01, 0.0), &block(1e-5, 0.0), &[("lower.top", [true, true])]).build().unwrap();
+    let ends = |end: f64| {
+        let times = steps(&problem, end);
+        let mut missed = MissedContact::new(&problem, times.step_count());
+        simulate(&problem, &times, &mut missed, &mut Unobserved).is_err()
+    };
+    // By 0.2 and by 0.8 mm into cells of 5 mm.
+    assert!(!ends(10e-6) && ends(40e-6));
+}
+
 /// An edge next to a support across the contact has none, and percute warns where the other body faces it.
 #[test]
 fn an_edge_beside_a_support_is_left_out() {

@@ -2,7 +2,7 @@
 
 use super::setup::{Blocks, GAP, steps};
 use crate::solution::run::{aluminium, fixed, run};
-use percute_core::contact::{Interface, Obstacle, common_slope};
+use percute_core::contact::{Interface, Obstacle, SlidingSurfaces, common_slope};
 use percute_core::dynamics::{SimulationError, check_start};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
@@ -96,8 +96,9 @@ fn chevrons_lean_together() {
     let slope = |problem: &TriangleProblem, ends: bool| {
         let (surface, mesh) = (problem.surface(), problem.mesh());
         let apex = |at: usize| (mesh.points()[surface.nodes()[at].node.index()][0] - 0.01).abs() < 1e-9;
-        assert_eq!(common_slope(surface, mesh, apex, |_| true), 0.0);
-        common_slope(surface, mesh, |_| true, |_| !ends).to_degrees()
+        let still = |sliding: &SlidingSurfaces<2>| vec![0.0; sliding.slave().parts().len()];
+        assert_eq!(common_slope(surface, mesh, apex, |_| true, still), 0.0);
+        common_slope(surface, mesh, |_| true, |_| !ends, still).to_degrees()
     };
     let degrees = |height: fn(f64) -> [f64; 2]| {
         let angle = slope(&facing(height, 0.0, &[]).unwrap(), false);
