@@ -24,8 +24,8 @@ pub struct MissedContact<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     last: usize,
     bodies: Vec<Body>,
-    /// For each two bodies, the direction across which the line of symmetry stands of which they are halves.
-    halves: BTreeMap<[usize; 2], usize>,
+    /// For each two bodies, the line of symmetry of which they are halves.
+    halves: BTreeMap<[usize; 2], SymmetryLine>,
     /// Nodes that may touch another body, with that body: contact is solved for. With the place in the contact surface,
     /// where it is only while the node faces the other surface.
     solved: BTreeMap<(NodeId, usize), Option<usize>>,
@@ -37,7 +37,6 @@ struct Body {
     /// Nodes, each with the way from a line of symmetry into the body (m), if it is on one.
     nodes: BTreeMap<NodeId, Point>,
     facets: Vec<Side>,
-    lines: Vec<SymmetryLine>,
 }
 
 /// A facet of a boundary.
@@ -45,8 +44,8 @@ struct Side {
     facet: FacetId,
     /// The height of its element there (m).
     height: f64,
-    /// The direction across which it is on a line of symmetry.
-    across: Option<usize>,
+    /// The line of symmetry on which it is.
+    line: Option<SymmetryLine>,
 }
 
 impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
@@ -65,27 +64,22 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
             let (nodes, owner) = (mesh.facets()[facet.index()].nodes, mesh.facets()[facet.index()].owner);
             let (normal, area) = mesh.facet_normal(facet);
             let height = D as f64 * mesh.cell_geometry(owner).volume / area;
-            let across = symmetry::across(mesh, &problem.supported(facet), facet);
+            let on_line = |across: usize| SymmetryLine { across, place: mesh.points()[nodes[0].index()][across] };
+            let line = symmetry::across(mesh, &problem.supported(facet), facet).map(on_line);
             let body = &mut made.bodies[of_node[nodes[0].index()]];
-            body.facets.push(Side { facet, height, across });
+            body.facets.push(Side { facet, height, line });
             for node in nodes {
                 let way = body.nodes.entry(node).or_default();
-                across.into_iter().for_each(|c| way[c] = -BESIDE * height * normal[c]);
+                line.iter().for_each(|line| way[line.across] = -BESIDE * height * normal[line.across]);
             }
         }
-        for body in &mut made.bodies {
-            let nodes = |side: &Side| mesh.facets()[side.facet.index()].nodes;
-            let line = |side: &Side| {
-                let across = side.across?;
-                Some(SymmetryLine { across, place: mesh.points()[nodes(side)[0].index()][across] })
-            };
-            body.lines = distinct(body.facets.iter().filter_map(line));
-        }
+        let lines = made.bodies.iter().map(|body| distinct(body.facets.iter().filter_map(|side| side.line)));
+        let lines: Vec<Vec<SymmetryLine>> = lines.collect();
         for (a, own) in made.bodies.iter().enumerate() {
             for (b, other) in made.bodies.iter().enumerate().filter(|(b, _)| *b != a) {
                 let points = own.nodes.keys().chain(other.nodes.keys()).map(|node| &mesh.points()[node.index()]);
-                let line = common_line([&own.lines, &other.lines], points, mesh.size());
-                made.halves.extend(line.map(|line| ([a, b], line.across)));
+                let line = common_line([&lines[a], &lines[b]], points, mesh.size());
+                made.halves.extend(line.map(|line| ([a, b], line)));
             }
         }
         let mut bodies = vec![BTreeSet::new(); problem.obstacles().len()];
@@ -125,11 +119,18 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
         limits
     }
 
-    /// How deep a point is in a body (m), if it is deeper than allowed. Edges on the line of symmetry that stands across
-    /// a direction do not count: the other half of the body is beyond.
-    fn depth(&self, displacement: &[[f64; D]], body: &Body, point: &Point, line: Option<usize>) -> Option<f64> {
+    /// How deep a point is in a body (m), if it is deeper than allowed. Facets on a line of symmetry of both bodies do
+    /// not count: the other half of the body is beyond.
+    fn depth(
+        &self,
+        displacement: &[[f64; D]],
+        body: &Body,
+        point: &Point,
+        common: Option<SymmetryLine>,
+    ) -> Option<f64> {
         let (mut inside, mut nearest) = (false, (f64::INFINITY, 0.0));
-        for &Side { facet, height, across } in &body.facets {
+        let size = self.problem.mesh().size();
+        for &Side { facet, height, line } in &body.facets {
             let [a, b] = self.ends(displacement, facet);
             // How often a line to the right crosses the boundary.
             if (a[1] > point[1]) != (b[1] > point[1]) {
@@ -137,7 +138,8 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
                 inside ^= x > point[0];
             }
             let distance = distance(point, &a, &b);
-            if distance < nearest.0 && (line.is_none() || line != across) {
+            let is_cut = line.zip(common).is_some_and(|(line, common)| line.is_at(&common, size));
+            if distance < nearest.0 && !is_cut {
                 nearest = (distance, height);
             }
         }
@@ -161,7 +163,7 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
                 let line = self.halves.get(&[a, b]).copied();
                 for (&node, way) in own.nodes.iter().filter(|(node, _)| !is_solved(**node, b)) {
                     let mut place = self.place(displacement, node);
-                    line.into_iter().for_each(|c| place[c] += way[c]);
+                    line.iter().for_each(|line| place[line.across] += way[line.across]);
                     let near = (0..D).all(|c| limits[b][c][0] < place[c] && place[c] < limits[b][c][1]);
                     if near && let Some(depth) = self.depth(displacement, other, &place, line) {
                         return Some((node, [a, b], depth));

@@ -57,7 +57,7 @@ impl SymmetryLine {
     }
 
     /// Whether it is another one, too, in a mesh of this size (m).
-    fn is_at(&self, other: &Self, size: f64) -> bool {
+    pub(crate) fn is_at(&self, other: &Self, size: f64) -> bool {
         self.across == other.across && self.beyond(&[other.place; 2], size) == 0.0
     }
 
