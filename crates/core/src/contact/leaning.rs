@@ -8,9 +8,9 @@ use std::collections::BTreeMap;
 
 /// The largest angle (rad) by which surfaces of two bodies lean away from the normal of their contact where they
 /// touch: that by which two edges of which all nodes have `touched` lean to the same side, and that of an edge that a
-/// corner of the slave has touched. Nodes are given by their positions in the contact surface. Nodes `inside` a surface,
-/// as those on a line of symmetry, are no corners. `shifts` has how far the parts of the slave of surfaces that slide
-/// have moved along their tangent against the master where the surfaces are looked at (m).
+/// corner of the slave has touched. Nodes are given by their positions in the contact surface. Nodes `inside` a
+/// surface, as those on a line of symmetry, are no corners. `shifts` has how far the parts of the slave of surfaces
+/// that slide have moved along their tangent against the master where the surfaces are looked at (m).
 #[must_use]
 pub fn common_slope<const D: usize, const N: usize>(
     surface: &ContactSurface<D>,

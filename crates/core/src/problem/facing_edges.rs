@@ -9,8 +9,8 @@ use crate::mesh::Mesh;
 const ALIKE: f64 = 1e-9;
 
 /// The facets of both sides without those that face away from the mean normal of their own side or towards that of the
-/// other one. The normal of an interface is one of these two. The worst ones leave first, because the mean changes. That
-/// of halves is of the whole ones, whose line of symmetry stands `across` a direction.
+/// other one. The normal of an interface is one of these two. The worst ones leave first, because the mean changes.
+/// That of halves is of the whole ones, whose line of symmetry stands `across` a direction.
 pub(super) fn facing_each_other<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
     mut sides: [Vec<FacetId>; 2],
