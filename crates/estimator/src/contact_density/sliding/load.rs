@@ -112,11 +112,19 @@ impl<const D: usize> Load<D> {
         if peaks.len() <= MANY { peaks } else { Vec::new() }
     }
 
+    /// The part of the edge beside an end that has nothing of the load.
+    pub(super) fn beginning(&self, end: usize) -> f64 {
+        self.ways_from(end).fold(1.0, f64::min)
+    }
+
+    /// The ways from an end to all break points.
+    fn ways_from(&self, end: usize) -> impl Iterator<Item = f64> {
+        self.spans.iter().flat_map(move |(places, _)| places.map(|place| way_from(end, place)))
+    }
+
     /// The part of the edge beside an end that has all of the load, at least twice as long as the way to a place.
     pub(super) fn part_at(&self, end: usize, place: f64) -> f64 {
-        let from = |place: f64| if end == 0 { place } else { 1.0 - place };
-        let reach = self.spans.iter().flat_map(|(places, _)| places.map(from)).fold(0.0, f64::max);
-        reach.max(2.0 * from(place))
+        self.ways_from(end).fold(2.0 * way_from(end, place), f64::max)
     }
 
     /// The load of a part of the edge beside an end, as if that part were an edge, and the load of the traction on the
@@ -175,6 +183,11 @@ impl<const D: usize> Load<D> {
         let linear = [from, to].map(|at| scaled(std::array::from_fn(|c| first[c] * (1.0 - at) + second[c] * at), 1.0));
         EdgeRest { points, linear }
     }
+}
+
+/// The way from an end to a place.
+fn way_from(end: usize, place: f64) -> f64 {
+    if end == 0 { place } else { 1.0 - place }
 }
 
 /// A place on an edge as one on the part of the edge beside an end.
