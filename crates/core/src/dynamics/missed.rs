@@ -4,7 +4,7 @@ use super::SimulationError;
 use crate::history::{SinkError, State, StateSink};
 use crate::ids::{FacetId, NodeId};
 use crate::problem::Problem;
-use crate::problem::symmetry::{self, SymmetryLine, common_line, distinct};
+use crate::problem::symmetry::{self, SymmetryLine, common_lines, distinct};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Bodies are looked at after so many steps. A wave passes an element in a step, and bodies move at a small part of its
@@ -24,8 +24,8 @@ pub struct MissedContact<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     last: usize,
     bodies: Vec<Body>,
-    /// For each two bodies, the line of symmetry of which they are halves.
-    halves: BTreeMap<[usize; 2], SymmetryLine>,
+    /// For each two bodies, the lines of symmetry of which they are halves.
+    halves: BTreeMap<[usize; 2], Vec<SymmetryLine>>,
     /// Nodes that may touch another body, with that body: contact is solved for. With the place in the contact surface,
     /// where it is only while the node faces the other surface.
     solved: BTreeMap<(NodeId, usize), Option<usize>>,
@@ -59,13 +59,13 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
             return made;
         }
         let of_node = mesh.part_numbers();
+        let velocities = problem.line_velocities();
         made.bodies = (0..mesh.parts()).map(|_| Body::default()).collect();
         for facet in mesh.boundary() {
             let (nodes, owner) = (mesh.facets()[facet.index()].nodes, mesh.facets()[facet.index()].owner);
             let (normal, area) = mesh.facet_normal(facet);
             let height = D as f64 * mesh.cell_geometry(owner).volume / area;
-            let on_line = |across: usize| SymmetryLine { across, place: mesh.points()[nodes[0].index()][across] };
-            let line = symmetry::across(mesh, &problem.supported(facet), facet).map(on_line);
+            let line = symmetry::line_of(mesh, &problem.supported(facet), &velocities, facet);
             let body = &mut made.bodies[of_node[nodes[0].index()]];
             body.facets.push(Side { facet, height, line });
             for node in nodes {
@@ -78,8 +78,7 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
         for (a, own) in made.bodies.iter().enumerate() {
             for (b, other) in made.bodies.iter().enumerate().filter(|(b, _)| *b != a) {
                 let points = own.nodes.keys().chain(other.nodes.keys()).map(|node| &mesh.points()[node.index()]);
-                let line = common_line([&lines[a], &lines[b]], points, mesh.size());
-                made.halves.extend(line.map(|line| ([a, b], line)));
+                made.halves.insert([a, b], common_lines([&lines[a], &lines[b]], points, mesh.size()));
             }
         }
         let mut bodies = vec![BTreeSet::new(); problem.obstacles().len()];
@@ -119,15 +118,9 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
         limits
     }
 
-    /// How deep a point is in a body (m), if it is deeper than allowed. Facets on a line of symmetry of both bodies do
+    /// How deep a point is in a body (m), if it is deeper than allowed. Facets on lines of symmetry of both bodies do
     /// not count: the other half of the body is beyond.
-    fn depth(
-        &self,
-        displacement: &[[f64; D]],
-        body: &Body,
-        point: &Point,
-        common: Option<SymmetryLine>,
-    ) -> Option<f64> {
+    fn depth(&self, displacement: &[[f64; D]], body: &Body, point: &Point, common: &[SymmetryLine]) -> Option<f64> {
         let (mut inside, mut nearest) = (false, (f64::INFINITY, 0.0));
         let size = self.problem.mesh().size();
         for &Side { facet, height, line } in &body.facets {
@@ -138,7 +131,7 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
                 inside ^= x > point[0];
             }
             let distance = distance(point, &a, &b);
-            let is_cut = line.zip(common).is_some_and(|(line, common)| line.is_at(&common, size));
+            let is_cut = line.is_some_and(|line| common.iter().any(|common| line.is_at(common, size)));
             if distance < nearest.0 && !is_cut {
                 nearest = (distance, height);
             }
@@ -148,6 +141,7 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
 
     /// The first node that is in another body, the number of its own body and of that one, and how deep it is (m).
     fn found(&self, displacement: &[[f64; D]]) -> Option<(NodeId, [usize; 2], f64)> {
+        let (points, size) = (self.problem.mesh().points(), self.problem.mesh().size());
         let limits: Vec<_> = self.bodies.iter().map(|body| self.limits(displacement, body)).collect();
         let facing = self.problem.surface().facing(displacement);
         let is_solved = |node: NodeId, body: usize| match self.solved.get(&(node, body)) {
@@ -160,12 +154,13 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
                 if apart {
                     continue;
                 }
-                let line = self.halves.get(&[a, b]).copied();
+                let lines = self.halves.get(&[a, b]).map_or(&[][..], Vec::as_slice);
                 for (&node, way) in own.nodes.iter().filter(|(node, _)| !is_solved(**node, b)) {
                     let mut place = self.place(displacement, node);
-                    line.iter().for_each(|line| place[line.across] += way[line.across]);
+                    let on_line = |line: &&SymmetryLine| line.beyond(&points[node.index()], size) == 0.0;
+                    lines.iter().filter(on_line).for_each(|line| place[line.across] += way[line.across]);
                     let near = (0..D).all(|c| limits[b][c][0] < place[c] && place[c] < limits[b][c][1]);
-                    if near && let Some(depth) = self.depth(displacement, other, &place, line) {
+                    if near && let Some(depth) = self.depth(displacement, other, &place, lines) {
                         return Some((node, [a, b], depth));
                     }
                 }

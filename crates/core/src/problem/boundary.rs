@@ -71,14 +71,6 @@ impl<const D: usize> Supports<D> {
         self.prescribed.iter().for_each(|p| fixed[p.node.index()][p.component] = true);
         fixed
     }
-
-    /// The [`mirrors`] that stand still or move with a velocity that does not change.
-    pub(super) fn steady_mirrors<const N: usize>(&self, mesh: &Mesh<D, N>) -> Vec<[bool; D]> {
-        let mut mirrors = mirrors(mesh, &self.facets);
-        let changes = |p: &&PrescribedComponent| p.motion.is_some_and(|motion| !self.motions[motion].is_constant());
-        self.prescribed.iter().filter(changes).for_each(|p| mirrors[p.node.index()] = [false; D]);
-        mirrors
-    }
 }
 
 /// For each node the directions across which it is on a line of symmetry: those in which supports hold an edge that

@@ -4,7 +4,7 @@ use super::bodies::{Contact, Start};
 use super::boundary::{self, Supports};
 use super::contacts::{self, Choice, Stated, Surfaces};
 use super::sides::Bodies;
-use super::{Cause, InputError, Place, Problem, candidates, pairs, sides, sliding, start_of_contact};
+use super::{Cause, InputError, Place, Problem, candidates, pairs, sides, sliding, start_of_contact, symmetry};
 use crate::contact::{ContactSurface, Interface, Obstacle, Plane};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{BodyForce, Support, Traction};
@@ -187,8 +187,9 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let initial_displacement = nodal(&self.displacement, mesh.node_count(), "displacement")?;
         let initial_velocity = nodal(&self.velocity, mesh.node_count(), "velocity")?;
         let supports = boundary::supports(mesh, &self.stated.supports)?;
-        let (fixed, mirrors) = (supports.fixed(mesh.node_count()), supports.steady_mirrors(mesh));
+        let fixed = supports.fixed(mesh.node_count());
         let Supports { facets: supported, prescribed, motions } = supports;
+        let mirrors = symmetry::velocities(mesh, &supported, &prescribed, &motions);
         if prescribed.len() == D * mesh.node_count() {
             return Err(Cause::NoFreedom.at("support", None, ""));
         }

@@ -19,8 +19,8 @@ pub(super) struct Bodies<'m, const D: usize, const N: usize> {
     pub(super) fixed: Vec<[bool; D]>,
     /// Which components of each facet supports hold.
     pub(super) supported: &'m [[bool; D]],
-    /// The directions across which each node is on a line of symmetry that stands still or moves uniformly.
-    pub(super) mirrors: Vec<[bool; D]>,
+    /// For each node and each direction, the velocity of the line of symmetry across it on which the node is (m/s).
+    pub(super) mirrors: Vec<[Option<f64>; D]>,
     /// The initial velocity of each node (m/s).
     pub(super) velocity: &'m [[f64; D]],
     /// The mass of each node (kg).
@@ -120,11 +120,9 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         Ok(Side { of_whole: outward, nodes, facets, outward, bodies })
     }
 
-    /// The direction across which an edge is on a line of symmetry that stands still or moves uniformly.
-    pub(super) fn line_of(&self, facet: FacetId) -> Option<usize> {
-        let across = symmetry::across(self.mesh, &self.supported[facet.index()], facet)?;
-        let nodes = self.mesh.facets()[facet.index()].nodes;
-        nodes.iter().all(|node| self.mirrors[node.index()][across]).then_some(across)
+    /// The line of symmetry on which an edge is.
+    pub(super) fn line_of(&self, facet: FacetId) -> Option<SymmetryLine> {
+        symmetry::line_of(self.mesh, &self.supported[facet.index()], &self.mirrors, facet)
     }
 
     /// The lines of symmetry that both sides meet.
@@ -132,9 +130,9 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let [own, other] = sides.each_ref().map(|side| side.nodes.as_slice());
         let mut lines: Vec<SymmetryLine> = Vec::new();
         for (node, across) in own.iter().flat_map(|&node| (0..D).map(move |c| (node, c))) {
-            let line = SymmetryLine { across, place: self.mesh.points()[node.index()][across] };
-            let is_on = |node: &NodeId| self.is_on(&line, *node);
-            if is_on(&node) && other.iter().any(is_on) {
+            let Some(velocity) = self.mirrors[node.index()][across] else { continue };
+            let line = SymmetryLine { across, place: self.mesh.points()[node.index()][across], velocity };
+            if other.iter().any(|node| self.is_on(&line, *node)) {
                 lines.push(line);
             }
         }
@@ -144,7 +142,8 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
     /// Whether a node is on a line of symmetry.
     pub(super) fn is_on(&self, line: &SymmetryLine, node: NodeId) -> bool {
         let point = &self.mesh.points()[node.index()];
-        self.mirrors[node.index()][line.across] && line.beyond(point, self.mesh.size()) == 0.0
+        let velocity = self.mirrors[node.index()][line.across];
+        velocity == Some(line.velocity) && line.beyond(point, self.mesh.size()) == 0.0
     }
 
     /// The body of a facet, by its first node.

@@ -139,7 +139,7 @@ mod tests {
     /// Two slopes beside a line of symmetry meet along it, unless they are on different sides of it or on other lines.
     #[test]
     fn halves_meet_along_their_line() {
-        let line = |across: usize, place: f64| SymmetryLine { across, place };
+        let line = |across: usize, place: f64| SymmetryLine { across, place, velocity: 0.0 };
         let halves = |at: f64, lines: [Vec<SymmetryLine>; 2]| {
             let [of_first, own] = lines;
             let hull = vec![[at, 0.0], [at + 1.0, 0.0], [at + 1.0, 0.5], [at, 1.0]];

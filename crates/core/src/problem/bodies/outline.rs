@@ -2,7 +2,7 @@
 
 use crate::ids::{FacetId, NodeId};
 use crate::mesh::Mesh;
-use crate::problem::symmetry::{SymmetryLine, common_line, distinct};
+use crate::problem::symmetry::{SymmetryLine, common_lines, distinct};
 
 /// A point or a vector of the plane.
 pub(in crate::problem) type Vector = [f64; 2];
@@ -36,10 +36,13 @@ pub(in crate::problem) struct Outline {
 }
 
 impl Outline {
-    /// The direction across which the line of symmetry stands of which this body and another one are halves.
+    /// The direction across which the lines of symmetry stand of which this body and another one are halves, if it is
+    /// one alone.
     pub(in crate::problem) fn line_with(&self, other: &Self) -> Option<usize> {
         let (points, size) = (self.hull.iter().chain(&other.hull), self.size.max(other.size));
-        common_line([&self.lines, &other.lines], points, size).map(|line| line.across)
+        let lines = common_lines([&self.lines, &other.lines], points, size);
+        let across = lines.first()?.across;
+        lines.iter().all(|line| line.across == across).then_some(across)
     }
 
     /// The place of a point after a time (s).
@@ -56,14 +59,14 @@ pub(in crate::problem) struct Start<'a, const D: usize> {
 }
 
 /// The bodies of a mesh, with these names; `free` says whether an edge may touch, `wave_speed` is that at an edge
-/// (m/s). `across` says across which direction an edge is on a line of symmetry.
+/// (m/s). `line_of` has the line of symmetry on which an edge is.
 pub(in crate::problem) fn outlines<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
     names: Vec<String>,
     start: &Start<'_, D>,
     free: impl Fn(FacetId) -> bool,
     wave_speed: impl Fn(FacetId) -> f64,
-    across: impl Fn(FacetId) -> Option<usize>,
+    line_of: impl Fn(FacetId) -> Option<SymmetryLine>,
 ) -> Vec<Outline> {
     let body_of_node = mesh.part_numbers();
     let mut edges: Vec<Vec<Edge>> = names.iter().map(|_| Vec::new()).collect();
@@ -92,16 +95,16 @@ pub(in crate::problem) fn outlines<const D: usize, const N: usize>(
         let size = hull.iter().map(apart).fold(0.0, f64::max);
         let slowest = edges.iter().map(|edge| wave_speed(edge.facet)).fold(f64::INFINITY, f64::min);
         let velocity = momentum[body].map(|p| p / mass[body]);
-        let lines = lines(&edges, &across);
+        let lines = lines(&edges, &line_of);
         Outline { name, edges, hull, lines, velocity, size, passage: size / slowest }
     };
     names.into_iter().zip(edges).enumerate().map(outline).collect()
 }
 
 /// The lines of symmetry on which edges are.
-fn lines(edges: &[Edge], across: impl Fn(FacetId) -> Option<usize>) -> Vec<SymmetryLine> {
-    let on_line = edges.iter().filter_map(|edge| Some((across(edge.facet)?, edge.ends[0])));
-    distinct(on_line.map(|(across, end)| SymmetryLine { across, place: end[across] }))
+fn lines(edges: &[Edge], line_of: impl Fn(FacetId) -> Option<SymmetryLine>) -> Vec<SymmetryLine> {
+    let on_line = edges.iter().filter_map(|edge| Some((line_of(edge.facet)?, edge.ends[0])));
+    distinct(on_line.map(|(line, end)| SymmetryLine { place: end[line.across], ..line }))
 }
 
 fn in_plane<const D: usize>(vector: &[f64; D]) -> Vector {

@@ -1,29 +1,32 @@
 //! An edge beside a contact that a support keeps out of it.
 
-use super::{PlausibilityWarning, at, plausibility_warning};
+use super::{PlausibilityWarning, plausibility_warning};
 use crate::contact::{dot, tangent};
 use crate::ids::{FacetId, NodeId};
 use crate::problem::Problem;
 use crate::problem::alignment::FACES;
 use std::collections::BTreeSet;
 
-/// Smaller parts of an edge are rounding.
+/// Smaller components of a normal, and parts of an edge, are rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// An edge next to a surface that faces the other surface at the start without belonging to its own, because a support
-/// holds one of its nodes: the other body may enter there without a force.
+/// holds one of its nodes across: the other body may enter there without a force. Of surfaces that the user names, the
+/// edges are chosen.
 pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
 ) -> Option<PlausibilityWarning> {
     let (mesh, surface) = (problem.mesh(), problem.surface());
-    let held: BTreeSet<NodeId> = problem.prescribed().iter().map(|p| p.node).collect();
+    let held: BTreeSet<(NodeId, usize)> = problem.prescribed().iter().map(|p| (p.node, p.component)).collect();
     // None of them has a node that is held.
     if held.is_empty() {
         return None;
     }
+    let loaded: BTreeSet<FacetId> = problem.facet_loads().iter().map(|load| load.facet).collect();
     let in_contact: BTreeSet<FacetId> = surface.facets().iter().map(|facet| facet.facet).collect();
     for index in 0..problem.obstacles().len() {
-        let Some(opposite) = problem.opposite_obstacle(index) else { continue };
+        let place = problem.place_of_obstacle(index);
+        let Some(opposite) = problem.opposite_obstacle(index).filter(|_| place.key != "groups") else { continue };
         let normal = *problem.obstacles()[index].flat_frame().normal();
         let along = tangent(&normal);
         let range = |facet: FacetId| {
@@ -39,21 +42,23 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
         let own: BTreeSet<NodeId> = of(index).flat_map(|facet| mesh.facets()[facet.facet.index()].nodes).collect();
         for facet in mesh.boundary().filter(|facet| !in_contact.contains(facet)) {
             let nodes = mesh.facets()[facet.index()].nodes;
-            let beside = nodes.iter().any(|node| own.contains(node)) && problem.supported(facet) == [false; D];
+            let is_across = |node: &NodeId| (0..D).any(|c| normal[c].abs() > ROUNDING && held.contains(&(*node, c)));
+            let free = problem.supported(facet) == [false; D] && !loaded.contains(&facet);
+            let beside = free && nodes.iter().any(|node| own.contains(node));
             let faces = -dot(&mesh.facet_normal(facet).0, &normal) >= FACES;
             let [low, high] = range(facet);
             let common = high.min(other[1]) - low.max(other[0]) > ROUNDING * (high - low);
-            if let Some(node) = nodes.iter().find(|node| held.contains(node)).filter(|_| beside && faces && common) {
+            if let Some(node) = nodes.iter().find(|node| is_across(node)).filter(|_| beside && faces && common) {
                 let edge = nodes.map(|node| node.index().to_string()).join(", ");
                 let surface = problem.obstacles()[opposite].group().unwrap_or_default();
                 let message = format!(
                     "the edge of nodes {edge} is left out of the contact with \"{surface}\", because a support holds \
-                     node {}: the other body may enter there; support the body away from the contact, or name the \
-                     edges by `groups` if the support is along the surface",
+                     node {} across it: the other body may enter there; support the body away from the contact or, \
+                     if both are halves of a symmetric model, support the other one at their line of symmetry, too",
                     node.index()
                 );
                 return Some(plausibility_warning(
-                    at("contact", None, ""),
+                    place,
                     "edge_left_out",
                     "an edge beside a support that is left out of the contact",
                     message,

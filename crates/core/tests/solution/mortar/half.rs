@@ -4,11 +4,13 @@ use super::setup::steps;
 use crate::solution::run::{aluminium, largest, run};
 use percute_core::contact::{ContactRecorder, Interface, Status};
 use percute_core::dynamics::{MissedContact, simulate};
-use percute_core::load::{Support, Table};
+use percute_core::ids::NodeId;
+use percute_core::load::{Profile, Support, Table, Traction};
 use percute_core::mesh::TriangleMesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Between, Builder, Contact, Initial, TriangleProblem, plausibility_warnings};
 use percute_testkit::{Roof, translated};
+use std::collections::BTreeMap;
 
 /// Drives far sides of the roof inwards, from the speed of all (m/s) up to another one within 5 µs.
 fn driven(builder: Builder<2, 3>, sides: &[(&str, f64)], [along, speed]: [f64; 2]) -> Builder<2, 3> {
@@ -137,22 +139,49 @@ fn falling(lower: &TriangleMesh, upper: &TriangleMesh, supports: &[(&str, [bool;
     })
 }
 
-/// A tip on the line of symmetry, either side of it, enters a body without contact with it: the run ends when it is
-/// deeper than a tenth of an element.
+/// A tip on a line of symmetry, on either side of it and on either of two, enters a body without contact with it: the
+/// run ends when it is deeper than a tenth of an element.
 #[test]
-fn a_tip_on_the_line_of_symmetry_is_missed() {
-    for mirrored in [false, true] {
+fn a_tip_on_a_line_of_symmetry_is_missed() {
+    let lines: [&[&str]; 2] = [&["left"], &["left", "right"]];
+    for (lines, mirrored) in lines.into_iter().flat_map(|lines| [(lines, false), (lines, true)]) {
         let [lower, upper] = [block(-0.01, 0.0), block(1e-5, 0.8)]
             .map(|mesh| if mirrored { percute_testkit::mirrored(&mesh).unwrap() } else { mesh });
         // Groups keep their names in the image.
-        let held = ["lower.left", "upper.left"].map(|group| (group, [true, false]));
+        let held: Vec<String> =
+            lines.iter().flat_map(|line| ["lower", "upper"].map(|body| format!("{body}.{line}"))).collect();
+        let held: Vec<_> = held.iter().map(|group| (group.as_str(), [true, false])).collect();
         let problem = falling(&lower, &upper, &held).build().unwrap();
         let times = steps(&problem, 60e-6);
         let mut missed = MissedContact::new(&problem, times.step_count());
         let run = simulate(&problem, &times, &mut missed, &mut Unobserved);
         let error = run.err().map(|error| error.to_string()).unwrap_or_default();
         // The other nodes of the upper body are 3 mm higher, and the bodies move by 1.2 mm.
-        assert!(error.contains(" m inside "), "{mirrored}: {error}");
+        assert!(error.contains(" m inside "), "{lines:?}, {mirrored}: {error}");
+    }
+}
+
+/// The normal of automatic contact of a problem, and the names of its warnings.
+fn found(builder: Builder<2, 3>) -> ([f64; 2], Vec<&'static str>) {
+    let contact = Contact::new::<2>(Between::All, 0.2, None).unwrap();
+    let problem = builder.automatic_contact().contact(contact).build().unwrap();
+    let warnings = plausibility_warnings(&problem, &steps(&problem, 20e-6));
+    (*problem.obstacles()[0].flat_frame().normal(), warnings.iter().map(|warning| warning.name).collect())
+}
+
+/// A support along the line of symmetry, of which the velocity changes, leaves the halves what they are: of a plate that
+/// is one cell high, it holds a node of the only edge on the line.
+#[test]
+fn halves_may_be_driven_along_their_line() {
+    for rows in [1, 2] {
+        let lower = block(-0.01, 0.0).mapped(|p| [p[0], p[1] - 10.0 * (p[1] + 0.01) * p[0]]).unwrap();
+        let plate = TriangleMesh::rectangle(0.02, 0.004, 8, rows).unwrap();
+        let upper = plate.mapped(|p| [p[0], p[1] + 1e-5 + 0.1 * p[0] * (1.0 - p[1] / 0.004)]).unwrap();
+        let velocity = Table::new(vec![0.0, 1e-5, 1.0], vec![[0.0, -20.0], [0.0, -25.0], [0.0, -25.0]]).unwrap();
+        let press = Support { group: "upper.top".to_string(), components: [false, true], velocity: Some(velocity) };
+        let held = ["lower.left", "upper.left"].map(|group| (group, [true, false]));
+        let (normal, warnings) = found(falling(&lower, &upper, &held).support(press));
+        assert!(normal[0] == 0.0 && !warnings.contains(&"edge_left_out"), "{rows}: {normal:?} {warnings:?}");
     }
 }
 
@@ -170,19 +199,28 @@ fn a_clamped_side_is_the_end_of_a_body() {
     assert!(!ends(10e-6) && ends(40e-6));
 }
 
-/// An edge next to a support across the contact has none, and percute warns where the other body faces it.
+/// An edge next to a support across the contact has none, and percute warns where the other body faces it, unless the
+/// user took it out: by a traction on it, or by names of other edges.
 #[test]
 fn an_edge_beside_a_support_is_left_out() {
-    let warns = |wide: f64, components: [bool; 2]| {
-        let lower = TriangleMesh::rectangle(0.045, 0.01, 9, 2).unwrap();
+    let lower = TriangleMesh::rectangle(0.045, 0.01, 9, 2).unwrap();
+    let cells: Vec<_> = lower.cells().iter().map(|nodes| nodes.map(NodeId::index)).collect();
+    let top: Vec<_> = (20..29).map(|first| [first, first + 1]).collect();
+    let groups = [("left", vec![[0, 10], [10, 20]]), ("first", top[..1].to_vec()), ("others", top[1..].to_vec())];
+    let groups = groups.map(|(name, edges)| (name.to_string(), edges)).into();
+    let lower = TriangleMesh::new(lower.points().to_vec(), &cells, &groups, &BTreeMap::new()).unwrap();
+    let bodies = |wide: f64, components: [bool; 2]| {
         let upper = block(0.01001, 0.0).mapped(|p| [p[0] + wide, p[1]]).unwrap();
-        let contact = Contact::new::<2>(Between::All, 0.2, None).unwrap();
-        let builder = falling(&lower, &upper, &[("lower.left", components)]);
-        let problem = builder.automatic_contact().contact(contact).build().unwrap();
-        let warnings = plausibility_warnings(&problem, &steps(&problem, 20e-6));
-        warnings.iter().any(|warning| warning.name == "edge_left_out")
+        falling(&lower, &upper, &[("lower.left", components)])
     };
-    assert!(warns(0.0, [true, true]) && warns(0.002, [false, true]));
+    let warns = |builder| found(builder).1.contains(&"edge_left_out");
+    assert!(warns(bodies(0.0, [true, true])) && warns(bodies(0.002, [false, true])));
     // Beside the edge, which is 5 mm long, and with a support along the surface alone.
-    assert!(!warns(0.005, [true, true]) && !warns(0.0, [true, false]));
+    assert!(!warns(bodies(0.005, [true, true])) && !warns(bodies(0.0, [true, false])));
+    let value = Table::constant([0.0, -1e5]);
+    let traction = Traction { group: "lower.first".to_string(), value, profile: Profile::UNIFORM };
+    assert!(!warns(bodies(0.0, [true, true]).traction(traction)));
+    let groups = Between::Groups(["lower.others", "upper.bottom"].map(str::to_string));
+    let named = bodies(0.0, [true, true]).contact(Contact::new::<2>(groups, 0.2, None).unwrap()).build().unwrap();
+    assert!(plausibility_warnings(&named, &steps(&named, 20e-6)).iter().all(|warning| warning.name != "edge_left_out"));
 }
