@@ -121,6 +121,25 @@ def test_chevrons_that_lean_together_have_no_range(slope: float, ranged: bool, m
 
 
 @pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
+@pytest.mark.parametrize(("speed", "driven", "ranged"), [(80.0, False, False), (0.0, True, False), (0.0, False, True)])
+def test_a_block_that_slides_onto_a_ramp_has_no_range(speed: float, driven: bool, ranged: bool) -> None:
+    """It touches a level surface first, whether it has its speed at the start or a support drives it."""
+    flat = pc.Mesh.rectangle(0.06, 0.02, nx=24, ny=6)
+    ramp = flat.points[:, 1] / 0.02 * np.maximum(flat.points[:, 0] - 0.03, 0.0) * math.tan(math.radians(18.0))
+    ramp = pc.Mesh(flat.points + np.outer(ramp, [0.0, 1.0]), flat.cells, edge_groups=flat.edge_groups)
+    block = pc.Mesh.rectangle(0.01, 0.01, nx=5, ny=4)
+    material = pc.Elastic(**ALUMINIUM, plane="stress")
+    lower = pc.Body(name="lower", mesh=ramp, material=material)
+    upper = pc.Body(name="upper", mesh=block, material=material, origin=(0.0198, 0.02001), velocity=(speed, -20.0))
+    push = pc.Support(group="upper.top", components="x", velocity=[0.0, 150.0, 150.0], time=[0.0, 1e-6, 1.0])
+    contact = pc.Interface(groups=("upper.bottom", "lower.top"), friction=0.2, matching=False)
+    problem = pc.Problem(bodies=[lower, upper], contacts=[contact], supports=[push] if driven else [])
+    estimate = pc.estimate(pc.simulate(problem, end=15e-6, courant=0.9))
+    assert ("common_slope" in [warning["name"] for warning in json.loads(estimate.to_json())["warnings"]]) is not ranged
+    assert (facts(estimate)["effectivity"] is not None) is ranged
+
+
+@pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
 def test_the_number_is_not_trusted_for_a_reason() -> None:
     mesh = pc.Mesh.rectangle(0.05, 0.04, nx=5, ny=4)
     history = struck(mesh).history

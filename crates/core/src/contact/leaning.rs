@@ -6,25 +6,101 @@ use super::{dot, tangent};
 use crate::mesh::Mesh;
 use std::collections::BTreeMap;
 
-/// The largest angle (rad) by which surfaces of two bodies lean away from the normal of their contact where they
-/// touch: that by which two edges of which all nodes have `touched` lean to the same side, and that of an edge that a
-/// corner of the slave has touched. Nodes are given by their positions in the contact surface. Nodes `inside` a
-/// surface, as those on a line of symmetry, are no corners. `shifts` has how far the parts of the slave of surfaces
-/// that slide have moved along their tangent against the master where the surfaces are looked at (m).
-#[must_use]
-pub fn common_slope<const D: usize, const N: usize>(
-    surface: &ContactSurface<D>,
-    mesh: &Mesh<D, N>,
-    touched: impl Fn(usize) -> bool,
-    inside: impl Fn(usize) -> bool,
-    shifts: impl Fn(&SlidingSurfaces<D>) -> Vec<f64>,
-) -> f64 {
-    // Bars are in a row.
-    if D == 1 {
-        return 0.0;
+/// By how much the edges of surfaces of two bodies lean away from the normal of their contact, in the undeformed mesh.
+#[derive(Clone, Debug)]
+pub struct Leaning<'s, const D: usize> {
+    surface: &'s ContactSurface<D>,
+    /// Edges of pairs that lean together, by the positions of their nodes, and by which angle (rad).
+    pairs: Vec<([usize; D], f64)>,
+    sliding: Vec<Slopes>,
+    /// Whether each node is inside a surface although it is at its end, as on a line of symmetry.
+    inside: Vec<bool>,
+}
+
+/// The angles of the edges of the slave and of the master of surfaces that slide (rad).
+#[derive(Clone, Debug)]
+struct Slopes {
+    slave: Vec<f64>,
+    master: Vec<f64>,
+    /// The largest angle of the master: neither edges nor corners lean by more.
+    largest: f64,
+}
+
+impl<'s, const D: usize> Leaning<'s, D> {
+    /// Of all contacts between bodies. Nodes `inside` a surface, by their positions, are no corners.
+    #[must_use]
+    pub fn new<const N: usize>(surface: &'s ContactSurface<D>, mesh: &Mesh<D, N>, inside: Vec<bool>) -> Self {
+        // Bars are in a row.
+        let (pairs, sliding) = if D == 1 {
+            (Vec::new(), Vec::new())
+        } else {
+            (pairs(surface, mesh), surface.sliding().iter().map(Slopes::new).collect())
+        };
+        Self { surface, pairs, sliding, inside }
     }
-    let slopes = surface.sliding().iter().map(|sliding| of_sliding(sliding, &touched, &inside, &shifts(sliding)));
-    slopes.fold(of_pairs(surface, mesh, &touched), f64::max)
+
+    /// The largest angle (rad) by which surfaces lean where they are at an instant, or `least` if that is larger: the
+    /// angle by which two edges lean to the same side of which all nodes have `touched`, and that of an edge that a
+    /// corner of the slave has touched. `shifts` has how far the parts of the slave of each surfaces that slide are
+    /// along their tangent against the master (m), if a force acts between them.
+    #[must_use]
+    pub fn largest<'a>(
+        &self,
+        least: f64,
+        touched: impl Fn(usize) -> bool,
+        shifts: impl Fn(usize) -> Option<&'a [f64]>,
+    ) -> f64 {
+        let paired = self.pairs.iter().filter(|(nodes, lean)| *lean > least && nodes.iter().all(|&at| touched(at)));
+        let mut largest = paired.fold(least, |most, (_, lean)| most.max(*lean));
+        for (index, slopes) in self.sliding.iter().enumerate().filter(|(_, slopes)| slopes.largest > least) {
+            if let Some(shifts) = shifts(index) {
+                largest = largest.max(self.of_sliding((&self.surface.sliding()[index], slopes), &touched, shifts));
+            }
+        }
+        largest
+    }
+
+    fn of_sliding(
+        &self,
+        (sliding, slopes): (&SlidingSurfaces<D>, &Slopes),
+        touched: &impl Fn(usize) -> bool,
+        shifts: &[f64],
+    ) -> f64 {
+        let (slave, master, tolerance) = (sliding.slave(), sliding.master(), sliding.tolerance());
+        let has_touched =
+            |side: &Side, first: usize| [first, first + 1].iter().all(|&node| touched(side.position(node)));
+        let place = |node: usize| slave.xi()[node] + shifts[slave.part_of(node)];
+        let mut largest = 0.0_f64;
+        for (edge, &own) in slave.edges().iter().enumerate().filter(|(_, own)| has_touched(slave, **own)) {
+            let ends = [place(own) + tolerance, place(own + 1) - tolerance];
+            let faced = edges_between(master, ends).filter(|&other| has_touched(master, master.edges()[other]));
+            largest = faced.fold(largest, |most, other| most.max(common(slopes.slave[edge], slopes.master[other])));
+        }
+        let strikes = |&node: &usize| {
+            let at = slave.position(node);
+            touched(at) && !self.inside[at] && slave.is_corner(node)
+        };
+        for xi in (0..slave.len()).filter(strikes).map(place) {
+            // Between two edges that lean to different sides, the direction is one between theirs.
+            let faced = edges_between(master, [xi - tolerance, xi + tolerance]).map(|edge| slopes.master[edge]);
+            largest = largest.max(faced.reduce(|a, b| common(a, b).copysign(a)).unwrap_or(0.0).abs());
+        }
+        largest
+    }
+}
+
+impl Slopes {
+    fn new<const D: usize>(sliding: &SlidingSurfaces<D>) -> Self {
+        let [slave, master] = [sliding.slave(), sliding.master()].map(|side| {
+            let slope = |&first: &usize| {
+                let [xi, eta] = [side.xi(), side.eta()].map(|values| values[first + 1] - values[first]);
+                eta.atan2(xi)
+            };
+            side.edges().iter().map(slope).collect::<Vec<f64>>()
+        });
+        let largest = master.iter().fold(0.0, |most: f64, slope| most.max(slope.abs()));
+        Self { slave, master, largest }
+    }
 }
 
 /// The lean of two edges at one place: none if one of them is level, or if they lean to different sides.
@@ -32,19 +108,16 @@ fn common(one: f64, other: f64) -> f64 {
     if one * other > 0.0 { one.abs().min(other.abs()) } else { 0.0 }
 }
 
-fn of_pairs<const D: usize, const N: usize>(
-    surface: &ContactSurface<D>,
-    mesh: &Mesh<D, N>,
-    touched: &impl Fn(usize) -> bool,
-) -> f64 {
+/// The edges of pairs of nodes that lean together, and by which angle (rad).
+fn pairs<const D: usize, const N: usize>(surface: &ContactSurface<D>, mesh: &Mesh<D, N>) -> Vec<([usize; D], f64)> {
     let opposite = |at: usize| surface.nodes()[at].opposite;
     let sorted = |mut nodes: [usize; D]| {
         nodes.sort_unstable();
         nodes
     };
     let facets: BTreeMap<[usize; D], _> = surface.facets().iter().map(|facet| (sorted(facet.nodes), facet)).collect();
-    let mut largest = 0.0_f64;
-    for facet in surface.facets().iter().filter(|facet| facet.nodes.iter().all(|&at| touched(at))) {
+    let mut leaning = Vec::new();
+    for facet in surface.facets() {
         let other = facet.nodes.map(|at| opposite(at).unwrap_or(at));
         let Some(other) = facets.get(&sorted(other)).filter(|other| other.facet != facet.facet) else { continue };
         let frame = surface.obstacles()[facet.obstacle].flat_frame();
@@ -53,58 +126,17 @@ fn of_pairs<const D: usize, const N: usize>(
             let outward = mesh.facet_normal(facet).0;
             (dot(&outward, &along) / dot(&outward, normal)).atan()
         };
-        largest = largest.max(common(slope(facet.facet), slope(other.facet)));
-    }
-    largest
-}
-
-fn of_sliding<const D: usize>(
-    sliding: &SlidingSurfaces<D>,
-    touched: &impl Fn(usize) -> bool,
-    inside: &impl Fn(usize) -> bool,
-    shifts: &[f64],
-) -> f64 {
-    let [slave, master] = [sliding.slave(), sliding.master()].map(Line);
-    let tolerance = sliding.tolerance();
-    let place = |node: usize| slave.0.xi()[node] + shifts[slave.0.part_of(node)];
-    let mut largest = 0.0_f64;
-    for &own in slave.0.edges().iter().filter(|&&own| slave.has_touched(own, touched)) {
-        let ends = [place(own) + tolerance, place(own + 1) - tolerance];
-        for other in master.edges_between(ends).filter(|&other| master.has_touched(other, touched)) {
-            largest = largest.max(common(slave.slope(own), master.slope(other)));
+        let lean = common(slope(facet.facet), slope(other.facet));
+        if lean > 0.0 {
+            leaning.push((facet.nodes, lean));
         }
     }
-    let strikes = |&node: &usize| {
-        let at = slave.0.position(node);
-        touched(at) && !inside(at) && slave.0.is_corner(node)
-    };
-    for xi in (0..slave.0.len()).filter(strikes).map(place) {
-        // Between two edges that lean to different sides, the direction is one between theirs.
-        let slopes = master.edges_between([xi - tolerance, xi + tolerance]).map(|edge| master.slope(edge));
-        largest = largest.max(slopes.reduce(|a, b| common(a, b).copysign(a)).unwrap_or(0.0).abs());
-    }
-    largest
+    leaning
 }
 
-/// A side of surfaces that slide, in the undeformed mesh.
-#[derive(Clone, Copy)]
-struct Line<'s>(&'s Side);
-
-impl Line<'_> {
-    /// The angle of an edge, by its first node (rad).
-    fn slope(&self, first: usize) -> f64 {
-        let [xi, eta] = [self.0.xi(), self.0.eta()].map(|values| values[first + 1] - values[first]);
-        eta.atan2(xi)
-    }
-
-    fn has_touched(&self, first: usize, touched: &impl Fn(usize) -> bool) -> bool {
-        [first, first + 1].iter().all(|&node| touched(self.0.position(node)))
-    }
-
-    /// The first nodes of the edges of one body that reach into an interval (m).
-    fn edges_between(&self, [from, to]: [f64; 2]) -> impl Iterator<Item = usize> + '_ {
-        let (xi, edges) = (self.0.xi(), self.0.edges());
-        let begin = edges.partition_point(|&first| xi[first + 1] <= from);
-        edges[begin..].iter().copied().take_while(move |&first| xi[first] < to)
-    }
+/// The edges of a side of one body that reach into an interval (m).
+fn edges_between(side: &Side, [from, to]: [f64; 2]) -> impl Iterator<Item = usize> + '_ {
+    let (xi, edges) = (side.xi(), side.edges());
+    let begin = edges.partition_point(|&first| xi[first + 1] <= from);
+    (begin..edges.len()).take_while(move |&edge| xi[edges[edge]] < to)
 }

@@ -23,7 +23,7 @@ pub use coulomb::{Coulomb, Status};
 pub use frame::Frame;
 pub(crate) use frame::dot;
 pub use interface::Interface;
-pub use leaning::common_slope;
+pub use leaning::Leaning;
 pub use mortar::{CORNER, Coupling, DualShape, Facing, Part, Segment, Side, SlidingSurfaces};
 pub(crate) use mortar::{SlidingContact, tangent};
 pub use obstacle::{Obstacle, ObstacleError};

@@ -3,7 +3,6 @@
 use super::columns::{Columns, EnergiesOverTime, PARTS};
 use super::flat::FlatElements;
 use super::found::found;
-use super::sliding::common_slope;
 use super::varying_steps::varying_steps;
 use super::warnings::{Facts, Warning, few_samples, reported};
 use super::{
@@ -137,7 +136,7 @@ pub fn warnings_of<const D: usize, const N: usize>(
         own_contacts: estimate.own_contacts,
         slip: contact.slip,
         depth: contact.depth,
-        common_slope: common_slope(subject.problem, contact),
+        common_slope: contact.lean.to_degrees(),
         rotation: if subject.problem.statement().interfaces.is_empty() { 0.0 } else { contact.rotation },
         residual: &largest_residual(estimate),
         flat: flat.as_ref(),

@@ -1,6 +1,6 @@
 //! Contact and estimate at surfaces that slide along each other.
 
-use percute_core::contact::{self, ContactResults, Frame, Interface, Obstacle, Resultant, Side, SlidingSurfaces};
+use percute_core::contact::{ContactResults, Frame, Interface, Obstacle, Resultant};
 use percute_core::problem::Problem;
 use percute_core::ratio;
 use percute_estimator::SurfaceEstimate;
@@ -16,25 +16,6 @@ pub struct SlidingReport {
     /// What the estimate says of them.
     #[serde(flatten)]
     pub estimate: SurfaceEstimate,
-}
-
-/// The largest angle by which surfaces of bodies that have touched lean together from their normal (degrees), at their
-/// first touch after a free flight.
-pub(super) fn common_slope<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    results: &ContactResults<D>,
-) -> f64 {
-    let touched = |at: usize| results.summary[at].first_touch.is_some();
-    let (surface, on_line) = (problem.surface(), problem.on_lines_of_symmetry());
-    let shifts = |sliding: &SlidingSurfaces<D>| {
-        let first = sliding.positions().filter_map(|at| results.summary[at].first_touch).min_by(f64::total_cmp);
-        let way = |side: &Side, node: usize| {
-            let velocity = problem.initial_velocity()[surface.nodes()[side.position(node)].node.index()];
-            first.unwrap_or(0.0) * (0..D).map(|c| velocity[c] * sliding.tangent()[c]).sum::<f64>()
-        };
-        sliding.shifts(|node| way(sliding.slave(), node), |node| way(sliding.master(), node))
-    };
-    contact::common_slope(surface, problem.mesh(), touched, |at| on_line[at], shifts).to_degrees()
 }
 
 /// One side of an interface, and the resultants of its forces at all instants.

@@ -127,6 +127,11 @@ impl<'a, const D: usize> Facing<'a, D> {
         forces
     }
 
+    /// How far the parts of the slave of two surfaces that slide are along the tangent against the master (m).
+    pub(in crate::contact) fn shifts(&self, sliding: usize) -> &[f64] {
+        self.couplings[sliding].shifts()
+    }
+
     /// Masters touch where a node of their slave that touches acts on them.
     pub fn settle_masters(&self, touching: &mut [bool]) {
         for (sliding, coupling) in self.surface.sliding().iter().zip(&self.couplings) {

@@ -5,6 +5,7 @@ use super::rotation::Rotation;
 use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
 use crate::contact::coulomb::{Coulomb, Status, dissipation};
 use crate::contact::frame::{Frame, dot};
+use crate::contact::leaning::Leaning;
 use crate::contact::mortar::{Facing, LEAST_PART, SlidingSurfaces};
 use crate::history::{SinkError, State, StateSink, Step, StepCheck, StepSource};
 use crate::problem::Problem;
@@ -38,6 +39,7 @@ pub struct ContactRecorder<'p, const D: usize, const N: usize> {
     facing: Facing<'p, D>,
     /// The shortest edge of each node that may touch another body (m); infinite at rigid obstacles, and on a bar.
     shortest: Vec<f64>,
+    leaning: Leaning<'p, D>,
     rotation: Rotation<D>,
     results: ContactResults<D>,
 }
@@ -65,6 +67,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             slip: 0.0,
             depth: 0.0,
             at_end: false,
+            lean: 0.0,
             rotation: 0.0,
             steps: None,
             nodes,
@@ -72,7 +75,8 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
         let (laws, now) = (TangentialLaw::of_surface(problem), vec![start; results.nodes.len()]);
         let facing = problem.surface().facing(problem.initial_displacement());
         let (shortest, rotation) = (shortest_edges(problem), Rotation::new(problem, times.step_count()));
-        Self { problem, times, laws, now, facing, shortest, rotation, results }
+        let leaning = Leaning::new(problem.surface(), problem.mesh(), problem.on_lines_of_symmetry());
+        Self { problem, times, laws, now, facing, shortest, leaning, rotation, results }
     }
 
     /// Keeps all nodes at all instants too.
@@ -103,6 +107,17 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             least[obstacle] = least[obstacle].max(LEAST_PART * frame.split(&step.reaction[at]).0);
         }
         least
+    }
+
+    /// By which angle surfaces lean together where they are (rad), or have leant before.
+    fn lean(&self) -> f64 {
+        let surface = self.problem.surface();
+        let touched = |at: usize| self.results.summary[at].first_touch.is_some();
+        let shifts = |index: usize| {
+            let acts = surface.sliding()[index].positions().any(|at| self.now[at].status != Status::Free);
+            acts.then(|| self.facing.shifts(index))
+        };
+        self.leaning.largest(self.results.lean, touched, shifts)
     }
 
     /// Records one node, which is free up to this normal force (N); returns its share of the resultants.
@@ -192,6 +207,7 @@ impl<const D: usize, const N: usize> ContactRecorder<'_, D, N> {
                 total.add(&share);
             }
         }
+        self.results.lean = self.lean();
         let dt = if step.index == 0 { 0.0 } else { self.times.step(step.index - 1) };
         for (sum, over_time) in sums.into_iter().zip(&mut self.results.obstacles) {
             over_time.push(sum.finish(over_time.last(), dt));

@@ -169,8 +169,8 @@ fn found(builder: Builder<2, 3>) -> ([f64; 2], Vec<&'static str>) {
     (*problem.obstacles()[0].flat_frame().normal(), warnings.iter().map(|warning| warning.name).collect())
 }
 
-/// A support along the line of symmetry, of which the velocity changes, leaves the halves what they are: of a plate that
-/// is one cell high, it holds a node of the only edge on the line.
+/// A support that moves along the line of symmetry with a changing velocity leaves it one: of a plate that is one cell
+/// high, it holds a node of the only edge on the line.
 #[test]
 fn halves_may_be_driven_along_their_line() {
     for rows in [1, 2] {

@@ -2,7 +2,7 @@
 
 use super::setup::{Blocks, GAP, steps};
 use crate::solution::run::{aluminium, fixed, run};
-use percute_core::contact::{Interface, Obstacle, SlidingSurfaces, common_slope};
+use percute_core::contact::{Interface, Leaning, Obstacle};
 use percute_core::dynamics::{SimulationError, check_start};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
@@ -96,9 +96,9 @@ fn chevrons_lean_together() {
     let slope = |problem: &TriangleProblem, ends: bool| {
         let (surface, mesh) = (problem.surface(), problem.mesh());
         let apex = |at: usize| (mesh.points()[surface.nodes()[at].node.index()][0] - 0.01).abs() < 1e-9;
-        let still = |sliding: &SlidingSurfaces<2>| vec![0.0; sliding.slave().parts().len()];
-        assert_eq!(common_slope(surface, mesh, apex, |_| true, still), 0.0);
-        common_slope(surface, mesh, |_| true, |_| !ends, still).to_degrees()
+        let leaning = |inside: bool| Leaning::new(surface, mesh, vec![inside; surface.nodes().len()]);
+        assert_eq!(leaning(true).largest(0.0, apex, |_| Some(&[0.0])), 0.0);
+        leaning(!ends).largest(0.0, |_| true, |_| Some(&[0.0])).to_degrees()
     };
     let degrees = |height: fn(f64) -> [f64; 2]| {
         let angle = slope(&facing(height, 0.0, &[]).unwrap(), false);
@@ -117,6 +117,30 @@ fn chevrons_lean_together() {
     assert!(
         (degrees(|x| [0.3 * (x - 0.01).abs(), 0.1 * (x - 0.01).abs()]) - 0.1_f64.atan().to_degrees()).abs() < 1e-10
     );
+}
+
+/// Surfaces lean together where they are: of two zigzags of four edges, the third one of the upper surface is on the
+/// first one of the lower surface after a way to the left.
+#[test]
+fn surfaces_lean_together_where_they_are() {
+    let problem = facing(|x| [0.3 * ((x + 0.005) % 0.01 - 0.005).abs(); 2], 0.0, &[]).unwrap();
+    let (surface, sliding) = (problem.surface(), &problem.surface().sliding()[0]);
+    let is_upper = |at: usize| surface.nodes()[at].node.index() < 25;
+    let left = if is_upper(sliding.slave().position(0)) { -sliding.tangent()[0] } else { sliding.tangent()[0] };
+    let leaning = Leaning::new(surface, problem.mesh(), vec![true; surface.nodes().len()]);
+    let touched = |at: usize| {
+        let from = if is_upper(at) { 0.0099 } else { -0.0001 };
+        (from..from + 0.0052).contains(&surface.point(at)[0])
+    };
+    let lean = |least: f64, way: f64| {
+        let shifts = [way * left];
+        leaning.largest(least, touched, |_| Some(&shifts))
+    };
+    let angle = 0.3_f64.atan();
+    assert_eq!([lean(0.0, 0.0), lean(0.0, -0.01), lean(0.0, 0.005)], [0.0; 3]);
+    // Rounding of an arctangent.
+    assert!((lean(0.0, 0.01) - angle).abs() < 1e-14 && (lean(0.1, 0.01) - angle).abs() < 1e-14);
+    assert_eq!([lean(0.4, 0.01), leaning.largest(0.2, |_| true, |_| None)], [0.4, 0.2]);
 }
 
 #[test]

@@ -56,6 +56,7 @@ impl Reader<'_, '_> {
             slip: self.one("slip")?,
             depth: self.one("depth")?,
             at_end: self.one("at_end")? > 0.0,
+            lean: self.one("lean")?,
             rotation: self.one("rotation")?,
             nodes: self.places(&node, of_obstacles.len())?,
             summary: self.summary(count, &steps)?,

@@ -4,7 +4,6 @@ use super::touches::Contact;
 use crate::foreign::{Checked, Contradiction, by_a_penalty, is_off_contact, off_contact};
 use crate::report::flat::FlatElements;
 use crate::report::rebound::Rebound;
-use crate::report::sliding::common_slope;
 use percute_core::contact::ContactResults;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
@@ -131,7 +130,7 @@ impl Facts {
             slip: results.slip,
             depth: results.depth,
             at_end: results.at_end,
-            common_slope: common_slope(problem, results),
+            common_slope: results.lean.to_degrees(),
             supported: !problem.prescribed().is_empty(),
             at_contact: at_contact(problem, estimate, results),
             error: estimate.error,
