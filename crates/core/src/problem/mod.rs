@@ -10,6 +10,7 @@ mod distance;
 mod error;
 mod facing_edges;
 mod joined;
+mod may_touch;
 mod pairs;
 mod plausibility;
 mod renumber;
