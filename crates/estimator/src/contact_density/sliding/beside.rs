@@ -15,8 +15,8 @@ use percute_core::problem::Problem;
 const SMALL: f64 = 1e-3;
 
 /// Nearer to a node than this part of the edge, a place does not cut the triangle: the slender part would lose all
-/// digits, and its stress would have more energy than that in the star of the node.
-const SLENDER: f64 = 1.0 / 64.0;
+/// digits. Rounding must not choose: no place of a regular mesh is so far from a node.
+const SLENDER: f64 = 0.0077;
 
 /// Elements with such stresses.
 pub(super) type Stresses = Vec<(ElementId, BesideStress)>;
@@ -38,9 +38,7 @@ pub(super) fn of_edge<const D: usize, const N: usize>(
             least = other;
         }
     };
-    // The star of the other node is better for a load on the far half, and rounding spoils it less.
-    let ends = (0..2).filter(|end| load.beginning(*end) <= 0.5);
-    ends.for_each(|end| take(in_star(problem, edge, end, load)));
+    (0..2).for_each(|end| take(in_star(problem, edge, end, load)));
     for place in load.peaks() {
         take(in_cut_triangle((problem, edge), corners, place, load).map(|stress| vec![(id, stress)]));
         (0..2).for_each(|end| take(close_to_a_node(problem, edge, (end, place), load)));
@@ -90,13 +88,15 @@ fn in_star<const D: usize, const N: usize>(
         [supported[0], supported[D - 1]]
     });
     let mut rests = [EdgeRest::default(), EdgeRest::default()];
+    let (load, difference) = load.with_equal_ways([0.0, 1.0][end], edge);
     rests[usize::from(star.links[0] != Some(candidate.facet))] = load.seen_from(end, edge);
     let stresses = rest_stress(&elements, &rests, supported)?;
     let of = |(&id, stress): (&ElementId, &RestStress)| {
         let at = mesh.local_node(id, node).unwrap_or(0);
         (id, BesideStress { inside: 0.0, shared: stress.root, products: stress.products(at) })
     };
-    Some(star.elements.iter().zip(&stresses).map(of).collect())
+    let rest = (owner(problem, edge), BesideStress::inside((edge.spread * difference).sqrt()));
+    Some(star.elements.iter().zip(&stresses).map(of).chain((difference > 0.0).then_some(rest)).collect())
 }
 
 /// The corners of the element of an edge: its first and its second end, and the one opposite.
@@ -121,6 +121,7 @@ fn in_cut_triangle<const D: usize, const N: usize>(
     }
     let at = [0, 1].map(|c| a[c] * (1.0 - place) + b[c] * place);
     let [before, after, up] = [a, b, opposite].map(|corner| [0, 1].map(|c| corner[c] - at[c]));
+    let (load, difference) = load.with_equal_ways(place, edge);
     let [first, second] = load.around(place, edge);
     // Counterclockwise.
     let (fan, rests) = if after[0] * up[1] > after[1] * up[0] {
@@ -131,7 +132,8 @@ fn in_cut_triangle<const D: usize, const N: usize>(
     let law = problem.material(owner(problem, edge));
     let elements = cut_fan(fan).map(|ends| StarElement { ends, law });
     let stresses = rest_stress(&elements, &rests, [[false; 2]; 2])?;
-    Some(BesideStress::inside(stresses.iter().map(|stress| stress.root * stress.root).sum::<f64>().sqrt()))
+    let square: f64 = stresses.iter().map(|stress| stress.root * stress.root).sum();
+    Some(BesideStress::inside(square.sqrt() + (edge.spread * difference).sqrt()))
 }
 
 /// A fan of four triangles around the origin between three points: both angles are cut into halves, because the stress
