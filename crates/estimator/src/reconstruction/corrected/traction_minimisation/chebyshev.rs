@@ -214,16 +214,40 @@ impl Operator {
         }
     }
 
-    /// The product of scaled coefficients with the matrix of the iteration; `edges` has any content.
-    pub(super) fn multiply(&self, block: &Block, x: &Modes, product: &mut Modes, [t, v]: &mut [Vec<Lanes>; 2]) {
-        product.edges.copy_from_slice(&x.edges);
+    /// The product of scaled coefficients with the matrix of the iteration, and the scalar product of both; `edges` has
+    /// any content.
+    pub(super) fn multiply(&self, block: &Block, x: &Modes, to: &mut Modes, [t, v]: &mut [Vec<Lanes>; 2]) -> Lanes {
         dispatch(
             #[inline(always)]
             || {
+                let mut product = Lanes::ZERO;
                 self.couple(block, (&x.nodes, &x.edges), t);
-                self.step_edges(block, [0.0, 0.0, 1.0], &x.edges, t, (&mut product.edges, v));
-                self.step_nodes(block, [0.0, 0.0, 1.0], &x.nodes, (&x.nodes, v), &mut product.nodes);
+                self.edges_around_edges(
+                    block,
+                    t,
+                    #[inline(always)]
+                    |edge, sum| {
+                        let own = x.edges[edge];
+                        v[edge] = (own - t[edge]) + sum;
+                        to.edges[edge] = own + sum;
+                        product += own * (own + sum);
+                    },
+                );
+                self.around_nodes::<true>(
+                    block,
+                    &x.nodes,
+                    v,
+                    #[inline(always)]
+                    |node, sum| {
+                        for i in 0..3 {
+                            let own = x.nodes[node][i];
+                            to.nodes[node][i] = own + sum[i];
+                            product += own * (own + sum[i]);
+                        }
+                    },
+                );
+                product
             },
-        );
+        )
     }
 }

@@ -71,9 +71,9 @@ pub(in crate::reconstruction) struct Workspace {
 
 impl Workspace {
     fn new(numbers: &Numbers) -> Self {
-        let modes = Modes::new(numbers);
-        let (nodes, edges) = (modes.nodes.clone(), modes.edges.clone());
-        Self { slopes: modes.clone(), change: modes, nodes, edges: [edges.clone(), edges] }
+        let [slopes, change] = [(); 2].map(|()| Modes::new(numbers));
+        let edges = [(); 2].map(|()| vec![Lanes::ZERO; numbers.edges()]);
+        Self { slopes, change, nodes: vec![[Lanes::ZERO; 3]; numbers.nodes()], edges }
     }
 }
 

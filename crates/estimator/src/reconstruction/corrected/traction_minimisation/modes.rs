@@ -48,10 +48,6 @@ impl Modes {
         self.nodes.as_flattened().iter().chain(&self.edges)
     }
 
-    pub(super) fn all_mut(&mut self) -> impl Iterator<Item = &mut Lanes> {
-        self.nodes.as_flattened_mut().iter_mut().chain(&mut self.edges)
-    }
-
     /// All of them as one part.
     pub(in crate::reconstruction) fn part(&mut self) -> ModesPart<'_> {
         ModesPart { nodes: &mut self.nodes, edges: &mut self.edges, first_node: 0, first_edge: 0 }

@@ -40,30 +40,42 @@ pub(super) fn largest_eigenvalue<const D: usize, const N: usize>(
             operator.balance(&block, &mut now.nodes, &now.edges);
         },
     );
-    let mut before = Modes::new(numbers);
+    let (mut before, mut scale_before) = (Modes::new(numbers), Lanes::ZERO);
     let mut square = Lanes::ZERO;
     now.all().for_each(|x| square += *x * *x);
     let mut tridiagonal = [[Lanes::ZERO; 2]; STEPS];
     for entries in &mut tridiagonal {
+        // The vectors of the basis are `now` and `before` times their scales: a pass to scale them takes as long as a
+        // product.
         let length = Lanes(square.0.map(f64::sqrt));
-        let inverse = Lanes(length.0.map(|x| if x > 0.0 { 1.0 / x } else { 0.0 }));
-        now.all_mut().for_each(|x| *x = *x * inverse);
-        operator.multiply(&block, now, next, edges);
-        let mut diagonal = Lanes::ZERO;
-        for (x, (v, old)) in next.all_mut().zip(now.all().zip(before.all())) {
-            diagonal += *v * *x;
-            *x -= length * *old;
-        }
-        square = Lanes::ZERO;
-        for (x, v) in next.all_mut().zip(now.all()) {
-            *x -= diagonal * *v;
-            square += *x * *x;
-        }
+        let scale = Lanes(length.0.map(|x| if x > 0.0 { 1.0 / x } else { 0.0 }));
+        let diagonal = operator.multiply(&block, now, next, edges) * scale * scale;
+        square = make_orthogonal(next, [now, &before], [scale, diagonal * scale, length * scale_before]);
         *entries = [diagonal, length];
+        scale_before = scale;
         std::mem::swap(&mut before, now);
         std::mem::swap(now, next);
     }
     (0..LANES).map(|lane| largest_of(&tridiagonal, lane)).fold(1.0, f64::max)
+}
+
+/// Takes multiples of two vectors from a multiple of another one, and gives the square of its length.
+fn make_orthogonal(next: &mut Modes, [now, before]: [&Modes; 2], [of_next, of_now, of_before]: [Lanes; 3]) -> Lanes {
+    dispatch(
+        #[inline(always)]
+        || {
+            let mut square = Lanes::ZERO;
+            let mut pass = |next: &mut [Lanes], now: &[Lanes], before: &[Lanes]| {
+                for (x, (v, old)) in next.iter_mut().zip(now.iter().zip(before)) {
+                    *x = *x * of_next - *v * of_now - *old * of_before;
+                    square += *x * *x;
+                }
+            };
+            pass(next.nodes.as_flattened_mut(), now.nodes.as_flattened(), before.nodes.as_flattened());
+            pass(&mut next.edges, &now.edges, &before.edges);
+            square
+        },
+    )
 }
 
 fn largest_of(tridiagonal: &[[Lanes; 2]; STEPS], lane: usize) -> f64 {

@@ -70,7 +70,7 @@ impl Case {
     /// Modes of which these coefficients have values.
     pub(super) fn with(&self, places: &[usize], mut value: impl FnMut(usize) -> Lanes) -> Modes {
         let mut modes = Modes::new(&self.all.numbers);
-        let mut all: Vec<&mut Lanes> = modes.all_mut().collect();
+        let mut all: Vec<_> = modes.nodes.as_flattened_mut().iter_mut().chain(&mut modes.edges).collect();
         places.iter().for_each(|&m| *all[m] = value(m));
         modes
     }
@@ -144,19 +144,19 @@ impl Case {
         Block::new(&self.all.numbers, 0..self.all.numbers.nodes(), 0)
     }
 
-    /// The product with the matrix of the iteration.
-    pub(super) fn multiply(&self, x: &Modes) -> Modes {
-        let mut product = x.clone();
-        self.all.operator.multiply(&self.block(), x, &mut product, &mut [x.edges.clone(), x.edges.clone()]);
-        product
+    /// The product with the matrix of the iteration, and the scalar product of both.
+    pub(super) fn multiply(&self, x: &Modes) -> (Modes, Lanes) {
+        let (mut to, mut edges) = (x.clone(), [x.edges.clone(), x.edges.clone()]);
+        let product = self.all.operator.multiply(&self.block(), x, &mut to, &mut edges);
+        (to, product)
     }
 
     /// The matrix of the iteration, without coefficients that belong to no mode.
     pub(super) fn matrix(&self) -> nalgebra::DMatrix<f64> {
         let modes = self.modes();
         let column = |m: &usize| {
-            let product = self.multiply(&self.with(&[*m], |_| Lanes::constant(1.0)));
-            product.all().map(|lanes| lanes.0[0]).collect::<Vec<_>>()
+            let (to, _) = self.multiply(&self.with(&[*m], |_| Lanes::constant(1.0)));
+            to.all().map(|lanes| lanes.0[0]).collect::<Vec<_>>()
         };
         let columns: Vec<_> = modes.iter().map(column).collect();
         nalgebra::DMatrix::from_fn(modes.len(), modes.len(), |r, c| columns[c][modes[r]])
