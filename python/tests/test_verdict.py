@@ -121,22 +121,45 @@ def test_chevrons_that_lean_together_have_no_range(slope: float, ranged: bool, m
 
 
 @pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
-@pytest.mark.parametrize(("speed", "driven", "ranged"), [(80.0, False, False), (0.0, True, False), (0.0, False, True)])
-def test_a_block_that_slides_onto_a_ramp_has_no_range(speed: float, driven: bool, ranged: bool) -> None:
-    """It touches a level surface first, whether it has its speed at the start or a support drives it."""
+@pytest.mark.parametrize(
+    ("speed", "driven", "length", "ranged"),
+    [(80.0, False, 0.01, False), (0.0, True, 0.01, False), (150.0, False, 0.08, False), (0.0, False, 0.01, True)],
+)
+def test_a_block_that_slides_onto_a_ramp_has_no_range(speed: float, driven: bool, length: float, ranged: bool) -> None:
+    """It touches a level surface first, whether it has its speed at the start or a support drives it. A long block is the master."""
     flat = pc.Mesh.rectangle(0.06, 0.02, nx=24, ny=6)
     ramp = flat.points[:, 1] / 0.02 * np.maximum(flat.points[:, 0] - 0.03, 0.0) * math.tan(math.radians(18.0))
     ramp = pc.Mesh(flat.points + np.outer(ramp, [0.0, 1.0]), flat.cells, edge_groups=flat.edge_groups)
-    block = pc.Mesh.rectangle(0.01, 0.01, nx=5, ny=4)
+    block = pc.Mesh.rectangle(length, 0.01, nx=round(length / 2e-3), ny=4)
     material = pc.Elastic(**ALUMINIUM, plane="stress")
     lower = pc.Body(name="lower", mesh=ramp, material=material)
-    upper = pc.Body(name="upper", mesh=block, material=material, origin=(0.0198, 0.02001), velocity=(speed, -20.0))
+    upper = pc.Body(name="upper", mesh=block, material=material, origin=(0.0298 - length, 0.02001), velocity=(speed, -20.0))
     push = pc.Support(group="upper.top", components="x", velocity=[0.0, 150.0, 150.0], time=[0.0, 1e-6, 1.0])
     contact = pc.Interface(groups=("upper.bottom", "lower.top"), friction=0.2, matching=False)
     problem = pc.Problem(bodies=[lower, upper], contacts=[contact], supports=[push] if driven else [])
     estimate = pc.estimate(pc.simulate(problem, end=15e-6, courant=0.9))
     assert ("common_slope" in [warning["name"] for warning in json.loads(estimate.to_json())["warnings"]]) is not ranged
     assert (facts(estimate)["effectivity"] is not None) is ranged
+
+
+@pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
+def test_a_corner_that_flies_over_a_slope_does_not_lean() -> None:
+    """A small block bounces off a level surface before the slope, while another one is still pressed on that surface."""
+    flat = pc.Mesh.rectangle(0.09, 0.02, nx=36, ny=6)
+    fall = flat.points[:, 1] / 0.02 * np.maximum(flat.points[:, 0] - 0.06, 0.0) * -math.tan(math.radians(18.0))
+    slope = pc.Mesh(flat.points + np.outer(fall, [0.0, 1.0]), flat.cells, edge_groups=flat.edge_groups)
+    material = pc.Elastic(**ALUMINIUM, plane="stress")
+    small, large = pc.Mesh.rectangle(0.005, 0.002, nx=4, ny=2), pc.Mesh.rectangle(0.02, 0.01, nx=10, ny=4)
+    bodies = [
+        pc.Body(name="lower", mesh=slope, material=material),
+        pc.Body(name="small", mesh=small, material=material, origin=(0.0545, 0.02001), velocity=(80.0, -20.0)),
+        pc.Body(name="large", mesh=large, material=material, origin=(0.033, 0.02001), velocity=(0.0, -20.0)),
+    ]
+    contacts = [pc.Interface(groups=("lower.top", f"{name}.bottom"), friction=0.2, matching=False) for name in ("small", "large")]
+    pressed = pc.Support(group="large.top", components="y", velocity=[-20.0, -20.0], time=[0.0, 1.0])
+    problem = pc.Problem(bodies=bodies, contacts=contacts, supports=[pressed])
+    estimate = pc.estimate(pc.simulate(problem, end=30e-6, courant=0.9))
+    assert "common_slope" not in [warning["name"] for warning in json.loads(estimate.to_json())["warnings"]]
 
 
 @pytest.mark.filterwarnings("ignore::percute.SimulationWarning")

@@ -22,9 +22,11 @@ pub struct Leaning<'s, const D: usize> {
 struct Slopes {
     slave: Vec<f64>,
     master: Vec<f64>,
-    /// The largest angle of the master: neither edges nor corners lean by more.
     largest: f64,
 }
+
+/// Smaller angles (rad) are rounding of a normal.
+const LEVEL: f64 = 1e-9;
 
 impl<'s, const D: usize> Leaning<'s, D> {
     /// Of all contacts between bodies. Nodes `inside` a surface, by their positions, are no corners.
@@ -40,22 +42,16 @@ impl<'s, const D: usize> Leaning<'s, D> {
     }
 
     /// The largest angle (rad) by which surfaces lean where they are at an instant, or `least` if that is larger: the
-    /// angle by which two edges lean to the same side of which all nodes have `touched`, and that of an edge that a
-    /// corner of the slave has touched. `shifts` has how far the parts of the slave of each surfaces that slide are
-    /// along their tangent against the master (m), if a force acts between them.
+    /// angle by which two edges lean to the same side, with forces on all of their nodes, and that of an edge at which
+    /// a force acts on a corner of the other surface. `acts` says whether a force acts on a node. `shifts` has how far
+    /// the parts of the slave are along the tangent against the master (m), of surfaces that slide, by their number.
     #[must_use]
-    pub fn largest<'a>(
-        &self,
-        least: f64,
-        touched: impl Fn(usize) -> bool,
-        shifts: impl Fn(usize) -> Option<&'a [f64]>,
-    ) -> f64 {
-        let paired = self.pairs.iter().filter(|(nodes, lean)| *lean > least && nodes.iter().all(|&at| touched(at)));
+    pub fn largest<'a>(&self, least: f64, acts: impl Fn(usize) -> bool, shifts: impl Fn(usize) -> &'a [f64]) -> f64 {
+        let paired = self.pairs.iter().filter(|(nodes, lean)| *lean > least && nodes.iter().all(|&at| acts(at)));
         let mut largest = paired.fold(least, |most, (_, lean)| most.max(*lean));
         for (index, slopes) in self.sliding.iter().enumerate().filter(|(_, slopes)| slopes.largest > least) {
-            if let Some(shifts) = shifts(index) {
-                largest = largest.max(self.of_sliding((&self.surface.sliding()[index], slopes), &touched, shifts));
-            }
+            let found = self.of_sliding((&self.surface.sliding()[index], slopes), &acts, shifts(index));
+            largest = largest.max(found);
         }
         largest
     }
@@ -63,30 +59,49 @@ impl<'s, const D: usize> Leaning<'s, D> {
     fn of_sliding(
         &self,
         (sliding, slopes): (&SlidingSurfaces<D>, &Slopes),
-        touched: &impl Fn(usize) -> bool,
+        acts: &impl Fn(usize) -> bool,
         shifts: &[f64],
     ) -> f64 {
         let (slave, master, tolerance) = (sliding.slave(), sliding.master(), sliding.tolerance());
-        let has_touched =
-            |side: &Side, first: usize| [first, first + 1].iter().all(|&node| touched(side.position(node)));
+        let acts_on = |side: &Side, first: usize| [first, first + 1].iter().all(|&node| acts(side.position(node)));
         let place = |node: usize| slave.xi()[node] + shifts[slave.part_of(node)];
         let mut largest = 0.0_f64;
-        for (edge, &own) in slave.edges().iter().enumerate().filter(|(_, own)| has_touched(slave, **own)) {
+        for (edge, &own) in slave.edges().iter().enumerate().filter(|(_, own)| acts_on(slave, **own)) {
             let ends = [place(own) + tolerance, place(own + 1) - tolerance];
-            let faced = edges_between(master, ends).filter(|&other| has_touched(master, master.edges()[other]));
+            let faced = edges_between(master, ends).filter(|&other| acts_on(master, master.edges()[other]));
             largest = faced.fold(largest, |most, other| most.max(common(slopes.slave[edge], slopes.master[other])));
         }
-        let strikes = |&node: &usize| {
-            let at = slave.position(node);
-            touched(at) && !self.inside[at] && slave.is_corner(node)
-        };
-        for xi in (0..slave.len()).filter(strikes).map(place) {
-            // Between two edges that lean to different sides, the direction is one between theirs.
-            let faced = edges_between(master, [xi - tolerance, xi + tolerance]).map(|edge| slopes.master[edge]);
-            largest = largest.max(faced.reduce(|a, b| common(a, b).copysign(a)).unwrap_or(0.0).abs());
+        for xi in self.corners(slave, acts).map(place) {
+            largest = largest.max(lean_at(&slopes.master, edges_between(master, around(xi, tolerance))));
+        }
+        // A corner of the slave has the forces of an edge of the master on both of its ends, not the other way round.
+        for xi in self.corners(master, acts).map(|node| master.xi()[node]) {
+            for (part, shift) in slave.parts().iter().zip(shifts) {
+                let own = |edge: &usize| part.edges.contains(edge) && acts_on(slave, slave.edges()[*edge]);
+                let faced = edges_between(slave, around(xi - shift, tolerance)).filter(own);
+                largest = largest.max(lean_at(&slopes.slave, faced));
+            }
         }
         largest
     }
+
+    /// The corners of a side on which forces act.
+    fn corners<'a>(&'a self, side: &'a Side, acts: &'a impl Fn(usize) -> bool) -> impl Iterator<Item = usize> + 'a {
+        (0..side.len()).filter(move |&node| {
+            let at = side.position(node);
+            side.is_corner(node) && acts(at) && !self.inside[at]
+        })
+    }
+}
+
+/// By how much the edges at a place lean. Between two that lean to different sides, the direction is one between
+/// theirs.
+fn lean_at(slopes: &[f64], edges: impl Iterator<Item = usize>) -> f64 {
+    edges.map(|edge| slopes[edge]).reduce(|a, b| common(a, b).copysign(a)).unwrap_or(0.0).abs()
+}
+
+fn around(xi: f64, tolerance: f64) -> [f64; 2] {
+    [xi - tolerance, xi + tolerance]
 }
 
 impl Slopes {
@@ -94,11 +109,12 @@ impl Slopes {
         let [slave, master] = [sliding.slave(), sliding.master()].map(|side| {
             let slope = |&first: &usize| {
                 let [xi, eta] = [side.xi(), side.eta()].map(|values| values[first + 1] - values[first]);
-                eta.atan2(xi)
+                let angle = eta.atan2(xi);
+                if angle.abs() <= LEVEL { 0.0 } else { angle }
             };
             side.edges().iter().map(slope).collect::<Vec<f64>>()
         });
-        let largest = master.iter().fold(0.0, |most: f64, slope| most.max(slope.abs()));
+        let largest = slave.iter().chain(&master).fold(0.0, |most: f64, slope| most.max(slope.abs()));
         Self { slave, master, largest }
     }
 }
@@ -127,7 +143,7 @@ fn pairs<const D: usize, const N: usize>(surface: &ContactSurface<D>, mesh: &Mes
             (dot(&outward, &along) / dot(&outward, normal)).atan()
         };
         let lean = common(slope(facet.facet), slope(other.facet));
-        if lean > 0.0 {
+        if lean > LEVEL {
             leaning.push((facet.nodes, lean));
         }
     }

@@ -59,13 +59,13 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
             return made;
         }
         let of_node = mesh.part_numbers();
-        let velocities = problem.line_velocities();
+        let node_lines = problem.node_lines();
         made.bodies = (0..mesh.parts()).map(|_| Body::default()).collect();
         for facet in mesh.boundary() {
             let (nodes, owner) = (mesh.facets()[facet.index()].nodes, mesh.facets()[facet.index()].owner);
             let (normal, area) = mesh.facet_normal(facet);
             let height = D as f64 * mesh.cell_geometry(owner).volume / area;
-            let line = symmetry::line_of(mesh, &problem.supported(facet), &velocities, facet);
+            let line = symmetry::line_of(mesh, &problem.supported(facet), &node_lines, facet);
             let body = &mut made.bodies[of_node[nodes[0].index()]];
             body.facets.push(Side { facet, height, line });
             for node in nodes {

@@ -190,7 +190,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let supports = boundary::supports(mesh, &self.stated.supports)?;
         let fixed = supports.fixed(mesh.node_count());
         let Supports { facets: supported, prescribed, motions } = supports;
-        let mirrors = symmetry::velocities(mesh, &supported, &prescribed, &motions);
+        let lines = symmetry::node_lines(mesh, &supported, &prescribed, &motions);
         if prescribed.len() == D * mesh.node_count() {
             return Err(Cause::NoFreedom.at("support", None, ""));
         }
@@ -199,8 +199,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
 
         let law = |f: FacetId| &materials[usize::from(element_material[mesh.facets()[f.index()].owner.index()])];
         let (body, held, velocity) = (Vec::new(), boundary::held(mesh, &self.stated), &initial_velocity[..]);
-        let bodies =
-            Bodies { mesh, body, held, fixed, supported: &supported, mirrors, velocity, mass: &mass, law: &law };
+        let bodies = Bodies { mesh, body, held, fixed, supported: &supported, lines, velocity, mass: &mass, law: &law };
         let start = Start { displacement: &initial_displacement, velocity: &initial_velocity, mass: &mass };
         // One body costs no search.
         let contact = Stated { contacts: &self.contacts, automatic: self.automatic && mesh.parts() > 1 };

@@ -161,9 +161,9 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         self.surface.nodes().iter().map(is_on_line).collect()
     }
 
-    /// For each node and each direction, the velocity of the line of symmetry across it on which the node is (m/s).
-    pub(crate) fn line_velocities(&self) -> Vec<[Option<f64>; D]> {
-        symmetry::velocities(&self.mesh, &self.supported, &self.prescribed, &self.motions)
+    /// The lines of symmetry on which each node is.
+    pub(crate) fn node_lines(&self) -> Vec<symmetry::NodeLines<D>> {
+        symmetry::node_lines(&self.mesh, &self.supported, &self.prescribed, &self.motions)
     }
 
     /// All prescribed components of nodes, eq. \[4\], by node.

@@ -2,7 +2,7 @@
 
 use super::alignment::{FACES, outward, unit};
 use super::candidates::along_the_boundary;
-use super::symmetry::{self, SymmetryLine};
+use super::symmetry::{self, Motion, NodeLines, SymmetryLine};
 use super::{Cause, HeldBy, boundary};
 use crate::contact::{ContactSurface, Interface, dot};
 use crate::ids::{ElementId, FacetId, NodeId};
@@ -19,8 +19,8 @@ pub(super) struct Bodies<'m, const D: usize, const N: usize> {
     pub(super) fixed: Vec<[bool; D]>,
     /// Which components of each facet supports hold.
     pub(super) supported: &'m [[bool; D]],
-    /// For each node and each direction, the velocity of the line of symmetry across it on which the node is (m/s).
-    pub(super) mirrors: Vec<[Option<f64>; D]>,
+    /// The lines of symmetry on which each node is.
+    pub(super) lines: Vec<NodeLines<D>>,
     /// The initial velocity of each node (m/s).
     pub(super) velocity: &'m [[f64; D]],
     /// The mass of each node (kg).
@@ -120,18 +120,19 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         Ok(Side { of_whole: outward, nodes, facets, outward, bodies })
     }
 
-    /// The line of symmetry on which an edge is.
+    /// The line of symmetry on which an edge is, if its way is known before the run.
     pub(super) fn line_of(&self, facet: FacetId) -> Option<SymmetryLine> {
-        symmetry::line_of(self.mesh, &self.supported[facet.index()], &self.mirrors, facet)
+        let line = symmetry::line_of(self.mesh, &self.supported[facet.index()], &self.lines, facet)?;
+        matches!(line.motion, Motion::Uniform(_)).then_some(line)
     }
 
-    /// The lines of symmetry that both sides meet.
+    /// The lines of symmetry that both sides meet, of which the way is known before the run.
     pub(super) fn common_lines(&self, sides: &[Side<D>; 2]) -> Vec<SymmetryLine> {
         let [own, other] = sides.each_ref().map(|side| side.nodes.as_slice());
         let mut lines: Vec<SymmetryLine> = Vec::new();
         for (node, across) in own.iter().flat_map(|&node| (0..D).map(move |c| (node, c))) {
-            let Some(velocity) = self.mirrors[node.index()][across] else { continue };
-            let line = SymmetryLine { across, place: self.mesh.points()[node.index()][across], velocity };
+            let Some(motion @ Motion::Uniform(_)) = self.lines[node.index()][across] else { continue };
+            let line = SymmetryLine { across, place: self.mesh.points()[node.index()][across], motion };
             if other.iter().any(|node| self.is_on(&line, *node)) {
                 lines.push(line);
             }
@@ -141,9 +142,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
 
     /// Whether a node is on a line of symmetry.
     pub(super) fn is_on(&self, line: &SymmetryLine, node: NodeId) -> bool {
-        let point = &self.mesh.points()[node.index()];
-        let velocity = self.mirrors[node.index()][line.across];
-        velocity == Some(line.velocity) && line.beyond(point, self.mesh.size()) == 0.0
+        line.has((&self.mesh.points()[node.index()], &self.lines[node.index()]), self.mesh.size())
     }
 
     /// The body of a facet, by its first node.

@@ -1,7 +1,7 @@
 //! Two surfaces of different bodies that may slide along each other.
 
 use super::sides::{Bodies, Side, check_nodes};
-use super::symmetry::ONE_PLACE;
+use super::symmetry::{Motion, ONE_PLACE};
 use super::{Cause, candidates};
 use crate::contact::{
     ContactFacet, ContactNode, ContactSurface, Interface, Obstacle, Side as Line, SlidingSurfaces, dot, tangent,
@@ -107,8 +107,8 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let contacts = nodes.iter().map(contact).collect::<Result<Vec<_>, Cause>>()?;
         let eta = nodes.iter().map(|&node| dot(&from_origin(node), normal)).collect();
         let velocity: Vec<[f64; D]> = nodes.iter().map(|node| self.velocity[node.index()]).collect();
-        let steady: Vec<bool> =
-            nodes.iter().map(|node| self.mirrors[node.index()].iter().any(Option::is_some)).collect();
+        let uniform = |line: &Option<Motion>| matches!(line, Some(Motion::Uniform(_)));
+        let steady: Vec<bool> = nodes.iter().map(|node| self.lines[node.index()].iter().any(uniform)).collect();
         let fastest = velocity.iter().fold(0.0_f64, |most, v| most.max(dot(v, v).sqrt()));
         let velocity: Vec<f64> = velocity.iter().map(|velocity| dot(velocity, &along)).collect();
         surface.add(facing, contacts, facets);

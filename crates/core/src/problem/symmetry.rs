@@ -8,29 +8,56 @@ use crate::mesh::Mesh;
 /// Places nearer than this part of the size of the mesh are one.
 pub(super) const ONE_PLACE: f64 = 1e-12;
 
-/// A line of symmetry: it stands across a direction, at a coordinate (m), and moves with a velocity (m/s).
+/// Velocities that differ by a smaller part of the larger one are one.
+const ONE_VELOCITY: f64 = 1e-9;
+
+/// How a line moves across itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Motion {
+    /// With this velocity (m/s), which may be 0.
+    Uniform(f64),
+    /// As the table of supports of this number says.
+    Changing(usize),
+}
+
+impl Motion {
+    /// Whether two lines that move so stay at one place.
+    fn is_that_of(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Uniform(a), Self::Uniform(b)) => (a - b).abs() <= ONE_VELOCITY * a.abs().max(b.abs()),
+            _ => self == other,
+        }
+    }
+}
+
+/// A line of symmetry: it stands across a direction, at a coordinate (m) at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SymmetryLine {
     pub(crate) across: usize,
     pub(crate) place: f64,
-    pub(crate) velocity: f64,
+    pub(crate) motion: Motion,
 }
 
-/// For each node and each direction, the velocity of the line of symmetry across it on which the node is (m/s); none if
-/// it is on no such line, or if the velocity changes.
-pub(crate) fn velocities<const D: usize, const N: usize>(
+/// The motion of the line of symmetry across each direction on which a node is, if it is on one.
+pub(crate) type NodeLines<const D: usize> = [Option<Motion>; D];
+
+/// Those of all nodes.
+pub(crate) fn node_lines<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
     supported: &[[bool; D]],
     prescribed: &[PrescribedComponent],
     motions: &[Table<1>],
-) -> Vec<[Option<f64>; D]> {
+) -> Vec<NodeLines<D>> {
     let mirrors = boundary::mirrors(mesh, supported);
-    let mut velocities = vec![[None; D]; mesh.node_count()];
+    let mut lines = vec![[None; D]; mesh.node_count()];
     for p in prescribed.iter().filter(|p| mirrors[p.node.index()][p.component]) {
-        let uniform = |motion: usize| motions[motion].is_constant().then(|| motions[motion].value()[0][0]);
-        velocities[p.node.index()][p.component] = p.motion.map_or(Some(0.0), uniform);
+        let of_table = |index: usize| match motions[index].is_constant() {
+            true => Motion::Uniform(motions[index].value()[0][0]),
+            false => Motion::Changing(index),
+        };
+        lines[p.node.index()][p.component] = Some(p.motion.map_or(Motion::Uniform(0.0), of_table));
     }
-    velocities
+    lines
 }
 
 /// The line of symmetry on which an edge is: supports hold it across the line alone. Bars have no such line, because
@@ -38,22 +65,20 @@ pub(crate) fn velocities<const D: usize, const N: usize>(
 pub(crate) fn line_of<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
     supported: &[bool; D],
-    velocities: &[[Option<f64>; D]],
+    lines: &[NodeLines<D>],
     facet: FacetId,
 ) -> Option<SymmetryLine> {
     let mut held = (0..D).filter(|&c| supported[c]);
     let across = held.next().filter(|_| D == 2 && held.next().is_none())?;
     let nodes = mesh.facets()[facet.index()].nodes;
-    let velocity = velocities[nodes[0].index()][across].filter(|_| mesh.stands_across(facet, across))?;
-    Some(SymmetryLine { across, place: mesh.points()[nodes[0].index()][across], velocity })
+    let motion = lines[nodes[0].index()][across].filter(|_| mesh.stands_across(facet, across))?;
+    Some(SymmetryLine { across, place: mesh.points()[nodes[0].index()][across], motion })
 }
 
 /// Each of some lines once.
 pub(crate) fn distinct(lines: impl Iterator<Item = SymmetryLine>) -> Vec<SymmetryLine> {
     let mut lines: Vec<SymmetryLine> = lines.collect();
-    lines.sort_by(|a, b| {
-        a.across.cmp(&b.across).then(a.place.total_cmp(&b.place)).then(a.velocity.total_cmp(&b.velocity))
-    });
+    lines.sort_by(|a, b| a.across.cmp(&b.across).then(a.place.total_cmp(&b.place)));
     lines.dedup();
     lines
 }
@@ -80,7 +105,14 @@ impl SymmetryLine {
 
     /// Whether it is another one, too, in a mesh of this size (m).
     pub(crate) fn is_at(&self, other: &Self, size: f64) -> bool {
-        self.across == other.across && self.velocity == other.velocity && self.beyond(&[other.place; 2], size) == 0.0
+        self.across == other.across
+            && self.motion.is_that_of(other.motion)
+            && self.beyond(&[other.place; 2], size) == 0.0
+    }
+
+    /// Whether a node at a point, with these lines, is on it, in a mesh of this size (m).
+    pub(super) fn has<const D: usize>(&self, (point, lines): (&[f64; D], &NodeLines<D>), size: f64) -> bool {
+        lines[self.across].is_some_and(|motion| motion.is_that_of(self.motion)) && self.beyond(point, size) == 0.0
     }
 
     /// Whether all these points are on one side of it or on it, in a mesh of this size (m).
@@ -92,15 +124,25 @@ impl SymmetryLine {
 
 #[cfg(test)]
 mod tests {
-    use super::SymmetryLine;
+    use super::{Motion, SymmetryLine};
+
+    #[test]
+    fn lines_move_together_or_apart() {
+        let line = |motion: Motion| SymmetryLine { across: 0, place: 0.0, motion };
+        let together = |one: Motion, other: Motion| line(one).is_at(&line(other), 0.01);
+        assert!(together(Motion::Uniform(0.3), Motion::Uniform(0.1 + 0.2)));
+        assert!(!together(Motion::Uniform(0.3), Motion::Uniform(0.0)));
+        assert!(together(Motion::Changing(1), Motion::Changing(1)));
+        assert!(!together(Motion::Changing(1), Motion::Changing(0)));
+        assert!(!together(Motion::Changing(0), Motion::Uniform(0.0)));
+    }
 
     #[test]
     fn a_line_is_found_beside_rounding() {
-        let line = SymmetryLine { across: 0, place: 1000.0, velocity: 3.0 };
+        let line = SymmetryLine { across: 0, place: 1000.0, motion: Motion::Uniform(3.0) };
         assert!(line.is_at(&SymmetryLine { place: 1000.0 + 2e-13, ..line }, 0.01));
         assert!(!line.is_at(&SymmetryLine { place: 1000.0 + 1e-9, ..line }, 0.01));
         assert!(!line.is_at(&SymmetryLine { across: 1, ..line }, 0.01));
-        assert!(!line.is_at(&SymmetryLine { velocity: 0.0, ..line }, 0.01));
         let points = |x: [f64; 2]| x.map(|x| [1000.0 + x, 5.0]);
         assert!(line.bounds(points([0.02, -2e-13]).iter(), 0.01) && line.bounds(points([-0.02, 0.0]).iter(), 0.01));
         assert!(!line.bounds(points([-0.02, 1e-9]).iter(), 0.01));

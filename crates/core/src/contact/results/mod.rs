@@ -40,8 +40,8 @@ pub struct ContactResults<const D: usize> {
     /// Whether a node of a slave that has touched is at the end of its master: it faces nothing, or is a corner that
     /// faces so little of its edge that its gap is a mean, or that is beyond the end by less than 1e-3 of its edge.
     pub at_end: bool,
-    /// The largest angle by which surfaces of two bodies that touch lean together from the normal of their contact, or
-    /// by which a side leans that a corner touches (rad): forces act along the normal.
+    /// The largest angle by which surfaces of two bodies lean together from the normal of their contact where forces
+    /// act, or by which a side leans on which a corner acts (rad): forces have the direction of the normal.
     pub lean: f64,
     /// The largest mean rotation of a plane body at each 64th instant and the last one (rad); 0 on bars.
     pub rotation: f64,

@@ -109,15 +109,10 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
         least
     }
 
-    /// By which angle surfaces lean together where they are (rad), or have leant before.
+    /// By which angle surfaces lean where forces act (rad), or have leant before.
     fn lean(&self) -> f64 {
-        let surface = self.problem.surface();
-        let touched = |at: usize| self.results.summary[at].first_touch.is_some();
-        let shifts = |index: usize| {
-            let acts = surface.sliding()[index].positions().any(|at| self.now[at].status != Status::Free);
-            acts.then(|| self.facing.shifts(index))
-        };
-        self.leaning.largest(self.results.lean, touched, shifts)
+        let acts = |at: usize| self.now[at].status != Status::Free;
+        self.leaning.largest(self.results.lean, acts, |sliding| self.facing.shifts(sliding))
     }
 
     /// Records one node, which is free up to this normal force (N); returns its share of the resultants.

@@ -108,7 +108,7 @@ pub(super) fn dot(a: &Vector, b: &Vector) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::symmetry::SymmetryLine;
+    use crate::problem::symmetry::{Motion, SymmetryLine};
 
     /// A box with this lower left corner and side.
     fn square(corner: Vector, side: f64, velocity: Vector) -> Outline {
@@ -139,7 +139,7 @@ mod tests {
     /// Two slopes beside a line of symmetry meet along it, unless they are on different sides of it or on other lines.
     #[test]
     fn halves_meet_along_their_line() {
-        let line = |across: usize, place: f64| SymmetryLine { across, place, velocity: 0.0 };
+        let line = |across: usize, place: f64| SymmetryLine { across, place, motion: Motion::Uniform(0.0) };
         let halves = |at: f64, lines: [Vec<SymmetryLine>; 2]| {
             let [of_first, own] = lines;
             let hull = vec![[at, 0.0], [at + 1.0, 0.0], [at + 1.0, 0.5], [at, 1.0]];

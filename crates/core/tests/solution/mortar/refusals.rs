@@ -97,8 +97,8 @@ fn chevrons_lean_together() {
         let (surface, mesh) = (problem.surface(), problem.mesh());
         let apex = |at: usize| (mesh.points()[surface.nodes()[at].node.index()][0] - 0.01).abs() < 1e-9;
         let leaning = |inside: bool| Leaning::new(surface, mesh, vec![inside; surface.nodes().len()]);
-        assert_eq!(leaning(true).largest(0.0, apex, |_| Some(&[0.0])), 0.0);
-        leaning(!ends).largest(0.0, |_| true, |_| Some(&[0.0])).to_degrees()
+        assert_eq!(leaning(true).largest(0.0, apex, |_| &[0.0]), 0.0);
+        leaning(!ends).largest(0.0, |_| true, |_| &[0.0]).to_degrees()
     };
     let degrees = |height: fn(f64) -> [f64; 2]| {
         let angle = slope(&facing(height, 0.0, &[]).unwrap(), false);
@@ -128,19 +128,19 @@ fn surfaces_lean_together_where_they_are() {
     let is_upper = |at: usize| surface.nodes()[at].node.index() < 25;
     let left = if is_upper(sliding.slave().position(0)) { -sliding.tangent()[0] } else { sliding.tangent()[0] };
     let leaning = Leaning::new(surface, problem.mesh(), vec![true; surface.nodes().len()]);
-    let touched = |at: usize| {
+    let acts = |at: usize| {
         let from = if is_upper(at) { 0.0099 } else { -0.0001 };
         (from..from + 0.0052).contains(&surface.point(at)[0])
     };
     let lean = |least: f64, way: f64| {
         let shifts = [way * left];
-        leaning.largest(least, touched, |_| Some(&shifts))
+        leaning.largest(least, acts, |_| &shifts)
     };
     let angle = 0.3_f64.atan();
     assert_eq!([lean(0.0, 0.0), lean(0.0, -0.01), lean(0.0, 0.005)], [0.0; 3]);
     // Rounding of an arctangent.
     assert!((lean(0.0, 0.01) - angle).abs() < 1e-14 && (lean(0.1, 0.01) - angle).abs() < 1e-14);
-    assert_eq!([lean(0.4, 0.01), leaning.largest(0.2, |_| true, |_| None)], [0.4, 0.2]);
+    assert_eq!([lean(0.4, 0.01), leaning.largest(0.2, |_| false, |_| &[0.0])], [0.4, 0.2]);
 }
 
 #[test]
