@@ -121,19 +121,16 @@ def test_chevrons_that_lean_together_have_no_range(slope: float, ranged: bool, m
 
 
 @pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
-@pytest.mark.parametrize(
-    ("speed", "driven", "length", "ranged"),
-    [(80.0, False, 0.01, False), (0.0, True, 0.01, False), (150.0, False, 0.08, False), (0.0, False, 0.01, True)],
-)
-def test_a_block_that_slides_onto_a_ramp_has_no_range(speed: float, driven: bool, length: float, ranged: bool) -> None:
-    """It touches a level surface first, whether it has its speed at the start or a support drives it. A long block is the master."""
+@pytest.mark.parametrize(("speed", "driven", "ranged"), [(80.0, False, False), (0.0, True, False), (0.0, False, True)])
+def test_a_block_that_slides_onto_a_ramp_has_no_range(speed: float, driven: bool, ranged: bool) -> None:
+    """It touches a level surface first, whether it has its speed at the start or a support drives it."""
     flat = pc.Mesh.rectangle(0.06, 0.02, nx=24, ny=6)
     ramp = flat.points[:, 1] / 0.02 * np.maximum(flat.points[:, 0] - 0.03, 0.0) * math.tan(math.radians(18.0))
     ramp = pc.Mesh(flat.points + np.outer(ramp, [0.0, 1.0]), flat.cells, edge_groups=flat.edge_groups)
-    block = pc.Mesh.rectangle(length, 0.01, nx=round(length / 2e-3), ny=4)
+    block = pc.Mesh.rectangle(0.01, 0.01, nx=5, ny=4)
     material = pc.Elastic(**ALUMINIUM, plane="stress")
     lower = pc.Body(name="lower", mesh=ramp, material=material)
-    upper = pc.Body(name="upper", mesh=block, material=material, origin=(0.0298 - length, 0.02001), velocity=(speed, -20.0))
+    upper = pc.Body(name="upper", mesh=block, material=material, origin=(0.0198, 0.02001), velocity=(speed, -20.0))
     push = pc.Support(group="upper.top", components="x", velocity=[0.0, 150.0, 150.0], time=[0.0, 1e-6, 1.0])
     contact = pc.Interface(groups=("upper.bottom", "lower.top"), friction=0.2, matching=False)
     problem = pc.Problem(bodies=[lower, upper], contacts=[contact], supports=[push] if driven else [])

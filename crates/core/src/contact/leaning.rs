@@ -22,6 +22,7 @@ pub struct Leaning<'s, const D: usize> {
 struct Slopes {
     slave: Vec<f64>,
     master: Vec<f64>,
+    /// The largest angle of the master: neither edges nor corners lean by more.
     largest: f64,
 }
 
@@ -43,7 +44,7 @@ impl<'s, const D: usize> Leaning<'s, D> {
 
     /// The largest angle (rad) by which surfaces lean where they are at an instant, or `least` if that is larger: the
     /// angle by which two edges lean to the same side, with forces on all of their nodes, and that of an edge at which
-    /// a force acts on a corner of the other surface. `acts` says whether a force acts on a node. `shifts` has how far
+    /// a force acts on a corner of the slave. `acts` says whether a force acts on a node. `shifts` has how far
     /// the parts of the slave are along the tangent against the master (m), of surfaces that slide, by their number.
     #[must_use]
     pub fn largest<'a>(&self, least: f64, acts: impl Fn(usize) -> bool, shifts: impl Fn(usize) -> &'a [f64]) -> f64 {
@@ -71,26 +72,15 @@ impl<'s, const D: usize> Leaning<'s, D> {
             let faced = edges_between(master, ends).filter(|&other| acts_on(master, master.edges()[other]));
             largest = faced.fold(largest, |most, other| most.max(common(slopes.slave[edge], slopes.master[other])));
         }
-        for xi in self.corners(slave, acts).map(place) {
-            largest = largest.max(lean_at(&slopes.master, edges_between(master, around(xi, tolerance))));
-        }
-        // A corner of the slave has the forces of an edge of the master on both of its ends, not the other way round.
-        for xi in self.corners(master, acts).map(|node| master.xi()[node]) {
-            for (part, shift) in slave.parts().iter().zip(shifts) {
-                let own = |edge: &usize| part.edges.contains(edge) && acts_on(slave, slave.edges()[*edge]);
-                let faced = edges_between(slave, around(xi - shift, tolerance)).filter(own);
-                largest = largest.max(lean_at(&slopes.slave, faced));
-            }
+        let strikes = |&node: &usize| {
+            let at = slave.position(node);
+            slave.is_corner(node) && acts(at) && !self.inside[at]
+        };
+        for xi in (0..slave.len()).filter(strikes).map(place) {
+            let faced = edges_between(master, [xi - tolerance, xi + tolerance]);
+            largest = largest.max(lean_at(&slopes.master, faced));
         }
         largest
-    }
-
-    /// The corners of a side on which forces act.
-    fn corners<'a>(&'a self, side: &'a Side, acts: &'a impl Fn(usize) -> bool) -> impl Iterator<Item = usize> + 'a {
-        (0..side.len()).filter(move |&node| {
-            let at = side.position(node);
-            side.is_corner(node) && acts(at) && !self.inside[at]
-        })
     }
 }
 
@@ -98,10 +88,6 @@ impl<'s, const D: usize> Leaning<'s, D> {
 /// theirs.
 fn lean_at(slopes: &[f64], edges: impl Iterator<Item = usize>) -> f64 {
     edges.map(|edge| slopes[edge]).reduce(|a, b| common(a, b).copysign(a)).unwrap_or(0.0).abs()
-}
-
-fn around(xi: f64, tolerance: f64) -> [f64; 2] {
-    [xi - tolerance, xi + tolerance]
 }
 
 impl Slopes {
@@ -114,7 +100,7 @@ impl Slopes {
             };
             side.edges().iter().map(slope).collect::<Vec<f64>>()
         });
-        let largest = slave.iter().chain(&master).fold(0.0, |most: f64, slope| most.max(slope.abs()));
+        let largest = master.iter().fold(0.0, |most: f64, slope| most.max(slope.abs()));
         Self { slave, master, largest }
     }
 }

@@ -68,8 +68,13 @@ impl StarResiduals {
     /// Whether rounding leaves stresses that balance: the closer ν is to ½, and the more slender elements are, the more
     /// digits are lost.
     pub(crate) fn balanced(&self) -> bool {
+        self.within(BALANCED)
+    }
+
+    /// Whether all residuals are at most this.
+    pub(super) fn within(&self, limit: f64) -> bool {
         let StressResiduals { divergence, edges, inner } = self.stress;
-        [self.resultants, divergence, edges, inner].iter().all(|residual| *residual <= BALANCED)
+        [self.resultants, divergence, edges, inner].iter().all(|residual| *residual <= limit)
     }
 }
 

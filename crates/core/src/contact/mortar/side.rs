@@ -96,7 +96,7 @@ impl Side {
         [self.corners[first], self.corners[first + 1]]
     }
 
-    /// Whether a node is a corner.
+    /// Whether a node of a slave is a corner.
     #[inline]
     pub(in crate::contact) fn is_corner(&self, node: usize) -> bool {
         self.corners[node]

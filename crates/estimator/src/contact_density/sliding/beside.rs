@@ -15,7 +15,7 @@ use percute_core::problem::Problem;
 const SMALL: f64 = 1e-3;
 
 /// Nearer to a node than this part of the edge, a place does not cut the triangle: the slender part would lose all
-/// digits. Rounding must not choose: no place of a regular mesh is so far from a node.
+/// digits. It is no simple fraction, so that rounding does not choose at a place of a regular mesh.
 const SLENDER: f64 = 0.0077;
 
 /// Elements with such stresses.
@@ -60,7 +60,7 @@ fn close_to_a_node<const D: usize, const N: usize>(
     let corners = corners(problem, edge);
     let similar = |corner: [f64; 2]| [0, 1].map(|c| corners[end][c] + part * (corner[c] - corners[end][c]));
     let place = place_in(part, end, place);
-    let short = EdgeFacet { length: part * edge.length, ..*edge };
+    let short = EdgeFacet { length: part * edge.length, spread: part * edge.spread, ..*edge };
     let cut = in_cut_triangle((problem, &short), corners.map(similar), place, &beside)?;
     let mut stresses = in_star(problem, edge, end, &whole)?;
     stresses.push((owner(problem, edge), cut));

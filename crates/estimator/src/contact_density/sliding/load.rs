@@ -54,7 +54,8 @@ impl<const D: usize> Load<D> {
     }
 
     /// The same where break points almost equally far from a place, in parts of the ways from it to both ends, are
-    /// equally far; and ∫d² of the difference d of both densities (N²/m).
+    /// equally far; and ∫d² of the difference d of both densities (N²/m). A span between two of them is left out, and
+    /// counts in the difference.
     pub(super) fn with_equal_ways(&self, from: f64, edge: &EdgeFacet) -> (Self, f64) {
         let end = |place: f64| if place > from { 1.0 } else { 0.0 };
         let way = |place: f64| if place == from { 0.0 } else { (place - from) / (end(place) - from) };
