@@ -33,6 +33,11 @@ def facts(estimate: pc.Estimate) -> dict[str, Any]:
     return found
 
 
+def warnings_of(estimate: pc.Estimate) -> list[str]:
+    """The names of its warnings."""
+    return [warning["name"] for warning in json.loads(estimate.to_json())["warnings"]]
+
+
 @pytest.mark.parametrize(
     ("body", "tilt", "touches"),
     [
@@ -116,7 +121,7 @@ def test_chevrons_that_lean_together_have_no_range(slope: float, ranged: bool, m
     bodies = [body("lower", 0.0, 0.0), body("upper", 0.01001, -20.0)]
     contact = pc.Interface(groups=("upper.bottom", "lower.top"), friction=0.2, matching=matching)
     estimate = pc.estimate(pc.simulate(pc.Problem(bodies=bodies, contacts=[contact]), end=8e-6, courant=0.9))
-    assert ("common_slope" in [warning["name"] for warning in json.loads(estimate.to_json())["warnings"]]) is not ranged
+    assert ("common_slope" in warnings_of(estimate)) is not ranged
     assert (facts(estimate)["effectivity"] is not None) is ranged
 
 
@@ -135,7 +140,7 @@ def test_a_block_that_slides_onto_a_ramp_has_no_range(speed: float, driven: bool
     contact = pc.Interface(groups=("upper.bottom", "lower.top"), friction=0.2, matching=False)
     problem = pc.Problem(bodies=[lower, upper], contacts=[contact], supports=[push] if driven else [])
     estimate = pc.estimate(pc.simulate(problem, end=15e-6, courant=0.9))
-    assert ("common_slope" in [warning["name"] for warning in json.loads(estimate.to_json())["warnings"]]) is not ranged
+    assert ("common_slope" in warnings_of(estimate)) is not ranged
     assert (facts(estimate)["effectivity"] is not None) is ranged
 
 
@@ -156,7 +161,7 @@ def test_a_corner_that_flies_over_a_slope_does_not_lean() -> None:
     pressed = pc.Support(group="large.top", components="y", velocity=[-20.0, -20.0], time=[0.0, 1.0])
     problem = pc.Problem(bodies=bodies, contacts=contacts, supports=[pressed])
     estimate = pc.estimate(pc.simulate(problem, end=30e-6, courant=0.9))
-    assert "common_slope" not in [warning["name"] for warning in json.loads(estimate.to_json())["warnings"]]
+    assert "common_slope" not in warnings_of(estimate)
 
 
 @pytest.mark.filterwarnings("ignore::percute.SimulationWarning")

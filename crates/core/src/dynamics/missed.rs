@@ -157,9 +157,10 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
                 let lines = self.halves.get(&[a, b]).map_or(&[][..], Vec::as_slice);
                 for (&node, way) in own.nodes.iter().filter(|(node, _)| !is_solved(**node, b)) {
                     let mut place = self.place(displacement, node);
-                    let on_line = |line: &&SymmetryLine| line.beyond(&points[node.index()], size) == 0.0;
-                    let own: BTreeSet<usize> = lines.iter().filter(on_line).map(|line| line.across).collect();
-                    own.into_iter().for_each(|across| place[across] += way[across]);
+                    let is_on = |line: &SymmetryLine| line.beyond(&points[node.index()], size) == 0.0;
+                    for across in (0..D).filter(|&c| lines.iter().any(|line| line.across == c && is_on(line))) {
+                        place[across] += way[across];
+                    }
                     let near = (0..D).all(|c| limits[b][c][0] < place[c] && place[c] < limits[b][c][1]);
                     if near && let Some(depth) = self.depth(displacement, other, &place, lines) {
                         return Some((node, [a, b], depth));

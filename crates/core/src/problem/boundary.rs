@@ -73,19 +73,6 @@ impl<const D: usize> Supports<D> {
     }
 }
 
-/// For each node the directions across which it is on a line of symmetry: those in which supports hold an edge that
-/// stands across them.
-pub(super) fn mirrors<const D: usize, const N: usize>(mesh: &Mesh<D, N>, supported: &[[bool; D]]) -> Vec<[bool; D]> {
-    let mut mirrors = vec![[false; D]; mesh.node_count()];
-    for (index, supported) in supported.iter().enumerate().filter(|(_, supported)| supported.contains(&true)) {
-        let facet = FacetId::new(index);
-        for c in (0..D).filter(|&c| supported[c] && mesh.stands_across(facet, c)) {
-            mesh.facets()[index].nodes.iter().for_each(|node| mirrors[node.index()][c] = true);
-        }
-    }
-    mirrors
-}
-
 /// Resolves the supports; two may overlap only if they prescribe the same motion.
 pub(super) fn supports<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,

@@ -25,7 +25,7 @@ pub use builder::{Builder, Initial, Statement};
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
 pub use plausibility::{PlausibilityWarning, RefusedStart, cause_of_refused_start, plausibility_warnings};
 
-use crate::contact::{ContactNode, ContactSurface, Facing, Interface, Obstacle};
+use crate::contact::{ContactSurface, Facing, Interface, Obstacle};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{Profile, Table};
 use crate::material::{Elastic, Law};
@@ -150,20 +150,6 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     #[must_use]
     pub fn supported(&self, facet: FacetId) -> [bool; D] {
         self.supported[facet.index()]
-    }
-
-    /// Whether each node of the contact surface is on a line of symmetry across it: a support holds it along the
-    /// surface, and an edge that stands across.
-    #[must_use]
-    pub fn on_lines_of_symmetry(&self) -> Vec<bool> {
-        let mirrors = boundary::mirrors(&self.mesh, &self.supported);
-        let is_on_line = |contact: &ContactNode| contact.guided && mirrors[contact.node.index()].contains(&true);
-        self.surface.nodes().iter().map(is_on_line).collect()
-    }
-
-    /// The lines of symmetry on which each node is.
-    pub(crate) fn node_lines(&self) -> Vec<symmetry::NodeLines<D>> {
-        symmetry::node_lines(&self.mesh, &self.supported, &self.prescribed, &self.motions)
     }
 
     /// All prescribed components of nodes, eq. \[4\], by node.

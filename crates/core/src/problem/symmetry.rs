@@ -1,6 +1,7 @@
 //! Lines of symmetry of a model of which one half is there.
 
-use super::{PrescribedComponent, boundary};
+use super::{PrescribedComponent, Problem};
+use crate::contact::ContactNode;
 use crate::ids::FacetId;
 use crate::load::Table;
 use crate::mesh::Mesh;
@@ -48,7 +49,7 @@ pub(crate) fn node_lines<const D: usize, const N: usize>(
     prescribed: &[PrescribedComponent],
     motions: &[Table<1>],
 ) -> Vec<NodeLines<D>> {
-    let mirrors = boundary::mirrors(mesh, supported);
+    let mirrors = mirrors(mesh, supported);
     let mut lines = vec![[None; D]; mesh.node_count()];
     for p in prescribed.iter().filter(|p| mirrors[p.node.index()][p.component]) {
         let of_table = |index: usize| match motions[index].is_constant() {
@@ -58,6 +59,35 @@ pub(crate) fn node_lines<const D: usize, const N: usize>(
         lines[p.node.index()][p.component] = Some(p.motion.map_or(Motion::Uniform(0.0), of_table));
     }
     lines
+}
+
+/// For each node the directions across which it is on a line of symmetry: those in which supports hold an edge that
+/// stands across them.
+fn mirrors<const D: usize, const N: usize>(mesh: &Mesh<D, N>, supported: &[[bool; D]]) -> Vec<[bool; D]> {
+    let mut mirrors = vec![[false; D]; mesh.node_count()];
+    for (index, supported) in supported.iter().enumerate().filter(|(_, supported)| supported.contains(&true)) {
+        let facet = FacetId::new(index);
+        for c in (0..D).filter(|&c| supported[c] && mesh.stands_across(facet, c)) {
+            mesh.facets()[index].nodes.iter().for_each(|node| mirrors[node.index()][c] = true);
+        }
+    }
+    mirrors
+}
+
+impl<const D: usize, const N: usize> Problem<D, N> {
+    /// Whether each node of the contact surface is on a line of symmetry across it: a support holds it along the
+    /// surface, and an edge that stands across.
+    #[must_use]
+    pub fn on_lines_of_symmetry(&self) -> Vec<bool> {
+        let mirrors = mirrors(&self.mesh, &self.supported);
+        let is_on_line = |contact: &ContactNode| contact.guided && mirrors[contact.node.index()].contains(&true);
+        self.surface.nodes().iter().map(is_on_line).collect()
+    }
+
+    /// The lines of symmetry on which each node is.
+    pub(crate) fn node_lines(&self) -> Vec<NodeLines<D>> {
+        node_lines(&self.mesh, &self.supported, &self.prescribed, &self.motions)
+    }
 }
 
 /// The line of symmetry on which an edge is: supports hold it across the line alone. Bars have no such line, because

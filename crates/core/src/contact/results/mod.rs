@@ -41,7 +41,8 @@ pub struct ContactResults<const D: usize> {
     /// faces so little of its edge that its gap is a mean, or that is beyond the end by less than 1e-3 of its edge.
     pub at_end: bool,
     /// The largest angle by which surfaces of two bodies lean together from the normal of their contact where forces
-    /// act, or by which a side leans on which a corner of the slave acts (rad): forces have the direction of the normal.
+    /// act, or by which a side leans on which a corner of the slave acts (rad): forces have the direction of the
+    /// normal.
     pub lean: f64,
     /// The largest mean rotation of a plane body at each 64th instant and the last one (rad); 0 on bars.
     pub rotation: f64,

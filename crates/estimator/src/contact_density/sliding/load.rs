@@ -75,6 +75,9 @@ impl<const D: usize> Load<D> {
                 _ => place,
             }
         };
+        if self.spans.iter().all(|(places, _)| places.map(place_of) == *places) {
+            return (self.clone(), 0.0);
+        }
         let made = self.moved(place_of, edge);
         let difference = self.square_of_difference(&made, edge);
         (made, difference)
@@ -86,9 +89,8 @@ impl<const D: usize> Load<D> {
         places.sort_by(f64::total_cmp);
         let difference = |ends: &[f64]| {
             let [own, other] = [self, other].map(|load| load.on([ends[0], ends[1]]));
-            let of = |c: usize| [0, 1].map(|k: usize| own[k][c] - other[k][c]);
-            let sum: f64 = (0..D).map(of).map(|[a, b]| a * a + a * b + b * b).sum();
-            (ends[1] - ends[0]) * edge.length / 3.0 * sum
+            let apart: [[f64; D]; 2] = [0, 1].map(|k| std::array::from_fn(|c| own[k][c] - other[k][c]));
+            square_of_linear((ends[1] - ends[0]) * edge.length, &apart)
         };
         places.windows(2).filter(|ends| ends[0] < ends[1]).map(difference).sum()
     }
@@ -131,8 +133,7 @@ impl<const D: usize> Load<D> {
     /// ∫F² over the edge (N²/m).
     pub(super) fn square(&self, edge: &EdgeFacet) -> f64 {
         let of = |(places, values): &([f64; 2], [[f64; D]; 2])| -> f64 {
-            let sum = (0..D).map(|c| [values[0][c], values[1][c]]).map(|[a, b]| a * a + a * b + b * b);
-            (places[1] - places[0]) * edge.length / 3.0 * sum.sum::<f64>()
+            square_of_linear((places[1] - places[0]) * edge.length, values)
         };
         self.spans.iter().map(of).sum()
     }
@@ -142,11 +143,9 @@ impl<const D: usize> Load<D> {
         let (linear, length) = ([self.nodal(0), self.nodal(1)], edge.length);
         let at = |place: f64, c: usize| (linear[0][c] * (1.0 - place) + linear[1][c] * place) / length;
         let (mut sum, mut reached) = (0.0, 0.0);
-        let mut add = |[from, to]: [f64; 2], values: [[f64; D]; 2]| {
-            for c in 0..D {
-                let [a, b] = [values[0][c] - at(from, c), values[1][c] - at(to, c)];
-                sum += (to - from) * length / 3.0 * (a * a + a * b + b * b);
-            }
+        let mut add = |ends: [f64; 2], values: [[f64; D]; 2]| {
+            let rest: [[f64; D]; 2] = [0, 1].map(|k| std::array::from_fn(|c| values[k][c] - at(ends[k], c)));
+            sum += square_of_linear((ends[1] - ends[0]) * length, &rest);
         };
         for &(places, values) in &self.spans {
             add([reached, places[0]], [[0.0; D]; 2]);
@@ -235,6 +234,12 @@ impl<const D: usize> Load<D> {
         let linear = [from, to].map(|at| scaled(std::array::from_fn(|c| first[c] * (1.0 - at) + second[c] * at), 1.0));
         EdgeRest { points, linear }
     }
+}
+
+/// ∫f² of a function that is linear over a length (m), with these values at both ends.
+fn square_of_linear<const D: usize>(length: f64, [from, to]: &[[f64; D]; 2]) -> f64 {
+    let squares = from.iter().zip(to).map(|(a, b)| a * a + a * b + b * b);
+    length / 3.0 * squares.sum::<f64>()
 }
 
 /// A place on an edge as one on the part of the edge beside an end.
