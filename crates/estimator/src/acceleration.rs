@@ -1,5 +1,6 @@
 //! Accelerations of nodes under given forces.
 
+use crate::parallel::by_pieces;
 use percute_core::problem::Problem;
 
 /// Turns nodal forces (N) into M⁻¹ of them and of the contact forces on the nodes of the contact surface (m/s²).
@@ -12,7 +13,9 @@ pub(crate) fn accelerate<const D: usize, const N: usize>(
     for (node, contact) in problem.surface().nodes().iter().zip(contact) {
         (0..D).for_each(|c| force[node.node.index()][c] += contact[c]);
     }
-    for (f, inverse) in force.iter_mut().zip(inverse_mass) {
-        (0..D).for_each(|c| f[c] *= inverse);
-    }
+    by_pieces((force, inverse_mass), &|_, (force, inverse_mass)| {
+        for (f, inverse) in force.iter_mut().zip(inverse_mass) {
+            (0..D).for_each(|c| f[c] *= inverse);
+        }
+    });
 }

@@ -2,6 +2,7 @@
 
 use crate::lanes::Value;
 use crate::nodal_field::{FieldPool, NodalField};
+use crate::parallel::by_pieces;
 use percute_core::ids::NodeId;
 
 /// The integral in the middle of a step of this length (s), from that at its end and the field at its start and its end
@@ -28,12 +29,11 @@ impl<const D: usize> Increment<D> {
     /// At the end of a step of this length (s), over which the field goes linearly from `start` to `end` (m/s²).
     pub(crate) fn advance(&self, length: f64, start: &[[f64; D]], end: &[[f64; D]]) -> Self {
         let mut last = self.0.another();
-        let fields = self.0.iter().zip(start.iter().zip(end));
-        for (last, (w, (x, y))) in last.iter_mut().zip(fields) {
-            for c in 0..D {
-                last[c] = w[c] + length * (0.5 * x[c] + 0.5 * y[c]);
+        by_pieces((&mut last[..], (&self.0[..], start, end)), &|_, (last, (first, start, end))| {
+            for (last, (w, (x, y))) in last.iter_mut().zip(first.iter().zip(start.iter().zip(end))) {
+                *last = std::array::from_fn(|c| w[c] + length * (0.5 * x[c] + 0.5 * y[c]));
             }
-        }
+        });
         Self(last)
     }
 

@@ -30,6 +30,7 @@ mod measure;
 mod nodal_field;
 mod numbers;
 mod options;
+mod parallel;
 mod partition;
 mod pipeline;
 mod pool;

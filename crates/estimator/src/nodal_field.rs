@@ -3,6 +3,7 @@
 //! Each step needs a dozen fields for a short time. New memory from the operating system would cost more than the work
 //! on it.
 
+use crate::parallel::by_pieces;
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -38,7 +39,7 @@ impl<const D: usize> FieldPool<D> {
     /// A field with these values.
     pub(crate) fn copy(&self, values: &[[f64; D]]) -> NodalField<D> {
         let mut field = self.take();
-        field.copy_from_slice(values);
+        by_pieces((&mut field[..], values), &|_, (field, values)| field.copy_from_slice(values));
         field
     }
 

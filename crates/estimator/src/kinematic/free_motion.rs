@@ -3,6 +3,7 @@
 
 use crate::lanes::Value;
 use crate::nodal_field::{FieldPool, NodalField};
+use crate::parallel::by_pieces;
 use percute_core::history::State;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -66,16 +67,19 @@ impl<const D: usize> FreeMotion<D> {
         let quarter = 0.25 * times.step(n - 1);
         let [mut v_mid, mut u_now, mut v_now] = [(); 3].map(|()| self.pool.take());
         // Velocity is linear over each half step, displacement its exact integral.
-        let mut node = |i: usize, mid: [f64; D], now: [f64; D]| {
-            for c in 0..D {
+        let displacement = |i: usize, mid: &[f64; D], now: &[f64; D]| -> [f64; D] {
+            std::array::from_fn(|c| {
                 let half_way = u[i][c] + quarter * (v[i][c] + mid[c]);
-                u_now[i][c] = half_way + quarter * (mid[c] + now[c]);
-            }
-            (v_mid[i], v_now[i]) = (mid, now);
+                half_way + quarter * (mid[c] + now[c])
+            })
         };
-        for (i, mid) in state.half_step().iter().enumerate() {
-            node(i, *mid, state.velocity_of(i));
-        }
+        by_pieces((&mut u_now[..], &mut v_mid[..], &mut v_now[..]), &|first, (u_now, v_mid, v_now)| {
+            for (k, ((u_now, v_mid), v_now)) in u_now.iter_mut().zip(v_mid).zip(v_now).enumerate() {
+                let (mid, now) = (state.half_step()[first + k], state.velocity_of(first + k));
+                *u_now = displacement(first + k, &mid, &now);
+                (*v_mid, *v_now) = (mid, now);
+            }
+        });
         for nodes in problem.prescribed().chunk_by(|a, b| a.node == b.node) {
             let i = nodes[0].node.index();
             let (mut mid, mut now) = (state.half_step()[i], state.velocity_of(i));
@@ -83,7 +87,8 @@ impl<const D: usize> FreeMotion<D> {
                 let [before, after] = [n - 1, n].map(|k| problem.prescribed_velocity(p, times.instants()[k]));
                 (mid[p.component], now[p.component]) = (0.5 * (before + after), after);
             }
-            node(i, mid, now);
+            u_now[i] = displacement(i, &mid, &now);
+            (v_mid[i], v_now[i]) = (mid, now);
         }
         self.now = NodalMotion { displacement: Arc::new(u_now), velocity: Arc::new(v_now) };
         (Some(v_mid), self.now.clone())

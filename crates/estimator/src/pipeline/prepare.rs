@@ -13,7 +13,7 @@ use crate::error::EstimateError;
 use crate::estimate::Given;
 use crate::kinematic::{ContactTracks, FreeMotion, NodalMotion, NormalStep, half_way};
 use crate::loaded::LoadedFacets;
-use crate::nodal_field::FieldPool;
+use crate::nodal_field::{FieldPool, NodalField};
 use crate::options::Options;
 use crate::reconstruction::{self, BalancedFields, ReconstructionMethod, SimulatedStep};
 use crate::residual::{Residuals, worse};
@@ -55,7 +55,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     /// Sliding beside nodes at two planes over these steps.
     corner_sliding: Vec<CornerSliding<D>>,
     /// Displacement of the simulation at the last level, if its difference is not measured (m).
-    unmeasured: Vec<[f64; D]>,
+    unmeasured: Option<NodalField<D>>,
     /// Number of steps taken in.
     count: usize,
     given: Given,
@@ -85,7 +85,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             ready: VecDeque::new(),
             off_contact: Vec::new(),
             corner_sliding: Vec::new(),
-            unmeasured: Vec::new(),
+            unmeasured: None,
             count: 0,
             given: Given::default(),
             impulse: Impulse::default(),
@@ -217,11 +217,11 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
 
         let simulated = SimulatedStep { state, velocity: now.velocity() };
         let balanced = self.reconstruction.advance(&self.dynamics, &simulated, &self.pool);
-        self.unmeasured.clear();
+        self.unmeasured = None;
         if decision.now {
             self.reconstruction.differ([step.displacement, now.velocity()]);
         } else if self.reconstruction.differences().is_some() {
-            self.unmeasured.extend_from_slice(step.displacement);
+            self.unmeasured = Some(self.pool.copy(step.displacement));
         }
         let BalancedFields { displacement, force, contact, densities, lumping_difference } = balanced;
         if let Some(densities) = &densities {
@@ -287,8 +287,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     /// Measures the difference of simulation and auxiliary solution at the last level, which has turned out to be
     /// sampled.
     fn differ_at_last(&mut self) {
-        if let (Some(last), false) = (self.motions.back(), self.unmeasured.is_empty()) {
-            self.reconstruction.differ([&self.unmeasured, last.now.velocity()]);
+        if let (Some(last), Some(unmeasured)) = (self.motions.back(), &self.unmeasured) {
+            self.reconstruction.differ([unmeasured, last.now.velocity()]);
         }
     }
 

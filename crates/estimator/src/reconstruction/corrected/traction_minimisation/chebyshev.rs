@@ -214,26 +214,27 @@ impl Operator {
         }
     }
 
-    /// The product of scaled coefficients with the matrix of the iteration, and the scalar product of both; `edges` has
-    /// any content.
-    pub(super) fn multiply(&self, block: &Block, x: &Modes, to: &mut Modes, [t, v]: &mut [Vec<Lanes>; 2]) -> Lanes {
+    /// One of the three stages of the product of scaled coefficients with the matrix of the iteration, for a block; gives
+    /// its part of the scalar product of both.
+    pub(super) fn multiply(&self, stage: usize, block: &Block, x: &Modes, to: &mut Product<'_>) -> Lanes {
+        let Product { modes, edges: [t, v] } = to;
+        let mut product = Lanes::ZERO;
         dispatch(
             #[inline(always)]
-            || {
-                let mut product = Lanes::ZERO;
-                self.couple(block, (&x.nodes, &x.edges), t);
-                self.edges_around_edges(
+            || match stage {
+                0 => self.couple(block, (&x.nodes, &x.edges), t),
+                1 => self.edges_around_edges(
                     block,
                     t,
                     #[inline(always)]
                     |edge, sum| {
                         let own = x.edges[edge];
                         v[edge] = (own - t[edge]) + sum;
-                        to.edges[edge] = own + sum;
+                        modes.edges[edge] = own + sum;
                         product += own * (own + sum);
                     },
-                );
-                self.around_nodes::<true>(
+                ),
+                _ => self.around_nodes::<true>(
                     block,
                     &x.nodes,
                     v,
@@ -241,13 +242,24 @@ impl Operator {
                     |node, sum| {
                         for i in 0..3 {
                             let own = x.nodes[node][i];
-                            to.nodes[node][i] = own + sum[i];
+                            modes.nodes[node][i] = own + sum[i];
                             product += own * (own + sum[i]);
                         }
                     },
-                );
-                product
+                ),
             },
-        )
+        );
+        product
     }
 }
+
+/// A product in the making.
+#[derive(Debug)]
+pub(super) struct Product<'a> {
+    pub(super) modes: &'a mut Modes,
+    /// t and v.
+    pub(super) edges: &'a mut [Vec<Lanes>; 2],
+}
+
+/// Stages of a product.
+pub(super) const PRODUCT_STAGES: usize = 3;

@@ -89,15 +89,15 @@ impl TractionMinimisation {
         }
         let numbers = Numbers::new(problem.mesh());
         let operator = assembly::assemble(problem, elements, &numbers);
-        let spaces = Pool::new();
+        let (wavefront, spaces) = (Wavefront::new(problem.mesh()), Pool::new());
         let largest_eigenvalue = spaces.lend(
             || Workspace::new(&numbers),
-            |space| spectrum::largest_eigenvalue(problem.mesh(), &numbers, &operator, space),
+            |space| spectrum::largest_eigenvalue(problem.mesh(), (&numbers, &operator, &wavefront), space),
         );
         Some(Self {
-            wavefront: Wavefront::new(problem.mesh()),
             numbers,
             operator,
+            wavefront,
             steps: Steps::new(MARGIN * largest_eigenvalue),
             spaces,
             #[cfg(test)]

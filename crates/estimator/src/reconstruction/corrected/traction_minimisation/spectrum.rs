@@ -5,8 +5,10 @@
 //! bodies have that of one.
 
 use super::Workspace;
+use super::chebyshev::{PRODUCT_STAGES, Product};
 use super::modes::{MOMENTS, Modes, Numbers};
 use super::operator::{Block, Operator};
+use super::wavefront::Wavefront;
 use crate::lanes::{LANES, Lanes};
 use crate::simd::dispatch;
 use percute_core::ids::NodeId;
@@ -25,8 +27,7 @@ const PHASE: f64 = 1e3;
 /// The largest eigenvalue, at least 1: that of a single mode.
 pub(super) fn largest_eigenvalue<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
-    numbers: &Numbers,
-    operator: &Operator,
+    of @ (numbers, operator, _): (&Numbers, &Operator, &Wavefront),
     space: &mut Workspace,
 ) -> f64 {
     let block = Block::new(numbers, 0..mesh.node_count(), 0);
@@ -49,7 +50,7 @@ pub(super) fn largest_eigenvalue<const D: usize, const N: usize>(
         // product.
         let length = Lanes(square.0.map(f64::sqrt));
         let scale = Lanes(length.0.map(|x| if x > 0.0 { 1.0 / x } else { 0.0 }));
-        let diagonal = operator.multiply(&block, now, next, edges) * scale * scale;
+        let diagonal = product(of, now, &mut Product { modes: next, edges }) * scale * scale;
         square = make_orthogonal(next, [now, &before], [scale, diagonal * scale, length * scale_before]);
         *entries = [diagonal, length];
         scale_before = scale;
@@ -57,6 +58,19 @@ pub(super) fn largest_eigenvalue<const D: usize, const N: usize>(
         std::mem::swap(now, next);
     }
     (0..LANES).map(|lane| largest_of(&tridiagonal, lane)).fold(1.0, f64::max)
+}
+
+/// The product of scaled coefficients with the matrix of the iteration, and the scalar product of both.
+pub(super) fn product(
+    (numbers, operator, wavefront): (&Numbers, &Operator, &Wavefront),
+    x: &Modes,
+    to: &mut Product<'_>,
+) -> Lanes {
+    let mut sums = [Lanes::ZERO; PRODUCT_STAGES];
+    wavefront.all::<PRODUCT_STAGES>(|stage, nodes| {
+        sums[stage] += operator.multiply(stage, &Block::new(numbers, nodes, 0), x, to);
+    });
+    sums[1] + sums[2]
 }
 
 /// Takes multiples of two vectors from a multiple of another one, and gives the square of its length.

@@ -21,6 +21,8 @@ const SEGMENT: usize = 64;
 /// The blocks of a mesh.
 #[derive(Clone, Debug)]
 pub(super) struct Wavefront {
+    /// Number of nodes.
+    nodes: usize,
     /// The first block around each block and all after it, and the end of those around it and all before it.
     around: Vec<[u32; 2]>,
 }
@@ -65,7 +67,7 @@ impl Wavefront {
             let back = count - 1 - k;
             around[back][0] = around[back][0].min(around[back + 1][0]);
         }
-        Self { around }
+        Self { nodes: mesh.node_count(), around }
     }
 
     /// Takes all blocks through all stages.
@@ -99,19 +101,35 @@ impl Wavefront {
 
     /// Takes the blocks of a segment through the stages, as far as they depend on no others.
     fn segment(&self, work: Work<'_>, blocks: Range<usize>, mut arrays: Arrays<'_>) -> Done {
-        let mut done: Done = std::array::from_fn(|_| blocks.start..blocks.start);
+        let first = blocks.start;
+        self.follow(blocks, |stage, k| work.on_block(stage, k, first, &mut arrays))
+    }
+
+    /// Takes all blocks through some stages, here. Each stage meets them in order.
+    pub(super) fn all<const S: usize>(&self, mut on_nodes: impl FnMut(usize, Range<usize>)) {
+        let nodes = |k: usize| k * BLOCK..((k + 1) * BLOCK).min(self.nodes);
+        self.follow::<S>(0..self.around.len(), |stage, k| on_nodes(stage, nodes(k)));
+    }
+
+    /// Hands out stages and blocks of a segment, as far as they depend on no others: which have gone through each stage.
+    fn follow<const S: usize>(
+        &self,
+        blocks: Range<usize>,
+        mut on_block: impl FnMut(usize, usize),
+    ) -> [Range<usize>; S] {
+        let mut done: [Range<usize>; S] = std::array::from_fn(|_| blocks.start..blocks.start);
         // The blocks before these depend on another segment.
-        for stage in 1..STAGES {
+        for stage in 1..S {
             let from = done[stage - 1].start as u32;
             let start = blocks.clone().find(|k| self.around[*k][0] >= from).unwrap_or(blocks.end);
             done[stage] = start..start;
         }
         for front in blocks.clone() {
-            work.on_block(0, front, blocks.start, &mut arrays);
+            on_block(0, front);
             done[0].end = front + 1;
-            for stage in 1..STAGES {
+            for stage in 1..S {
                 while done[stage].end < blocks.end && self.around[done[stage].end][1] as usize <= done[stage - 1].end {
-                    work.on_block(stage, done[stage].end, blocks.start, &mut arrays);
+                    on_block(stage, done[stage].end);
                     done[stage].end += 1;
                 }
             }

@@ -1,5 +1,6 @@
 //! A problem with all that the minimisation is compared with.
 
+use super::super::chebyshev::Product;
 use super::super::energy::moment_gradient;
 use super::super::modes::MOMENTS;
 use super::super::operator::Block;
@@ -147,7 +148,8 @@ impl Case {
     /// The product with the matrix of the iteration, and the scalar product of both.
     pub(super) fn multiply(&self, x: &Modes) -> (Modes, Lanes) {
         let (mut to, mut edges) = (x.clone(), [x.edges.clone(), x.edges.clone()]);
-        let product = self.all.operator.multiply(&self.block(), x, &mut to, &mut edges);
+        let of = (&self.all.numbers, &self.all.operator, &self.all.wavefront);
+        let product = spectrum::product(of, x, &mut Product { modes: &mut to, edges: &mut edges });
         (to, product)
     }
 
