@@ -95,8 +95,10 @@ fn judged<const D: usize, const N: usize>(
 ) -> (Option<Rebound>, Verdict) {
     let Subject { problem, times, critical_step, checked, .. } = *subject;
     let (courant, drift) = (times.longest_step() / critical_step, simulation.balance.energy_drift);
+    let contact_energy = contact_energy(&simulation.balance);
     let rebound = Rebound::new(problem, &simulation.balance_over_time, contact);
-    let beside = verdict::Beside { options, courant, drift, admissible, rebound: rebound.as_ref(), checked };
+    let beside =
+        verdict::Beside { options, courant, drift, contact_energy, admissible, rebound: rebound.as_ref(), checked };
     let verdict = Verdict::new(&verdict::Facts::new(problem, estimate, contact, beside), &estimate.parts);
     (rebound, verdict)
 }
@@ -127,6 +129,7 @@ pub fn warnings_of<const D: usize, const N: usize>(
         checked,
         plausibility_warnings: &foreseen,
         drift: balance.energy_drift,
+        contact_energy: contact_energy(balance),
         relative: [estimate.error.relative_sup, estimate.error.relative_mean],
         steps_vary: times.varies(),
         interrupted: estimate.steps < times.step_count(),
@@ -149,6 +152,13 @@ pub fn warnings_of<const D: usize, const N: usize>(
     let varying = varying.map(|varying| Warning { message: format!("the steps {}", varying.message), ..varying });
     let before = foreseen.iter().map(Warning::from).chain(varying).chain(few);
     [found(&facts), before.chain(reported(subject.problem.mesh())).collect()]
+}
+
+/// Work of contact without that of friction, over the larger of the first and the last energy; at most 0, to rounding,
+/// where contact is what it should be.
+fn contact_energy(balance: &Balance) -> f64 {
+    let energy = balance.initial.max(balance.kinetic + balance.strain);
+    if energy > 0.0 { (balance.work_of_contact + balance.friction) / energy } else { 0.0 }
 }
 
 pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<'_, D, N>) -> ProblemSummary {

@@ -30,6 +30,8 @@ pub(super) struct Facts<'a> {
     pub(super) problem: &'a ProblemSummary,
     pub(super) plausibility_warnings: &'a [PlausibilityWarning],
     pub(super) drift: f64,
+    /// Work of contact without friction, over the larger of the first and the last energy.
+    pub(super) contact_energy: f64,
     /// The largest relative error and the mean.
     pub(super) relative: [f64; 2],
     /// Whether the steps have different lengths.
@@ -62,6 +64,7 @@ impl Warning {
             "not_admissible",
             "shifted_forces",
             "energy_drift",
+            "contact_energy",
             "relative_error",
             "flat_elements",
             "kept_impulse",

@@ -4,6 +4,7 @@ mod half;
 mod invariance;
 mod law;
 mod limits;
+mod overhang;
 mod patch;
 mod refusals;
 mod roles;

@@ -57,6 +57,8 @@ pub(in crate::report) struct Facts {
     pub(super) at_contact: f64,
     pub(super) error: ErrorMeasures,
     pub(super) energy_drift: f64,
+    /// Work of contact without friction, over the energy.
+    pub(super) contact_energy: f64,
     pub(super) admissible: bool,
     pub(super) kept_impulse: Option<f64>,
     pub(super) expected: Option<Expected>,
@@ -89,6 +91,8 @@ pub(in crate::report) struct Beside<'a> {
     pub(in crate::report) courant: f64,
     /// Drift of the energy balance.
     pub(in crate::report) drift: f64,
+    /// Work of contact without friction, over the energy.
+    pub(in crate::report) contact_energy: f64,
     pub(in crate::report) admissible: bool,
     pub(in crate::report) rebound: Option<&'a Rebound>,
     /// Of a history of another program.
@@ -135,6 +139,7 @@ impl Facts {
             at_contact: at_contact(problem, estimate, results),
             error: estimate.error,
             energy_drift: beside.drift,
+            contact_energy: beside.contact_energy,
             admissible: beside.admissible,
             // A node with a contact of its own touches at other instants in the admissible fields.
             kept_impulse: estimate.kept_impulse.filter(|_| estimate.own_contacts == 0),

@@ -6,7 +6,7 @@ use super::rules::{self, Rule};
 use super::touches::Touches;
 use crate::foreign::Contradiction;
 use crate::message::{change, short, whole_percent};
-use crate::report::symptoms::{DRIFT, KEPT};
+use crate::report::symptoms::{CONTACT_ENERGY, DRIFT, KEPT};
 
 /// A relative error above this is as large as the solution: it cannot exceed 1/√2 by much.
 const AS_LARGE: f64 = 0.5;
@@ -32,6 +32,9 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
     // A drift that is no number must not pass.
     if facts.energy_drift.is_nan() || facts.energy_drift > DRIFT {
         doubts.push(format!("the energy balance is off by {}", whole_percent(facts.energy_drift)));
+    }
+    if facts.contact_energy > CONTACT_ENERGY {
+        doubts.push(format!("contact forces give the bodies {} of their energy", whole_percent(facts.contact_energy)));
     }
     if facts.error.relative_mean > AS_LARGE {
         doubts.push("the error is as large as the solution".to_string());
