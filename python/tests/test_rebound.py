@@ -172,7 +172,10 @@ def test_contact_that_does_not_end_in_time_is_warned_about() -> None:
         history = pc.simulate(hits(), end="rebound", longest=3e-5, courant=0.9)
     assert history.time[-1] == 3e-5 and history.complete
     with pytest.warns(pc.InputWarning, match="not left its plane by 3e-5 s"):
-        pc.run(RUBBER.format(time='end = "rebound"\nlongest = 3e-5'))
+        estimate = pc.run(RUBBER.format(time='end = "rebound"\nlongest = 3e-5'))
+    assert [each for each in estimate.warnings if "not left its plane by 3e-5 s" in each]
+    assert "not left its plane" in " ".join(str(estimate).split())
+    assert "no_rebound" in [each["name"] for each in json.loads(estimate.to_json())["warnings"]]
 
 
 def test_a_rebound_needs_a_plane_that_is_struck() -> None:

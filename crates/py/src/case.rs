@@ -7,7 +7,6 @@ use percute_workflow::Failure;
 use percute_workflow::case::{Case, Instants, Source, parse};
 use percute_workflow::effort::Long;
 use percute_workflow::outputs;
-use percute_workflow::report::Warning;
 use percute_workflow::run::{located, resolved};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -38,20 +37,20 @@ impl CaseData {
     /// contact does not end.
     fn resolved(&self, py: Python<'_>, progress: Option<&Bound<'_, PyAny>>) -> PyResult<(Self, Option<String>)> {
         let case = self.case.clone();
-        let work = move |mut watch: bridge::Watch| -> Result<Option<(Case, Option<Warning>)>, Failure> {
+        let work = move |mut watch: bridge::Watch| -> Result<Option<Case>, Failure> {
             Ok(match case {
                 ByDimension::Bar(case) => resolved(&case, &mut watch)
                     .map_err(|failure| located(&case, failure))?
-                    .map(|(case, told)| (ByDimension::Bar(Box::new(case)), told)),
+                    .map(|case| ByDimension::Bar(Box::new(case))),
                 ByDimension::Plane(case) => resolved(&case, &mut watch)
                     .map_err(|failure| located(&case, failure))?
-                    .map(|(case, told)| (ByDimension::Plane(Box::new(case)), told)),
+                    .map(|case| ByDimension::Plane(Box::new(case))),
             })
         };
         let found = bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))?;
-        let (case, warning) =
-            found.ok_or_else(|| errors::percute_error(py, "the search for the rebound was stopped"))?;
-        Ok((Self { case }, warning.map(|warning| warning.message)))
+        let case = found.ok_or_else(|| errors::percute_error(py, "the search for the rebound was stopped"))?;
+        let told = each_dimension!(&case, case => case.unended.as_ref().map(|warning| warning.message.clone()));
+        Ok((Self { case }, told))
     }
 
     /// Refuses a start that the simulation would refuse, and a long run unless `long` says so.

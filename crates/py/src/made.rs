@@ -34,6 +34,8 @@ pub(crate) struct Made<const D: usize, const N: usize> {
     pub(crate) checked: Option<Checked>,
     /// The case file that was run.
     pub(crate) case: Option<Case>,
+    /// The warning of a run that was to end with the rebound, if contact did not end.
+    pub(crate) unended: Option<Warning>,
 }
 
 /// Where the report comes from.
@@ -75,6 +77,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
             report: ReportSource::Before(report),
             checked: None,
             case: None,
+            unended: None,
         })
     }
 
@@ -96,7 +99,8 @@ impl<const D: usize, const N: usize> Made<D, N> {
         let Results { simulation, estimate, contact, outline } = results;
         let report =
             ReportSource::Now { simulation, contact: Arc::new(contact), outline: outline.map(Box::new), held, seconds };
-        Self { problem, times, options: options.filled(D), estimate, report, checked: None, case: None }
+        let (checked, case, unended) = (None, None, None);
+        Self { problem, times, options: options.filled(D), estimate, report, checked, case, unended }
     }
 
     /// The document of `percute run --json`.
@@ -111,11 +115,12 @@ impl<const D: usize, const N: usize> Made<D, N> {
 
     /// Warnings that only the result shows, and those that a run is told of before; none if the report was made before.
     pub(crate) fn warnings(&self) -> [Vec<Warning>; 2] {
-        let Self { problem, times, options, estimate, report, checked, .. } = self;
+        let Self { problem, times, options, estimate, report, checked, unended, .. } = self;
         let ReportSource::Now { simulation, contact, held, .. } = report else { return Default::default() };
         // Equal steps need no critical step.
         let critical_step = if times.varies() { critical_time_step(problem) } else { f64::NAN };
-        let subject = Subject { name: "", problem, times, critical_step, held: *held, checked: checked.as_ref() };
+        let (name, held, checked, unended) = ("", *held, checked.as_ref(), unended.as_ref());
+        let subject = Subject { name, problem, times, critical_step, held, checked, unended };
         warnings_of(&subject, *options, &simulation.balance, estimate, contact)
     }
 
@@ -125,13 +130,13 @@ impl<const D: usize, const N: usize> Made<D, N> {
         name: &str,
         text: fn(&Report) -> Result<String, std::io::Error>,
     ) -> Result<String, String> {
-        let Self { problem, times, options, estimate, report, checked, .. } = self;
+        let Self { problem, times, options, estimate, report, checked, unended, .. } = self;
         match report {
             ReportSource::Before(text) => Ok(text.clone()),
             ReportSource::Now { simulation, contact, outline, held, seconds } => {
                 let critical_step = critical_time_step(problem);
-                let checked = checked.as_ref();
-                let subject = Subject { name, problem, times, critical_step, held: *held, checked };
+                let (held, checked, unended) = (*held, checked.as_ref(), unended.as_ref());
+                let subject = Subject { name, problem, times, critical_step, held, checked, unended };
                 let outline = outline.as_deref();
                 let report = Report::new(&subject, *options, simulation, estimate, contact, outline, *seconds);
                 text(&report).map_err(|error| error.to_string())

@@ -164,6 +164,7 @@ fn run_one<const D: usize, const N: usize>(
         planned.carry_out(py, progress, either, work, &|failure| run::located(case, failure))?;
     let mut made = Made::new(problem, times, options, results, None, seconds);
     made.case = Some(stored_case(&case.source));
+    made.unended.clone_from(&case.unended);
     Ok((history, Arc::new(made)))
 }
 

@@ -117,7 +117,8 @@ impl<const D: usize, const N: usize> Stored<D, N> {
     pub fn subject(&self) -> Subject<'_, D, N> {
         let Self { file, problem, name, .. } = self;
         let critical_step = critical_time_step(problem);
-        Subject { name, problem, times: file.times(), critical_step, held: Some(file.count()), checked: None }
+        let (times, held) = (file.times(), Some(file.count()));
+        Subject { name, problem, times, critical_step, held, checked: None, unended: None }
     }
 
     /// Contact results, without those of all nodes at all instants, and energies and works at each step.

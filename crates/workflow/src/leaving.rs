@@ -16,6 +16,18 @@ struct Meeting<const D: usize> {
     other: Option<usize>,
 }
 
+/// What goes on at the end of a run in which contact has not ended for good; instants in s, speeds in m/s.
+pub(crate) enum GoingOn {
+    /// No contact force has acted.
+    NoContact,
+    /// A contact force acts.
+    Contact,
+    /// The last one acted a short while before the end.
+    Waiting { last: f64 },
+    /// None acts, but a body moves towards another one, or without it towards a plane.
+    Nearing { last: f64, body: String, other: Option<String>, speed: f64 },
+}
+
 /// Sees when all contact has ended.
 pub(crate) struct Leaving<'a, const D: usize, const N: usize> {
     problem: &'a Problem<D, N>,
@@ -28,6 +40,10 @@ pub(crate) struct Leaving<'a, const D: usize, const N: usize> {
     pub(crate) last: Option<f64>,
     /// When all had left (s).
     pub(crate) left: Option<f64>,
+    /// The last instant (s).
+    now: f64,
+    /// Which two approached each other most at the last look, and at which speed (m/s).
+    nearing: Option<(usize, f64)>,
     seen: &'a AtomicBool,
 }
 
@@ -35,7 +51,32 @@ impl<'a, const D: usize, const N: usize> Leaving<'a, D, N> {
     pub(crate) fn new(problem: &'a Problem<D, N>, after: f64, seen: &'a AtomicBool) -> Self {
         let body_of_node = problem.mesh().part_numbers();
         let meetings = meetings(problem, &body_of_node);
-        Self { problem, after, body_of_node, meetings, fastest: 0.0, last: None, left: None, seen }
+        Self {
+            problem,
+            after,
+            body_of_node,
+            meetings,
+            fastest: 0.0,
+            last: None,
+            left: None,
+            now: 0.0,
+            nearing: None,
+            seen,
+        }
+    }
+
+    /// What goes on at the end of a run in which not all had left.
+    pub(crate) fn going_on(&self) -> GoingOn {
+        let Some(last) = self.last else { return GoingOn::NoContact };
+        match self.nearing {
+            Some((meeting, speed)) if last < self.now => {
+                let Meeting { body, other, .. } = &self.meetings[meeting];
+                let names = self.problem.mesh().part_names();
+                GoingOn::Nearing { last, body: names[*body].clone(), other: other.map(|of| names[of].clone()), speed }
+            }
+            None if last < self.now => GoingOn::Waiting { last },
+            _ => GoingOn::Contact,
+        }
     }
 
     /// How fast the centres of mass of each two that may touch move away from each other (m/s).
@@ -79,19 +120,23 @@ fn meetings<const D: usize, const N: usize>(problem: &Problem<D, N>, body_of_nod
 impl<const D: usize, const N: usize> StateSink<D> for Leaving<'_, D, N> {
     fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
         let step = state.step();
+        self.now = step.time;
         let touches = step.reaction.iter().any(|force| *force != [0.0; D]);
         if step.index == 0 || (touches && self.last.is_none()) {
             self.fastest = self.away(state).into_iter().fold(self.fastest, |most, away| most.max(away.abs()));
         }
         if touches {
-            self.last = Some(step.time);
+            (self.last, self.nearing) = (Some(step.time), None);
         } else if let Some(last) = self.last
             && self.left.is_none()
             && step.time - last >= self.after
         {
             let several = self.meetings.iter().any(|meeting| meeting.other.is_some());
             let slow = if several { SLOW * self.fastest } else { 0.0 };
-            if self.away(state).into_iter().all(|away| away > -slow) {
+            let away = self.away(state).into_iter().enumerate();
+            let slowest = away.min_by(|(_, one), (_, other)| one.total_cmp(other));
+            self.nearing = slowest.filter(|(_, away)| *away <= -slow).map(|(meeting, away)| (meeting, -away));
+            if self.nearing.is_none() {
                 self.left = Some(step.time);
                 self.seen.store(true, Relaxed);
             }

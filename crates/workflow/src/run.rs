@@ -9,7 +9,6 @@ use crate::leaving::Leaving;
 use crate::numbering::Ordered;
 pub use crate::numbering::TakeStep;
 use crate::outline::{LastOutline, Outline};
-use crate::report::Warning;
 use crate::storing::drive;
 pub use crate::storing::{Outcome, Storage};
 use crate::until::{Found, Stop, Until};
@@ -96,8 +95,12 @@ pub fn rebound<const D: usize, const N: usize>(
     let mut stop = Stop { inner: observer, left: &seen, asked: false };
     let done = simulate_threaded(ordered.problem(), &times, None, &mut leaving, &mut stop);
     done.map_err(|error| ordered.failure(error.into()))?;
-    let (left, touched, asked) = (leaving.left, leaving.last.is_some(), stop.asked);
-    if asked && left.is_none() { Ok(None) } else { until.found(left, touched).map(Some).map_err(refused) }
+    let (left, asked) = (leaving.left, stop.asked);
+    if asked && left.is_none() {
+        return Ok(None);
+    }
+    let going_on = leaving.going_on();
+    until.found(left.ok_or(&going_on)).map(Some).map_err(refused)
 }
 
 /// The case with the end of its run: that of a run which ends with the rebound is looked for. With a warning if contact
@@ -108,10 +111,10 @@ pub fn rebound<const D: usize, const N: usize>(
 pub fn resolved<const D: usize, const N: usize>(
     case: &CaseOf<D, N>,
     observer: &mut dyn Observer,
-) -> Result<Option<(CaseOf<D, N>, Option<Warning>)>, Failure> {
-    let Some(until) = &case.until else { return Ok(Some((case.clone(), None))) };
+) -> Result<Option<CaseOf<D, N>>, Failure> {
+    let Some(until) = &case.until else { return Ok(Some(case.clone())) };
     let found = rebound(&case.problem, until, observer)?;
-    Ok(found.map(|Found { times, warning }| (CaseOf { times, until: None, ..case.clone() }, warning)))
+    Ok(found.map(|Found { times, warning }| CaseOf { times, until: None, unended: warning, ..case.clone() }))
 }
 
 /// Simulates a problem and analyses the steps beside the run.

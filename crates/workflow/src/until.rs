@@ -1,6 +1,7 @@
 //! The end of a run that goes on until all contact has ended.
 
-use crate::message::trimmed;
+use crate::leaving::GoingOn;
+use crate::message::{short, trimmed};
 use crate::report::Warning;
 use percute_core::material::Law;
 use percute_core::observer::{Observer, Progress};
@@ -12,6 +13,9 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 /// How long a run goes on after the last contact, over the time of a wave along the diagonal of the mesh, unless it is
 /// stated.
 const AFTER: f64 = 2.0;
+
+/// The name of the warning.
+const NAME: &str = "no_rebound";
 
 /// A run that ends with the rebound: of a body from its planes, or of bodies from each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,29 +61,59 @@ impl Until {
         TimeGrid::with_step(self.longest, self.step)
     }
 
-    /// The instants of the run, from the time (s) at which the first pass ended, if it did, and whether a plane was
-    /// touched.
-    pub(crate) fn found(&self, left: Option<f64>, touched: bool) -> Result<Found, TimeError> {
-        let end = left.map_or(self.longest, |time| rounded_up(time).min(self.longest));
-        let warning = left.is_none().then(|| self.not_ended(touched));
+    /// The instants of the run, from the time (s) at which all contact had ended in the first pass, or from what went
+    /// on at its end.
+    pub(crate) fn found(&self, ended: Result<f64, &GoingOn>) -> Result<Found, TimeError> {
+        let end = ended.map_or(self.longest, |time| rounded_up(time).min(self.longest));
+        let warning = ended.err().map(|going_on| self.not_ended(going_on));
         Ok(Found { times: TimeGrid::with_step(end, self.step)?, warning })
     }
 
-    fn not_ended(&self, touched: bool) -> Warning {
-        let brief = match (self.between_bodies, touched) {
-            (false, true) => "the body has not left its plane",
-            (false, false) => "the body has not touched a plane",
-            (true, true) => "contact has not ended",
-            (true, false) => "nothing has touched",
-        };
-        let (brief, longest) = (format!("{brief} by {} s", trimmed(self.longest, 4)), "give a larger `longest`");
-        let advice = match (touched, self.between_bodies) {
-            (true, _) => longest.to_string(),
-            (false, false) => format!("does it move towards its plane? If it does, {longest}"),
-            (false, true) => format!("do the bodies move towards each other? If they do, {longest}"),
+    fn not_ended(&self, going_on: &GoingOn) -> Warning {
+        let (longest, larger) = (trimmed(self.longest, 4), "give a larger `longest`");
+        let (brief, advice) = match (going_on, self.between_bodies) {
+            (GoingOn::NoContact, false) => (
+                format!("the body has not touched a plane by {longest} s"),
+                format!("does it move towards its plane? If it does, {larger}"),
+            ),
+            (GoingOn::NoContact, true) => (
+                format!("nothing has touched by {longest} s"),
+                format!("do the bodies move towards each other? If they do, {larger}"),
+            ),
+            (GoingOn::Contact, false) => {
+                (format!("the body has not left its plane by {longest} s"), larger.to_string())
+            }
+            (GoingOn::Contact, true) => (format!("contact has not ended by {longest} s"), larger.to_string()),
+            (GoingOn::Waiting { last }, _) => {
+                let (last, after) = (trimmed(*last, 4), trimmed(self.after, 4));
+                (
+                    format!("contact forces act until {last} s, less than {after} s before {longest} s"),
+                    larger.to_string(),
+                )
+            }
+            (GoingOn::Nearing { last, body, other, speed }, _) => {
+                let (last, speed) = (trimmed(*last, 4), short(*speed, 3));
+                let nearing = match other {
+                    Some(other) => format!("\"{body}\" and \"{other}\" approach each other at {speed} m/s"),
+                    None if self.between_bodies => format!("\"{body}\" moves towards its plane at {speed} m/s"),
+                    None => format!("the body moves towards its plane at {speed} m/s"),
+                };
+                let advice = format!("if they are to touch once more, {larger}; else contact has ended");
+                let advice = if other.is_some() { advice } else { advice.replace("they are", "it is") };
+                (format!("no contact force acts after {last} s, but {nearing} at {longest} s"), advice)
+            }
         };
         let message = format!("{brief}, the latest end: the run ends there; {advice}");
-        Warning { name: "no_rebound", brief, message }
+        Warning { name: NAME, brief, message }
+    }
+
+    /// The warning of a run that was taken up again and goes to the latest end.
+    #[must_use]
+    pub fn not_found(&self) -> Warning {
+        let longest = trimmed(self.longest, 4);
+        let brief = format!("contact has not ended for good by {longest} s");
+        let message = format!("{brief}, the latest end: the run ends there; give a larger `longest`");
+        Warning { name: NAME, brief, message }
     }
 }
 

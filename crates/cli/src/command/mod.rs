@@ -177,12 +177,12 @@ fn resolved<const D: usize, const N: usize>(
     let watch = &mut Watch::new(console.progress && !quiet, console.stop);
     let found = search(case, watch).map_err(|failure| located(case, failure))?;
     watch.clear();
-    let Some((case, warning)) = found else {
+    let Some(case) = found else {
         console.say("interrupted while looking for the rebound");
         return Ok(None);
     };
     if !quiet {
-        console.warn(&warning);
+        console.warn(&case.unended);
     }
     Ok(Some(case))
 }

@@ -10,6 +10,7 @@ use percute_workflow::case::CaseOf;
 use percute_workflow::history::Stored;
 use percute_workflow::outputs::OutputFile;
 use percute_workflow::run::{Outcome, located};
+use percute_workflow::until::Until;
 
 /// What a run finds at its start.
 pub(super) enum Left<const D: usize, const N: usize> {
@@ -70,7 +71,12 @@ where
         console: &mut Console<'_>,
     ) -> Result<Option<CaseOf<D, N>>, Failure> {
         let Some(stored) = self.history() else { return resolved(case, quiet, console) };
-        Ok(Some(CaseOf { times: stored.file.run_times().clone(), until: None, ..case.clone() }))
+        let times = stored.file.run_times().clone();
+        let unended = case.until.as_ref().filter(|until| times.end() >= until.longest).map(Until::not_found);
+        if !quiet {
+            console.warn(&unended);
+        }
+        Ok(Some(CaseOf { times, until: None, unended, ..case.clone() }))
     }
 
     /// The history that is there, which is no new file then.

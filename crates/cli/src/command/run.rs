@@ -50,8 +50,9 @@ where
     within("--instants", instants, case.times.end())?;
     request(stored, "--estimate", maps, Request::default)?;
     case.check_run(true, Long::asked(arguments.long, "--long"))?;
-    let told = console.warn_about(case, work.quiet);
+    let mut told = console.warn_about(case, work.quiet);
     let Some(case) = &left.resolved(case, work.quiet, console)? else { return Ok(INTERRUPTED) };
+    told.extend(case.unended.as_ref().map(|warning| warning.name));
     within("--instants", instants, case.times.end())?;
     let wanted = || Request { steps: instants.steps(&case.times, options.every.stride()), fields };
     let request = request(stored, "--estimate", maps, wanted)?;

@@ -21,6 +21,7 @@ mod memory;
 mod mesh_file;
 mod mistakes;
 mod picture;
+mod rebound;
 mod report;
 #[cfg(target_os = "linux")]
 mod resume;

@@ -60,7 +60,7 @@ pub(crate) use time::KEYS as TIME_KEYS;
 
 use crate::effort::{Effort, Long};
 use crate::message::bytes;
-use crate::report::Subject;
+use crate::report::{Subject, Warning};
 use crate::until::Until;
 use body::{AnyBodies, Bodies};
 use mesh::Coarsest;
@@ -114,6 +114,8 @@ pub struct CaseOf<const D: usize, const N: usize> {
     pub times: TimeGrid,
     /// The end with the rebound, if the run ends so and has not been resolved.
     pub until: Option<Until>,
+    /// The warning of a run that was to end with the rebound, if contact does not end before its latest end.
+    pub unended: Option<Warning>,
     /// Δt_c (s), eq. \[34\].
     pub critical_step: f64,
     /// Options of the estimate.
@@ -217,7 +219,8 @@ fn read<const D: usize, const N: usize>(
     let critical_step = percute_core::dynamics::critical_time_step(&problem);
     let (times, until) = (wanted.grid(critical_step)?, wanted.until(&problem, critical_step)?);
     output::check(root, &output, times.end())?;
-    Ok(CaseOf { source: source.clone(), problem, times, until, critical_step, options, output, mesh_files })
+    let (source, unended) = (source.clone(), None);
+    Ok(CaseOf { source, problem, times, until, unended, critical_step, options, output, mesh_files })
 }
 
 /// The place and the cause of a start that the simulation refuses: a wrong unit, if there seems to be one, else the
@@ -261,8 +264,9 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
     /// What a report on it is about.
     #[must_use]
     pub fn subject(&self) -> Subject<'_, D, N> {
-        let Self { source, problem, times, critical_step, .. } = self;
-        Subject { name: source.name(), problem, times, critical_step: *critical_step, held: None, checked: None }
+        let Self { source, problem, times, critical_step, unended, .. } = self;
+        let (name, critical_step, unended) = (source.name(), *critical_step, unended.as_ref());
+        Subject { name, problem, times, critical_step, held: None, checked: None, unended }
     }
 
     /// The files that a run reads and must not replace, each with what it is; `case` is its own.

@@ -34,7 +34,7 @@ impl Report {
         outline: Option<&Outline>,
         seconds: f64,
     ) -> Self {
-        let Subject { name, times, critical_step, held, checked, problem: problem_of } = *subject;
+        let Subject { name, times, critical_step, held, checked, problem: problem_of, .. } = *subject;
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
         let (rebound, verdict) = judged(subject, options, largest_residual.admissible, simulation, estimate, contact);
         let [mut warnings, told_before] = warnings_of(subject, options, &simulation.balance, estimate, contact);
@@ -121,7 +121,7 @@ pub fn warnings_of<const D: usize, const N: usize>(
     estimate: &Estimate<D>,
     contact: &ContactResults<D>,
 ) -> [Vec<Warning>; 2] {
-    let Subject { times, checked, critical_step, .. } = *subject;
+    let Subject { times, checked, critical_step, unended, .. } = *subject;
     let foreseen = foreseen(subject, estimate);
     let flat = FlatElements::new(subject.problem, &estimate.by_element);
     let facts = Facts {
@@ -150,7 +150,7 @@ pub fn warnings_of<const D: usize, const N: usize>(
     // The steps of another program have been taken, and its samples are none.
     let varying = checked.is_none().then(|| varying_steps(times, critical_step)).flatten();
     let varying = varying.map(|varying| Warning { message: format!("the steps {}", varying.message), ..varying });
-    let before = foreseen.iter().map(Warning::from).chain(varying).chain(few);
+    let before = unended.cloned().into_iter().chain(foreseen.iter().map(Warning::from)).chain(varying).chain(few);
     [found(&facts), before.chain(reported(subject.problem.mesh())).collect()]
 }
 

@@ -63,6 +63,8 @@ pub struct Subject<'a, const D: usize, const N: usize> {
     pub held: Option<usize>,
     /// What was found about a history of another program.
     pub checked: Option<&'a Checked>,
+    /// The warning of a run that was to end with the rebound, if contact did not end.
+    pub unended: Option<&'a Warning>,
 }
 
 /// The report of a run. SI units; energies, errors and forces of a plane body are those of its

@@ -139,7 +139,8 @@ impl<const D: usize, const N: usize> Prepared<D, N> {
 
     fn level(&self, options: Options, results: &Results<D>) -> Level {
         let Self { problem, times, critical_step } = self;
-        let subject = Subject { name: "", problem, times, critical_step: *critical_step, held: None, checked: None };
+        let (name, critical_step) = ("", *critical_step);
+        let subject = Subject { name, problem, times, critical_step, held: None, checked: None, unended: None };
         let Results { simulation, estimate, contact, outline } = results;
         Level::new(&Report::new(&subject, options, simulation, estimate, contact, outline.as_ref(), 0.0))
     }
