@@ -227,8 +227,22 @@ class Estimate(EstimateViews):
         ----------
         error : percute.TrueError
             The true error of the same history, as `History.error` and ``percute.exact`` give it.
+
+        Raises
+        ------
+        InputError
+            The true error has other instants than the estimate: it is that of another history.
         """
         true = instance("error", error, TrueError)
+        last, end = len(true.time) - 1, float(true.time[-1])
+        same_end = bool(np.isclose(end, self.end, rtol=1e-9, atol=0))
+        if not (same_end and last == self.steps):
+            # Of a history of another program, the last instant may be left out, and there are samples between the instants.
+            of_other = self.consistency is not None
+            if not same_end and not (of_other and np.isclose(true.time[-2], self.end, rtol=1e-9, atol=0)):
+                raise InputError(f"`error` ends at {end:.6g} s, but the estimate at {self.end:.6g} s; give the true error of the same history")
+            if not of_other:
+                raise InputError(f"`error` has {last} steps, but the estimate {self.steps}; give the true error of the same history")
         return Effectivity(sup=self.sup / true.sup, mean=self.mean / true.mean)
 
     def worst_elements(self, n: int = 5) -> list[WorstElement]:

@@ -324,7 +324,8 @@ class History(HistoryViews):
         Raises
         ------
         InputError
-            The meshes are not nested, or the reference ends too early.
+            The reference simulates another problem, the meshes are not nested, or the reference ends too early. Initial fields
+            that vary within a body may depend on the mesh, and are not compared.
         """
         other = instance("reference", reference, History)
         return true_errors_of(_percute.errors_against_history([self._data], other._data))[0]

@@ -201,7 +201,8 @@ def true_errors(
     Raises
     ------
     InputError
-        An argument is wrong, the meshes are not nested, or the reference ends too early.
+        An argument is wrong, ``problem`` is another one than that of a history, the meshes are not nested, or the reference ends
+        too early.
     SimulationError
         The reference is unstable.
     """

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import percute as pc
@@ -163,13 +164,23 @@ def test_errors_against_finer_histories(block_history: pc.History) -> None:
     assert block_history.error(block_history).sup < 1e-6 * error.sup
 
 
-def test_an_unstable_reference_is_an_error_of_the_simulation(bar_history: pc.History) -> None:
-    velocity = np.random.default_rng(1).normal(size=(81, 1))
-    problem = pc.Problem(pc.Mesh.bar(0.1, elements=80), material=bar(80).material, initial_velocity=velocity)
+def test_an_unstable_reference_is_an_error_of_the_simulation() -> None:
+    smooth, rough = np.linspace(0.0, 1.0, 41)[:, None], np.random.default_rng(1).normal(size=(81, 1))
+    coarse, problem = (
+        pc.Problem(pc.Mesh.bar(0.1, elements=len(velocity) - 1), material=bar().material, initial_velocity=velocity) for velocity in (smooth, rough)
+    )
+    history = pc.simulate(coarse, end=20e-6, courant=0.9)
     # Amplified 600 times, which is not refused.
     steps = [problem.critical_time_step * (0.9 if i % 2 else 0.8) for i in range(110)]
     with pytest.warns(pc.InputWarning, match="amplify vibrations"), pytest.raises(pc.SimulationError, match="unstable at step"):
-        pc.true_errors([bar_history], problem, steps=steps)
+        pc.true_errors([history], problem, steps=steps)
+
+
+def another_block(young: float = 70e9, velocity: tuple[float, float] = (400.0, -400.0), gap: float = 2e-4) -> pc.Problem:
+    """Give the block on a finer mesh, with something changed."""
+    law = pc.Elastic(young=young, poisson=0.3, density=2700.0, plane="stress")
+    plane = pc.Plane(point=(0, -gap), normal=(0, 1), friction=0.2)
+    return pc.Problem(pc.Mesh.rectangle(0.05, 0.04, nx=16, ny=12), material=law, obstacles=[plane], initial_velocity=velocity)
 
 
 def test_references_that_do_not_fit_are_refused(block_history: pc.History, bar_history: pc.History) -> None:
@@ -179,6 +190,22 @@ def test_references_that_do_not_fit_are_refused(block_history: pc.History, bar_h
         block_history.error(pc.simulate(block(9, 7), end=13e-6, courant=0.9))
     with pytest.raises(pc.InputError, match="of a bar"):
         block_history.error(bar_history)
+    wrong: dict[str, Any]
+    for wrong, words in (
+        ({"young": 210e9}, r"\[\[material\]\] 1, young is 70000000000\.0 in the history and 210000000000\.0 in the reference"),
+        ({"velocity": (-2.0, -200.0)}, r"the initial `velocity` of node 0 is .* in the history and \[-2\.0, -200\.0\] m/s in the reference"),
+        ({"gap": 6e-4}, r"\[\[obstacle\]\] 1, point\[1\] is .* in the history and -0\.0006 in the reference"),
+    ):
+        other = another_block(**wrong)
+        with pytest.raises(pc.InputError, match=f"`reference`: it is the simulation of another problem: {words}"):
+            block_history.error(pc.simulate(other, end=13e-6, courant=0.9))
+        with pytest.raises(pc.InputError, match=words):
+            pc.true_errors([block_history], other, end=13e-6, courant=0.9)
+    shorter, coarser = (pc.simulate(block(8, 6), end=end, courant=courant) for end, courant in ((6e-6, 0.9), (13e-6, 0.5)))
+    with pytest.raises(pc.InputError, match="`error` ends at 6e-06 s, but the estimate at"):
+        pc.estimate(block_history).effectivity(shorter.error(shorter))
+    with pytest.raises(pc.InputError, match=r"`error` has \d+ steps, but the estimate \d+"):
+        pc.estimate(block_history).effectivity(coarser.error(coarser))
     with pytest.raises(pc.InputError, match="`reference` is"):
         block_history.error(3)  # type: ignore[arg-type]
     with pytest.raises(pc.InputError, match=r"`error` is 1.0; it must be a TrueError, made by percute.true_errors, History.error or"):

@@ -4,6 +4,7 @@
 
 pub mod case;
 pub mod choice;
+mod difference;
 pub mod effort;
 pub mod export;
 mod failure;
@@ -16,6 +17,7 @@ pub mod message;
 mod numbering;
 pub mod outline;
 pub mod outputs;
+mod reference;
 pub mod report;
 mod resume;
 pub mod run;

@@ -1,9 +1,9 @@
 //! Runs that were killed or stopped, and go on from their histories.
 
-mod difference;
 mod numbers;
 
 use crate::case::{CaseOf, TIME_KEYS, statement};
+use crate::difference::{self, OF_RUN};
 use crate::failure::Failure;
 use crate::history::Stored;
 use crate::numbering::Ordered;
@@ -49,7 +49,7 @@ where
         if file.is_foreign() {
             return Ok(Some("another program has simulated it".to_string()));
         }
-        let stated = difference::of_statements(&statement(problem, Some(&case.options))?, file.statement(), estimated);
+        let stated = OF_RUN.of_statements(&statement(problem, Some(&case.options))?, file.statement(), estimated);
         let start = || {
             let (displacement, velocity) = (problem.initial_displacement(), problem.initial_velocity());
             let first = numbers::of_starts("displacement", "m", displacement, file.initial_displacement());

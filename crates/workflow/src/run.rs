@@ -188,13 +188,22 @@ pub fn estimate<const D: usize, const N: usize>(
 /// steps of the reference it is simulated, and the simulation is returned too.
 ///
 /// # Errors
-/// Steps that cannot be read, meshes that are not nested, a reference that ends early; as [`simulate`].
+/// A reference that simulates another problem, meshes that are not nested, a reference that ends early, steps that
+/// cannot be read; as [`simulate`].
 pub fn true_errors<'p, const D: usize, const N: usize>(
     runs: &[(&'p Problem<D, N>, &'p dyn StepSource<D>)],
     (fine, times): (&'p Problem<D, N>, &'p TimeGrid),
     steps: Option<&dyn StepSource<D>>,
     observer: &mut dyn Observer,
 ) -> Result<(Vec<TrueError>, Option<Simulation>), Failure> {
+    for (problem, _) in runs {
+        if let Some(what) = crate::reference::difference(problem, fine)? {
+            return Err(Failure::Argument(format!(
+                "`reference`: it is the simulation of another problem: {what}; simulate the problem of the history on \
+                 a finer mesh"
+            )));
+        }
+    }
     let unread = |cause| Failure::from_sink(cause, RunError::Source);
     let ordered: Vec<_> = runs.iter().map(|(problem, _)| Ordered::new(*problem)).collect();
     let mut motions = Vec::new();

@@ -1,6 +1,6 @@
 //! The first difference between meshes, initial fields, instants and kept steps, in words.
 
-use super::difference::differ;
+use crate::difference::OF_RUN;
 use percute_core::ids::NodeId;
 use percute_core::mesh::Mesh;
 use percute_core::time::TimeGrid;
@@ -92,7 +92,7 @@ pub(super) fn of_kept(case: &Kept, history: &Kept) -> Option<String> {
 }
 
 fn told(what: &str, case: impl Display, history: impl Display) -> String {
-    differ(what, &case, &history)
+    OF_RUN.differ(what, &case, &history)
 }
 
 #[cfg(test)]
