@@ -87,6 +87,9 @@ impl CaseData {
             outputs::chosen(["`store`", "[output] history"], store.as_deref(), output.history.as_deref()),
             outputs::chosen(["", "[output] estimate"], None, output.estimate.as_deref()),
         ];
+        let made = chosen.map(|file| file.is_some());
+        let unused = each_dimension!(&self.case, case => case.check_files(made[0], made[1]));
+        unused.map_err(|error| errors::input(py, error))?;
         let inputs = each_dimension!(&self.case, read => read.inputs(case.as_deref()));
         let checked = outputs::check(&inputs, &chosen, overwrite).and_then(|()| outputs::check_endings(&chosen));
         checked.map_err(|error| errors::output(py, &error))?;

@@ -45,6 +45,7 @@ where
     let tables = tables.map(|path| Destination::check("--csv", path, &inputs, work.force));
     let tables = tables.transpose()?;
     let options = Options { threads: work.threads, window: work.window, ..case.options };
+    case.check_files(history.is_some(), stored.is_some())?;
     let instants = maps.instants.as_ref().unwrap_or(&case.output.instants);
     let fields = maps.fields || case.output.fields;
     within("--instants", instants, case.times.end())?;

@@ -305,6 +305,16 @@ impl<const D: usize, const N: usize> CaseOf<D, N> {
         refused.map_or(Ok(()), Err)
     }
 
+    /// Refuses keys of `[output]` about a history or an estimate file that the run does not make.
+    ///
+    /// # Errors
+    /// The place in the file.
+    pub fn check_files(&self, history: bool, estimate: bool) -> Result<(), CaseError> {
+        let document = parsed(&self.source)?;
+        let root = Table::root(&self.source, document.get_ref());
+        output::check_files(&root, &self.output, [history, estimate])
+    }
+
     fn error_at(&self, place: Place, message: String) -> Option<CaseError> {
         let document = parsed(&self.source).ok()?;
         let root = Table::root(&self.source, document.get_ref());

@@ -15,6 +15,12 @@ const INSTANTS: usize = 50;
 /// The ending of histories and estimate files.
 const VTKHDF: &str = "a name that ends in .vtkhdf, by which ParaView knows the format (`percute export` writes .vtu)";
 
+/// What is missing where a key applies to a file that no run makes.
+const HISTORY: &str = "applies to the file of the history; name one in [output], as in history = \"block.vtkhdf\", or \
+                       leave this out";
+const ESTIMATE: &str = "applies to the estimate file; name one in [output], as in estimate = \"error.vtkhdf\", or \
+                        leave this out";
+
 /// The files that a run makes. Paths are relative to the working directory, as those of the command
 /// line are.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -121,6 +127,19 @@ pub(super) fn check(root: &Table<'_>, output: &Output, end: f64) -> Result<(), C
     };
     let entry = value.list("")?.swap_remove(at);
     Err(entry.error(output.instants.after(end).unwrap_or_default()))
+}
+
+/// Refuses keys that say something about a file that no run makes, history or estimate file.
+pub(super) fn check_files(root: &Table<'_>, output: &Output, [history, estimate]: [bool; 2]) -> Result<(), CaseError> {
+    let Some(table) = root.single("output")? else { return Ok(()) };
+    let of_history = |key| (key, history, HISTORY);
+    let of_estimate = |key| (key, estimate, ESTIMATE);
+    let mut all = vec![of_history("every"), of_history("times"), of_estimate("instants")];
+    all.extend(output.keep.fields.is_some().then_some(of_history("fields")));
+    all.extend(output.fields.then_some(of_estimate("fields")));
+    let mut unused = all.into_iter().filter(|(_, made, _)| !made);
+    let first = unused.find_map(|(key, _, file)| Some(table.get(key)?.error(file)));
+    first.map_or(Ok(()), Err)
 }
 
 #[cfg(test)]
