@@ -12,6 +12,7 @@ use percute_core::mesh::Mesh;
 use percute_core::problem::{Contact, Initial, InputError, Problem};
 use percute_core::simplex::ByDimension;
 use percute_core::{each_dimension, map_dimension};
+use percute_workflow::case::ONE_BODY;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Arc, OnceLock};
@@ -203,6 +204,14 @@ fn build<const D: usize, const N: usize>(
         let name = group.as_ref().map_or_else(|| "material".to_string(), |group| format!("material[{group:?}]"));
         statement::material::<D>(&name, law)
     };
+    let of_all = |given: &Bound<'_, PyAny>| -> PyResult<bool> {
+        Ok(given.getattr("groups")?.is_none() && given.getattr("bodies")?.is_none())
+    };
+    for (index, contact) in lists[1].iter().enumerate().filter(|_| mesh.parts() < 2) {
+        if of_all(contact)? {
+            return Err(errors::input(py, format!("`contacts[{index}]`: {ONE_BODY}")));
+        }
+    }
     let stated = Stated {
         groups: materials.iter().map(|(group, _)| group.clone()).collect(),
         materials: materials.iter().map(law).collect::<PyResult<_>>()?,

@@ -10,12 +10,16 @@ use percute_core::simplex::Shape;
 const GROUPS: &str = "the groups of edges of two bodies that may touch, such as [\"anvil.top\", \"hammer.bottom\"]";
 const BODIES: &str = "the names of two bodies that may touch, such as [\"anvil\", \"hammer\"]";
 
-/// Reads all contacts.
-pub(super) fn read<const D: usize>(root: &Table<'_>, shape: Shape) -> Result<Vec<Contact>, CaseError> {
-    root.tables("contact")?.iter().map(|table| one::<D>(table, shape)).collect()
+/// What is wrong with the contact of all bodies of a mesh that has one only.
+pub const ONE_BODY: &str = "is the contact of bodies with each other, but there is one body only, so that nothing can \
+                            touch; give the other bodies, or leave it out: a rigid plane is an obstacle";
+
+/// Reads all contacts on a mesh of so many parts.
+pub(super) fn read<const D: usize>(root: &Table<'_>, shape: Shape, parts: usize) -> Result<Vec<Contact>, CaseError> {
+    root.tables("contact")?.iter().map(|table| one::<D>(table, shape, parts)).collect()
 }
 
-fn one<const D: usize>(table: &Table<'_>, shape: Shape) -> Result<Contact, CaseError> {
+fn one<const D: usize>(table: &Table<'_>, shape: Shape, parts: usize) -> Result<Contact, CaseError> {
     table.only(&["bodies", "groups", "friction", "matching"])?;
     let between = match (table.get("bodies"), table.get("groups")) {
         (Some(_), Some(groups)) => {
@@ -25,6 +29,7 @@ fn one<const D: usize>(table: &Table<'_>, shape: Shape) -> Result<Contact, CaseE
         }
         (Some(bodies), None) => Between::Bodies(two(&bodies, BODIES)?),
         (None, Some(groups)) => Between::Groups(two(&groups, GROUPS)?),
+        (None, None) if parts < 2 => return Err(table.error(ONE_BODY)),
         (None, None) => Between::All,
     };
     let friction = super::obstacle::friction(table, shape)?;

@@ -85,8 +85,8 @@ fn surroundings<const D: usize, const N: usize>(
     root: &Table<'_>,
     mut builder: Builder<D, N>,
 ) -> Result<Builder<D, N>, CaseError> {
-    let shape = builder.mesh().simplex().shape();
-    for contact in contact::read::<D>(root, shape)? {
+    let (shape, parts) = (builder.mesh().simplex().shape(), builder.mesh().parts());
+    for contact in contact::read::<D>(root, shape, parts)? {
         builder = builder.contact(contact);
     }
     for plane in obstacle::read(root, shape)? {
