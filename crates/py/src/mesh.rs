@@ -3,11 +3,12 @@
 use crate::any::AnyMesh;
 use crate::{bridge, errors, view};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
-use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh};
+use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
 use percute_core::simplex::{ByDimension, Element, Simplex};
 use percute_core::{each_dimension, map_dimension};
 use percute_io::Overwrite;
 use percute_io::gmsh::{self, Format, Version};
+use percute_workflow::case::far_origin;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
@@ -104,7 +105,9 @@ impl MeshData {
     fn placed(&self, py: Python<'_>, origin: Vec<f64>, degrees: f64) -> PyResult<Self> {
         let mesh = map_dimension!(&self.mesh, mesh => {
             let origin = std::array::from_fn(|c| origin.get(c).copied().unwrap_or_default());
-            Arc::new(mesh.placed(&origin, degrees).map_err(|e| errors::input(py, e))?)
+            let far = || far_origin(mesh, &origin).map(|far| format!("`origin` {far}"));
+            let told = |error: MeshError| far().unwrap_or_else(|| error.to_string());
+            Arc::new(mesh.placed(&origin, degrees).map_err(|error| errors::input(py, told(error)))?)
         });
         Ok(Self { mesh })
     }

@@ -4,7 +4,7 @@ use super::source::CaseError;
 use super::table::Table;
 use super::value::Value;
 use super::{material, mesh};
-use crate::message::hint;
+use crate::message::{hint, short};
 use percute_core::material::Elastic;
 use percute_core::mesh::{AnyMesh, Mesh, MeshError};
 use percute_core::simplex::{Element, Shape, Simplex};
@@ -13,6 +13,8 @@ use std::path::PathBuf;
 const KEYS: [&str; 6] = ["name", "group", "origin", "rotation", "material", "velocity"];
 const MATERIAL: &str = "{ young = 70e9, poisson = 0.3, density = 2700.0, plane = \"stress\" }";
 const BAR: &str = "{ young = 70e9, density = 2700.0, section = 1e-4 }";
+/// Farther away, over its size, a mesh has less than seven digits.
+const FAR: f64 = 1e9;
 /// What stands in each body instead.
 const INSTEAD: [(&str, &str); 3] =
     [("mesh", "its mesh, such as `rectangle`"), ("material", "`material`"), ("initial", "`velocity`")];
@@ -120,7 +122,23 @@ where
     }
     let origin = table.get("origin").map_or(Ok([0.0; D]), |value| value.vector("m"))?;
     let angle = table.get("rotation").map_or(Ok(0.0), |value| value.number("degrees"))?;
-    mesh.placed(&origin, angle).map_err(|error| table.error(error.to_string()))
+    mesh.placed(&origin, angle).map_err(|error| match (far_origin(mesh, &origin), table.get("origin")) {
+        (Some(told), Some(value)) => value.error(told),
+        _ => table.error(error.to_string()),
+    })
+}
+
+/// What is wrong with an origin (m) at which a mesh has no place, if it is too far away for numbers of 64 bits.
+#[must_use]
+pub fn far_origin<const D: usize, const N: usize>(mesh: &Mesh<D, N>, origin: &[f64; D]) -> Option<String> {
+    let far = origin.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    (far > FAR * mesh.size()).then(|| {
+        format!(
+            "is {origin:?} m, so far from a mesh of {} m that rounding takes its shape away; give a place near the \
+             other bodies, in metres",
+            short(mesh.size(), 3)
+        )
+    })
 }
 
 /// The elements of the group that is named, if one is: one of several bodies in a file.

@@ -50,6 +50,7 @@ mod text;
 mod time;
 mod value;
 
+pub use body::far_origin;
 pub use contact::ONE_BODY;
 pub use keep::{FIELDS, Keep};
 pub use output::{Instants, Output};
