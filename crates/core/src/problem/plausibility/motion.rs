@@ -30,13 +30,15 @@ fn wave_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
     problem.materials().iter().map(|material| material.wave_speed()).fold(f64::INFINITY, f64::min)
 }
 
-fn too_fast(speed: f64, waves: f64) -> Option<(String, String)> {
-    let (shown, waves) = (speed > waves).then(|| (short(speed), short(waves)))?;
-    let millimetres = short(1e-3 * speed);
-    let message = format!(
-        "reaches {shown} m/s, faster than waves in the body ({waves} m/s), beyond small strains; speeds are in m/s: if \
-         it is in mm/s, write {millimetres}"
+fn too_fast(speed: f64, wave_speed: f64) -> Option<(String, String)> {
+    let (shown, waves) = (speed > wave_speed).then(|| (short(speed), short(wave_speed)))?;
+    let mut message = format!(
+        "reaches {shown} m/s, faster than waves in the body ({waves} m/s), beyond small strains; speeds are in m/s"
     );
+    // Without this a speed is more likely a slip than one in mm/s; it may have no number, either.
+    if 1e-3 * speed <= wave_speed {
+        message += &format!(": if it is in mm/s, write {}", short(1e-3 * speed));
+    }
     Some((format!("a speed of {shown} m/s, above that of waves"), message))
 }
 
