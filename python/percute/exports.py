@@ -37,7 +37,7 @@ def export(
 ) -> list[Path]:
     """Write fields of a history; see `History.export`."""
     file, replace = os.path.abspath(file_name("path", path)), flag("overwrite", overwrite)
-    choice = _choice(steps, every, times, len(history))
+    choice = _choice(steps, every, times, history)
     if isinstance(fields, str):
         raise wrong("fields", fields, 'a list of names, such as ["stress", "velocity"]')
     names = None if fields is None else [text("fields", name) for name in fields]
@@ -47,14 +47,18 @@ def export(
         return _percute.export(history._data, file, choice, names, error, inputs, replace, tell)
 
 
-def _choice(steps: ArrayLike | None, every: int | None, times: ArrayLike | None, count: int) -> Choice:
+def _choice(steps: ArrayLike | None, every: int | None, times: ArrayLike | None, history: History) -> Choice:
     """Check the steps; negative ones count from the end."""
+    count = len(history)
     if sum(given is not None for given in (steps, every, times)) > 1:
         raise InputError("give one of `steps`, `every` and `times`, not several")
     if steps is not None:
         chosen = integers("steps", [steps] if isinstance(steps, int | np.integer) else steps, None)
         if len(chosen) == 0 or not np.all((-count <= chosen) & (chosen < count)):
-            raise wrong("steps", steps, f"one step or more, from {-count} to {count - 1}: the history holds {counted(count, 'instant')}")
+            allowed = f"one step or more, from {-count} to {count - 1}: the history holds {counted(count, 'instant')}"
+            if history._data.steps() is not None:
+                allowed += " of its run, which are counted here; `history.steps` has their steps in the run"
+            raise wrong("steps", steps, allowed)
         return (chosen % count).tolist(), None, None
     if times is not None:
         wanted = np.atleast_1d(numbers("times", times, most=1))

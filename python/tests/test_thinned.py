@@ -76,6 +76,8 @@ def test_an_export_has_the_motion_that_is_kept(full: pc.History, tmp_path: Path)
         assert np.array_equal(arrays["velocity"][:, :2], full.velocity[n])
         assert np.array_equal(arrays["acceleration"][:, :2], full.acceleration[n])
         assert np.array_equal(arrays["reaction"][full.contact_nodes, :2], full.reaction[n])
+    with pytest.raises(pc.InputError, match=r"instants of its run, which are counted here; `history\.steps`"):
+        history.export(tmp_path / "beyond.vtu", steps=int(history.steps[-1]))
 
 
 def test_velocities_beside_all_steps_leave_the_estimate_its_bits(full: pc.History, tmp_path: Path) -> None:

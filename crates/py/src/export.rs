@@ -31,7 +31,8 @@ pub(crate) fn export(
     let instants = if choice.2.is_some() { "`times`" } else { "`steps`" };
     let names = Names { path: "`path`", instants, fields: "`fields`", estimate: "`estimate`" };
     let lacks = each_dimension!(&history.run, run => run.file().and_then(lacks));
-    let request = Request { lacks, names, steps: chosen(choice), fields, error };
+    let kept = each_dimension!(&history.run, run => run.file().and_then(|file| Some(file.kept()?.steps.clone())));
+    let request = Request { lacks, kept, names, steps: chosen(choice), fields, error };
     each_dimension!(&history.run, run => {
         let run = run.clone();
         let work = move |mut watch: Watch| -> Result<Vec<PathBuf>, Failure> {

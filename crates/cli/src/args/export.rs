@@ -13,7 +13,8 @@ pub struct ExportArguments {
     /// The file to write: .vtkhdf (all instants in one file), .vtu or .pvd (a file for each instant, and an index)
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Steps to write, counted from 0 and separated by commas; negative ones count from the end [default: all]
+    /// Steps to write, counted from 0 and separated by commas; negative ones count from the end; of a history that
+    /// keeps a part of its run, the instants kept are counted [default: all]
     #[arg(long, value_name = "STEPS", value_delimiter = ',', allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["every", "times"])]
     pub steps: Option<Vec<i64>>,

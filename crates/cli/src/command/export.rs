@@ -31,6 +31,7 @@ fn export<const D: usize, const N: usize>(
     let names = Names { path: "--output", instants, fields: "--fields", estimate: "--estimate" };
     let request = Request {
         lacks: lacks(&stored.file),
+        kept: stored.file.kept().map(|kept| kept.steps.clone()),
         names,
         steps: choice(arguments),
         fields: arguments.fields.clone(),

@@ -387,12 +387,3 @@ fn what_an_estimate_file_holds_needs_one() {
     assert_eq!(said.status.code(), Some(2));
     assert!(stderr(&said).contains("this is a history, not a case; `percute estimate` estimates"), "{}", stderr(&said));
 }
-
-#[test]
-fn an_option_in_place_of_steps_is_named() {
-    let bench = Bench::new(BLOCK);
-    let output = bench.percute(&["export", "a.vtkhdf", "-o", "b.vtu", "--steps", "--every", "2"]);
-    assert_eq!(output.status.code(), Some(2));
-    let told = stderr(&output);
-    assert!(told.contains("--steps needs the numbers of steps"), "{told}");
-}

@@ -10,6 +10,7 @@ mod dependencies;
 #[cfg(target_os = "linux")]
 mod disk;
 mod examples;
+mod export;
 mod history;
 #[cfg(target_os = "linux")]
 mod interrupt;

@@ -39,8 +39,25 @@ pub struct Request {
     pub fields: Option<Vec<String>>,
     /// Of a thinned history, the fields that it lacks; `source` then gives its stored steps.
     pub lacks: Option<Vec<&'static str>>,
+    /// Of a thinned history, the step of each instant in its run.
+    pub kept: Option<Vec<usize>>,
     /// e_E of each element (J^½), eq. \[20\], of an estimate.
     pub error: Option<Vec<f64>>,
+}
+
+impl Request {
+    /// What the numbers of steps mean, if the history is thinned.
+    fn counted(&self, held: &[f64]) -> String {
+        let last = held.len().saturating_sub(1);
+        let step = self.kept.as_ref().and_then(|kept| kept.get(last)).filter(|step| **step != last);
+        let (StepChoice::Steps(_), Some(step)) = (&self.steps, step) else {
+            return String::new();
+        };
+        format!(
+            ". The history keeps a part of its run, and its own instants are counted: {last} is step {step} of the \
+             run; choose by times instead, if the numbers are those of the run"
+        )
+    }
 }
 
 /// An export that can be written.
@@ -73,7 +90,9 @@ impl<'a, const D: usize, const N: usize> Export<'a, D, N> {
         if held.is_empty() {
             return Err(wrong("the history holds no step yet".to_string()));
         }
-        let steps = request.steps.of(held).map_err(|told| wrong(format!("{}: {told}", request.names.instants)))?;
+        let steps = request.steps.of(held);
+        let steps =
+            steps.map_err(|told| wrong(format!("{}: {told}{}", request.names.instants, request.counted(held))))?;
         if steps.is_empty() {
             return Err(wrong(format!("{}: no step is chosen; name at least one", request.names.instants)));
         }
