@@ -125,6 +125,9 @@ def test_mistakes_are_told_before_any_work(case: Path, tmp_path: Path) -> None:
         with pytest.raises(pc.InputError, match=told):
             pc.sweep(case, parameters, folder=folder)  # type: ignore[arg-type]
     assert not folder.exists()
+    (tmp_path / "file").touch()
+    with pytest.raises(pc.StorageError, match="the folder of the sweep: cannot write"):
+        pc.sweep(case, {"obstacle.0.friction": [0.1]}, folder=tmp_path / "file" / "sweep")
     with pytest.raises(pc.MissingFileError):
         pc.sweep(tmp_path / "none.toml", GRID)
 

@@ -142,7 +142,7 @@ pub(crate) fn run(py: Python<'_>, error: &Failure) -> PyErr {
         Failure::Inconsistent { file, contradiction } => {
             input(py, inconsistency(file.as_deref(), contradiction, "force=True"))
         }
-        other => input(py, other.to_string()),
+        other => output(py, other),
     }
 }
 
