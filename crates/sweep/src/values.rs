@@ -98,6 +98,13 @@ impl Values {
         let mut reader =
             csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(file).map_err(|e| told(e.to_string()))?;
         let header = reader.headers().map_err(|e| told(e.to_string()))?.clone();
+        for (separator, name) in [(';', "semicolons"), ('\t', "tabs")] {
+            if header.iter().any(|key| key.contains(separator)) {
+                return Err(told(format!(
+                    "its columns are separated by {name}; write commas between them, and decimal points in numbers"
+                )));
+            }
+        }
         let keys = header.iter().map(Key::parse).collect::<Result<Vec<_>, _>>().map_err(told)?;
         let mut rows = Vec::new();
         for row in reader.records() {
@@ -212,9 +219,13 @@ mod tests {
             .unwrap();
         let values = Values::none().with_rows_of(&file).unwrap();
         assert_eq!(shown(&values), ["[0,-5] a b.msh", "[0,-50] c,d.msh"]);
-        for (text, told) in
-            [("a,a\n1,2\n", "`a` is given twice"), ("a,b\n1\n", "record 1"), ("a\n", "there is no value")]
-        {
+        for (text, told) in [
+            ("a,a\n1,2\n", "`a` is given twice"),
+            ("a,b\n1\n", "record 1"),
+            ("a\n", "there is no value"),
+            ("a;b\n1,5;2\n", "separated by semicolons; write commas"),
+            ("a\tb\n1\t2\n", "separated by tabs"),
+        ] {
             std::fs::write(&file, text).unwrap();
             let error = Values::none().with_rows_of(&file).unwrap_err().to_string();
             assert!(error.contains(told), "{error}");
