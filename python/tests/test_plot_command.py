@@ -89,6 +89,14 @@ def test_mistakes_are_told_before_any_work(
     assert done.returncode == 0 and (tmp_path / "there.png").stat().st_size > 10_000
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="only Linux has /dev/full")
+def test_a_result_that_cannot_be_written_is_told(files: tuple[Path, Path], tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "percute", "plot", str(files[1]), "--quiet"]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(command, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True)
+    assert (done.returncode, done.stderr) == (1, "error: cannot write the result: No space left on device\n")
+
+
 @pytest.mark.parametrize(("contents", "says"), [("empty", "is empty"), ("text", "is not an HDF5 file"), ("cut", "is truncated or damaged")])
 def test_damaged_files_have_one_message(contents: str, says: str, files: tuple[Path, Path], tmp_path: Path) -> None:
     there = files[0].read_bytes()

@@ -155,5 +155,12 @@ def main(arguments: Sequence[str]) -> int:
     except PercuteError as error:
         print(f"error: {_said(error, given.file)}", file=sys.stderr)
         return BAD_INPUT if isinstance(error, ExistingFileError | FileFormatError | InputError | MissingFileError) else FAILED
-    print(save)
+    try:
+        print(save, flush=True)
+    except OSError as error:
+        # What could not be written would be written again at the end of the process.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            print(f"error: cannot write the result: {error.strerror}", file=sys.stderr)
+        return FAILED
     return DONE
