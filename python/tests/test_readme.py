@@ -106,14 +106,20 @@ def test_the_step_of_flight_of_the_page_on_other_programs() -> None:
 
 def test_the_cut_of_the_page_on_other_programs_ends_with_the_first_contact() -> None:
     text = (ROOT / "docs" / "foreign.md").read_text()
-    cut = re.findall(r"```python\n(loaded = .*?)```", text, re.DOTALL)[0]
+    time, cut = re.findall(r"```python\n(time = [^\n]*\n)(loaded = .*?)```", text, re.DOTALL)[0]
+    # As printed, after the solver of the page.
+    names: dict[str, Any] = {}
+    exec(re.findall(r"```python\n(import numpy.*?)# Its grade", text, re.DOTALL)[0], names)
+    exec(re.findall(r"# Its grade\.\n(.*?)history = ", text, re.DOTALL)[0], names)
+    exec(time + cut, names)
+    assert len(names["history"]) == names["steps"]
     whole = pc.simulate(block(), end=40e-6, courant=0.8)
     loaded = whole.reaction.any(axis=(1, 2))
     last = int(loaded.nonzero()[0].max())
     assert loaded[loaded.argmax() : last].all() and last + 2 < len(whole)
     for count, kept in ((len(whole), last + 2), (last, last)):
         arrays = {name: getattr(whole, name)[:count] for name in ("time", "displacement", "reaction")}
-        names: dict[str, Any] = {"np": np, "pc": pc, "problem": whole.problem, **arrays}
+        names = {"np": np, "pc": pc, "problem": whole.problem, **arrays}
         exec(cut, names)
         assert len(names["history"]) == kept
 
