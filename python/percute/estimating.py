@@ -53,7 +53,7 @@ def estimate(
     threads : int, optional
         How many threads to use, at most 1024; one for each core by default. The result does not depend on it.
     window : int, optional
-        How many sampled steps are worked on at once, at most 8 (the default). The result does not depend on it.
+        How many sampled steps are worked on at once; more than 8 count as 8, the default. The result does not depend on it.
     instants : int or (n,) floats, optional
         Number of evenly spaced instants, or times (s), at which ``maps`` are kept: at the nearest steps. None by default.
     fields : bool, default: False

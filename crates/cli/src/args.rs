@@ -313,7 +313,8 @@ pub struct WorkArguments {
     /// Number of threads [default: one for each core]; the result does not depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<usize>,
-    /// Number of sampled steps that are estimated at once, at most 8 [default: 8]; the result does not depend on it
+    /// Number of sampled steps that are estimated at once, from 1; more than 8 count as 8 [default: 8]; the result does
+    /// not depend on it
     #[arg(long, value_name = "N", value_parser = steps)]
     pub window: Option<usize>,
     /// No progress and no warnings on standard error; warnings stay in summary and JSON
