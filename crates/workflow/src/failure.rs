@@ -171,6 +171,7 @@ mod tests {
             speed: 1e9,
             longest_step: 2e-7,
             critical_step: 1e-7,
+            by_contact: false,
         };
         let failure = Failure::from(unstable);
         assert!(!failure.is_bad_input());

@@ -79,7 +79,7 @@ fn run<const D: usize, const N: usize>(
         };
         let state = State::new(step, times, &body.forces, &body.velocity, &dynamics.inverse_mass);
         if !balance.record(problem, times, &state) {
-            return Err(unstable(dynamics, n, &body.velocity));
+            return Err(unstable(dynamics, n, &body.velocity, balance.balance()));
         }
         sink.accept(&state.with_sums(&balance.sums())).map_err(|cause| SimulationError::Sink { step: n, cause })?;
         balance_over_time.push(*balance.balance());

@@ -11,9 +11,14 @@ pub enum SimulationError {
     /// Energy out of nothing.
     #[error(
         "the simulation became unstable at step {step}, t = {time:.6e} s: node {node} moves at {speed:.3e} m/s and the \
-         energy exceeds ten times the sum of the initial energy and the work of loads and supports; take smaller time \
-         steps (the longest is {longest_step:.4e} s, the critical one {critical_step:.4e} s), or steps that do not \
-         jump from one to the next"
+         energy exceeds ten times the sum of the initial energy and the work of loads and supports; {} (the longest \
+         step is {longest_step:.4e} s, the critical one {critical_step:.4e} s)",
+        if *.by_contact {
+            "most of it is the work of contact forces: refine the surfaces that touch, or name groups of edges that \
+             face each other"
+        } else {
+            "take smaller time steps, or steps that do not jump from one to the next"
+        }
     )]
     Unstable {
         /// The step.
@@ -28,6 +33,8 @@ pub enum SimulationError {
         longest_step: f64,
         /// Critical step (s).
         critical_step: f64,
+        /// Whether steps are stable without contact, and contact forces did most of the work.
+        by_contact: bool,
     },
     /// A node that touches at step 1 from too near: no admissible velocity brings it to rest.
     #[error(
@@ -99,6 +106,7 @@ pub(super) fn unstable<const D: usize, const N: usize>(
     dynamics: &Dynamics<'_, D, N>,
     step: usize,
     velocity: &[[f64; D]],
+    balance: &Balance,
 ) -> SimulationError {
     let speed = |v: &[f64; D]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let energy = |(v, m): (&[f64; D], &f64)| m * speed(v) * speed(v);
@@ -106,12 +114,15 @@ pub(super) fn unstable<const D: usize, const N: usize>(
     // Beyond the range of numbers counts as most.
     let rank = |e: f64| if e.is_nan() { f64::INFINITY } else { e };
     let node = (0..energies.len()).fold(0, |best, i| if rank(energies[i]) > rank(energies[best]) { i } else { best });
+    let (longest_step, critical_step) = (dynamics.times.longest_step(), critical_time_step(dynamics.problem));
+    let given = balance.work_of_contact + balance.friction;
     SimulationError::Unstable {
         step,
         time: dynamics.times.instants()[step],
         node,
         speed: speed(&velocity[node]),
-        longest_step: dynamics.times.longest_step(),
-        critical_step: critical_time_step(dynamics.problem),
+        longest_step,
+        critical_step,
+        by_contact: longest_step < critical_step && 2.0 * given > balance.kinetic + balance.strain,
     }
 }
