@@ -196,8 +196,8 @@ fn laws<const D: usize, const N: usize>(problem: &Problem<D, N>) -> (Vec<[f64; 2
     (laws, of_material)
 }
 
-/// Joins elements of a strip that share a facet and a law: each with its free neighbour of the lowest number, if that is
-/// not far ahead.
+/// Joins elements of a strip that share a facet and a law: each with its free neighbour of the lowest number, if that
+/// is not far ahead.
 fn pair<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     strip: Range<usize>,

@@ -31,7 +31,8 @@ fn runs_above_the_critical_step_are_unstable() {
         let times = TimeGrid::uniform(2000.0 * factor * critical, 2000).unwrap();
         let mut history = History::new(&times);
         let error = simulate(&problem, &times, &mut history, &mut Unobserved).unwrap_err();
-        let SimulationError::Unstable { step, time, node, speed, longest_step, critical_step, by_contact } = error else {
+        let SimulationError::Unstable { step, time, node, speed, longest_step, critical_step, by_contact } = error
+        else {
             panic!("factor {factor}: {error}");
         };
         assert_eq!((history.len(), time), (step, times.instants()[step]), "factor {factor}");

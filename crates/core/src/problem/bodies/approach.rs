@@ -92,8 +92,9 @@ pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
     Some(Approach { normal, gap: gaps[widest], meeting, across })
 }
 
-/// The outward normal on an edge of a convex polygon where these places face it. Between nodes at which it turns by less
-/// than a corner it is that of a curve: at a node midway between both edges, in the middle of an edge that of the edge.
+/// The outward normal on an edge of a convex polygon where these places face it. Between nodes at which it turns by
+/// less than a corner it is that of a curve: at a node midway between both edges, in the middle of an edge that of the
+/// edge.
 fn normal_at(polygon: &[Vector], edge: usize, places: &[Vector]) -> Vector {
     let (normals, count) = (outward(polygon), polygon.len());
     let [start, end] = [polygon[edge], polygon[(edge + 1) % count]];

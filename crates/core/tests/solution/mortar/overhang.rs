@@ -7,8 +7,8 @@ use percute_core::material::Elastic;
 use percute_core::time::TimeGrid;
 
 /// The end of a stiff block slides from edge to edge of a soft one. Contact without friction gives no energy but 1.2 to
-/// 1.8 % of that of the approach, with short steps as well: there were 7, 65 and 660 % where the number of conditions on
-/// an edge changed when half of it was covered.
+/// 1.8 % of that of the approach, with short steps as well: there were 7, 65 and 660 % where the number of conditions
+/// on an edge changed when half of it was covered.
 #[test]
 fn an_end_that_slides_over_edges_gives_no_energy() {
     let speed = 20.0;

@@ -214,8 +214,8 @@ impl Operator {
         }
     }
 
-    /// One of the three stages of the product of scaled coefficients with the matrix of the iteration, for a block; gives
-    /// its part of the scalar product of both.
+    /// One of the three stages of the product of scaled coefficients with the matrix of the iteration, for a block;
+    /// gives its part of the scalar product of both.
     pub(super) fn multiply(&self, stage: usize, block: &Block, x: &Modes, to: &mut Product<'_>) -> Lanes {
         let Product { modes, edges: [t, v] } = to;
         let mut product = Lanes::ZERO;

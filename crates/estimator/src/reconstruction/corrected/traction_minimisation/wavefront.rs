@@ -111,7 +111,8 @@ impl Wavefront {
         self.follow::<S>(0..self.around.len(), |stage, k| on_nodes(stage, nodes(k)));
     }
 
-    /// Hands out stages and blocks of a segment, as far as they depend on no others: which have gone through each stage.
+    /// Hands out stages and blocks of a segment, as far as they depend on no others. Gives those that have gone through
+    /// each stage.
     fn follow<const S: usize>(
         &self,
         blocks: Range<usize>,
