@@ -64,7 +64,8 @@ pub enum EstimateError {
     #[error(
         "node {node} starts {} m from the plane or body that it may touch and touches at step 1; no admissible motion \
          exists below a gap of {} m: start further away; a history of another program needs a step of flight before it",
-        trimmed(*.gap, 7), trimmed(*.smallest_gap, 7)
+        // As it is printed it will do.
+        trimmed(*.gap, 7), trimmed((1.0 + 1e-6) * *.smallest_gap, 7)
     )]
     StartsTooNear { node: usize, gap: f64, smallest_gap: f64 },
     /// A temporary file that failed.

@@ -59,11 +59,14 @@ fn a_start_too_near_names_what_will_do() {
     let grid = |step: f64| TimeGrid::uniform(10.0 * step, 10).unwrap();
     let dt = 1e-6;
     let simulate_at = |gap: f64, step: f64| simulate(&near_bar(gap), &grid(step), &mut Discard, &mut Unobserved);
-    let Err(SimulationError::StartsTooNear { node, gap, speed, step, smallest_gap, largest_step, .. }) =
-        simulate_at(0.6e-4, dt)
-    else {
-        panic!("a gap of 0.15 |v|Δt was accepted");
+    let error = simulate_at(0.6e-4, dt).unwrap_err();
+    let said = error.to_string();
+    let SimulationError::StartsTooNear { node, gap, speed, step, smallest_gap, largest_step, .. } = error else {
+        panic!("{error}");
     };
+    // As they are printed.
+    let number = |after: &str| said.split_once(after).unwrap().1.split(' ').next().unwrap().parse().unwrap();
+    assert!(simulate_at(number("at least "), dt).is_ok() && simulate_at(gap, number("at most ")).is_ok(), "{said}");
     assert_eq!((node, speed, step), (0, 400.0, grid(dt).step(0)));
     // Products of two or three numbers: rounding only.
     assert!((gap / 0.6e-4 - 1.0).abs() < 1e-12 && (smallest_gap / 1e-4 - 1.0).abs() < 1e-12);
