@@ -321,3 +321,14 @@ def test_a_small_residual_of_the_balance_limits_the_trust(correct: pc.History) -
     balance = (estimate.consistency or {})["balance"]
     assert (estimate.trust == "limited" and "forces that balance to" in estimate.verdict) == (balance > 5e-4), estimate.verdict
     assert pc.estimate(given(correct.problem, parts(correct))).trust == "high" or correct.problem.mesh.dimension == 1
+
+
+def test_two_instants_have_no_forces_of_another_step() -> None:
+    """In their step nothing has moved against the balance: no other step of forces fits better."""
+    problem = block()
+    history = pc.simulate(problem, end=13e-6, courant=0.9)
+    first = pc.History.from_arrays(problem, history.time[:2], history.displacement[:2], history.reaction[:2])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        estimate = pc.estimate(first)
+    assert "of another step" not in " ".join([estimate.verdict, *estimate.warnings])

@@ -86,7 +86,8 @@ fn shifts<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result
 pub(super) fn shifted<const D: usize, const N: usize>(
     suspect: &Suspect<'_, D, N>,
 ) -> Result<Option<String>, SinkError> {
-    if suspect.residual() <= ROUNDING {
+    // Without a term to compare with, as at the two instants of one step in flight, no change makes it smaller.
+    if suspect.residual() <= ROUNDING || !suspect.residual().is_finite() {
         return Ok(None);
     }
     let less = |one: &Tried| one.left * SHIFTED <= one.before;
