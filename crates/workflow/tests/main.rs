@@ -7,3 +7,4 @@ mod numbering;
 mod schema;
 mod seeds;
 mod statement;
+mod verdict;

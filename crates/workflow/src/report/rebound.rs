@@ -106,7 +106,10 @@ pub fn rebound_to_json(rebound: Option<&Rebound>, impacts: Option<&Impacts>) -> 
 }
 
 /// The frame of the plane that gives the largest normal impulse.
-fn strongest<const D: usize, const N: usize>(problem: &Problem<D, N>, contact: &ContactResults<D>) -> Option<Frame<D>> {
+pub(super) fn strongest<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    contact: &ContactResults<D>,
+) -> Option<Frame<D>> {
     let frames = problem.obstacles().iter().map(|obstacle| obstacle.flat_frame());
     let impulse = |frame: &Frame<D>, last: Option<&Resultant<D>>| last.map_or(0.0, |r| frame.split(&r.impulse).0);
     let all = frames.zip(&contact.obstacles).map(|(frame, over_time)| (impulse(&frame, over_time.last()), frame));

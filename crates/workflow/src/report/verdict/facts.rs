@@ -1,6 +1,8 @@
 //! The facts that a verdict follows from.
 
-use super::touches::Contact;
+use super::onset::Onset;
+use super::touches::{Contact, first_contacts};
+use super::uneven::Uneven;
 use crate::foreign::{Checked, Contradiction, by_a_penalty, is_off_contact, off_contact};
 use crate::report::flat::FlatElements;
 use crate::report::rebound::Rebound;
@@ -37,6 +39,8 @@ pub(in crate::report) struct Facts {
     pub(super) slenderness: f64,
     /// Whether nearly flat elements have much of the estimate.
     pub(super) flat: bool,
+    pub(super) uneven: Uneven,
+    pub(super) onset: Onset,
     pub(super) largest_friction: f64,
     /// The least angle between two planes that touch the body at edges with a common node (degrees).
     pub(super) corner: Option<f64>,
@@ -114,19 +118,20 @@ impl Facts {
         let shortest_release = if figures.is_some_and(by_a_penalty) { slenderness * size / wave_speed } else { 0.0 };
         let bodies = !problem.statement().interfaces.is_empty();
         let speed = if bodies { approach(problem) } else { beside.rebound.map(|rebound| -rebound.normal_before) };
-        let speed = speed.map(|speed| speed / wave_speed);
         Self {
             dimension: D,
             reconstruction: beside.options.reconstruction,
             acceleration: other_acceleration(beside.options, D),
             contact: Contact::new(problem, results),
-            speed_ratio: speed,
+            speed_ratio: speed.map(|speed| speed / wave_speed),
             courant: beside.courant,
             elements_in_contact: if D == 1 { most } else { most.saturating_sub(1).max(most.min(1)) },
             phases: phases(results, APART * size / wave_speed, shortest_release),
             passages: after_first_touch(results) * wave_speed / size,
             slenderness,
             flat: FlatElements::new(problem, &estimate.by_element).is_some(),
+            uneven: Uneven::new(problem, &estimate.by_element),
+            onset: Onset::new(problem, results, beside.rebound, speed),
             largest_friction: problem.obstacles().iter().map(|o| o.law().friction()).fold(0.0, f64::max),
             corner: corner(problem, results),
             bodies,
@@ -181,7 +186,7 @@ fn expected<const D: usize>(estimate: &Estimate<D>) -> Option<Expected> {
 
 /// The time from the first touch to the last instant (s); 0 without contact.
 fn after_first_touch<const D: usize>(results: &ContactResults<D>) -> f64 {
-    let first = results.summary.iter().filter_map(|summary| summary.first_touch).reduce(f64::min);
+    let first = first_contacts(results).into_iter().flatten().reduce(f64::min);
     results.instants.last().zip(first).map_or(0.0, |(last, first)| last - first)
 }
 
@@ -211,8 +216,8 @@ fn phases<const D: usize>(results: &ContactResults<D>, apart: f64, shortest: f64
 fn corner<const D: usize, const N: usize>(problem: &Problem<D, N>, results: &ContactResults<D>) -> Option<f64> {
     let nodes = problem.surface().nodes();
     let mut touched = vec![false; problem.obstacles().len()];
-    for (contact, summary) in nodes.iter().zip(&results.summary) {
-        touched[contact.obstacle] |= summary.first_touch.is_some();
+    for (contact, first) in nodes.iter().zip(first_contacts(results)) {
+        touched[contact.obstacle] |= first.is_some();
     }
     let planes = nodes.iter().filter_map(|contact| Some([contact.obstacle, nodes[contact.beside?].obstacle]));
     let opening = |planes: [usize; 2]| {
@@ -262,8 +267,8 @@ fn at_contact<const D: usize, const N: usize>(
 ) -> f64 {
     let mesh = problem.mesh();
     let mut near = vec![false; mesh.element_count()];
-    for (place, summary) in results.nodes.iter().zip(&results.summary) {
-        if summary.first_touch.is_some() {
+    for (place, first) in results.nodes.iter().zip(first_contacts(results)) {
+        if first.is_some() {
             mesh.stars().star(place.node).elements.iter().for_each(|element| near[element.index()] = true);
         }
     }

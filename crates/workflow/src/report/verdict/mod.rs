@@ -2,9 +2,12 @@
 //! recommendation, in at most three sentences.
 
 mod facts;
+mod onset;
 mod rules;
 mod text;
 mod touches;
+mod uneven;
+mod untested;
 
 pub(super) use facts::{Beside, Facts};
 pub use touches::Touches;
@@ -86,7 +89,7 @@ impl Verdict {
     #[must_use]
     pub(super) fn new(facts: &Facts, parts: &Parts) -> Self {
         let rule = RULES.iter().find(|rule| (rule.applies)(facts)).unwrap_or(&RULES[RULES.len() - 1]);
-        let (untested, shares) = (rules::untested(facts), shares(parts));
+        let (untested, shares) = (untested::untested(facts), shares(parts));
         let doubts = text::doubts(facts, rule);
         let trust = match () {
             () if !doubts.is_empty() => Trust::Low,

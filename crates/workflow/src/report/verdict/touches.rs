@@ -60,6 +60,14 @@ impl Contact {
     }
 }
 
+/// When each node of the surface touches first (s). A reaction brings a node to its plane at the next instant: if it
+/// acts at the last instant only, no node touches yet, and contact begins with the force.
+pub(super) fn first_contacts<const D: usize>(results: &ContactResults<D>) -> Vec<Option<f64>> {
+    let touches = results.summary.iter().any(|summary| summary.first_touch.is_some());
+    let first = results.summary.iter().map(|summary| if touches { summary.first_touch } else { summary.time_of_peak });
+    first.collect()
+}
+
 /// The contact surface with the first touch of its nodes.
 struct Surface<'a, const D: usize, const N: usize> {
     problem: &'a Problem<D, N>,
@@ -74,7 +82,7 @@ struct Surface<'a, const D: usize, const N: usize> {
 
 impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
     fn new(problem: &'a Problem<D, N>, results: &ContactResults<D>) -> Self {
-        let first_touch: Vec<_> = results.summary.iter().map(|summary| summary.first_touch).collect();
+        let first_touch = first_contacts(results);
         let mut beside = vec![Vec::new(); first_touch.len()];
         for facet in problem.surface().facets() {
             for &a in &facet.nodes {

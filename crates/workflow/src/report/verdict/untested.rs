@@ -1,0 +1,150 @@
+//! Properties of a run that no case of the evidence has: with one of them, trust is limited.
+
+use super::facts::Facts;
+use super::rules::{LONG, PENALTY};
+use super::touches::Touches;
+use super::uneven;
+use crate::message::{percent, short};
+use crate::report::symptoms::{DEPTH, SLIP};
+
+/// Speeds over the wave speed that the evidence has: 0.4 m/s in ν = 0.45 (9.9 km/s) to 400 m/s in a bar (5.1 km/s).
+pub(super) const SPEEDS: [f64; 2] = [4e-5, 0.08];
+/// Courant numbers of the evidence.
+pub(super) const STEPS: [f64; 2] = [0.02, 0.9];
+/// Largest friction of the evidence.
+pub(super) const FRICTION: f64 = 0.5;
+
+/// Wave passages that the evidence has after a flat impact.
+const LONGEST: f64 = 10.0;
+/// The fewest wave passages after the first touch that the evidence has: runs of 0.1 passages and whole steps in
+/// python/percute/verification/durations.py, of 0.084 at least.
+const SHORTEST: f64 = 0.08;
+
+/// Residuals of the balance in a history of another program above this share of the largest term may double the
+/// estimate: contact forces are far larger than those inside the body. Histories in single precision have 1e-4, with
+/// steps of 0.02 Δt_c 2e-3.
+const UNBALANCED: f64 = 5e-4;
+
+/// Impedances of neighbours in a plane body, and critical steps of the elements of a bar, that differ by more make an
+/// index outside the ranges. The evidence has 2.9 and 2. python/percute/verification/beyond.py has 1.23 for 30 and 2.3
+/// for 100, and on bars 0.88 for 5, 0.79 for 10 and 2.4 for 51.
+const IMPEDANCES: f64 = 30.0;
+/// See there.
+const SIZES: f64 = 5.0;
+/// Rounding does not make a stated ratio larger by more than this part of it.
+const STATED: f64 = 1e-6;
+
+/// The properties of a run that no case of the evidence has.
+pub(super) fn untested(facts: &Facts) -> Vec<String> {
+    let mut untested = Vec::new();
+    if let Some(ratio) = facts.speed_ratio {
+        if ratio > SPEEDS[1] || (ratio > 0.0 && ratio < SPEEDS[0]) {
+            untested.push(format!("{} of the wave speed", short(ratio, 2)));
+        } else if ratio <= 0.0 {
+            untested.push("a body that does not fly to its plane".to_string());
+        }
+    }
+    // Rounding moves the last digits of a stated Courant number; a bar may have the critical step.
+    let most = if facts.dimension == 1 { 1.0 } else { STEPS[1] };
+    if facts.courant < STEPS[0] * 0.99 || facts.courant > most * 1.01 {
+        untested.push(format!("steps of {} Δt_c", short(facts.courant, 2)));
+    }
+    if facts.largest_friction > FRICTION {
+        untested.push(format!("friction above {FRICTION}"));
+    }
+    if let Some(other) = facts.acceleration.filter(|_| !facts.vibrates_with_closest()) {
+        untested.push(format!("acceleration `{other}`"));
+    }
+    untested.extend(untested_of_bodies(facts));
+    untested.extend(at_the_start(facts));
+    untested.extend(of_uneven_meshes(facts));
+    untested.extend(untested_durations(facts));
+    if facts.is_thin() && facts.contact.touches == Touches::Edge {
+        untested.push("a thin body that touches with an edge".to_string());
+    }
+    if facts.supported {
+        untested.push("supports".to_string());
+    }
+    untested.extend(untested_of_histories(facts));
+    untested
+}
+
+/// How long after the first touch no case of the evidence ends.
+fn untested_durations(facts: &Facts) -> Vec<String> {
+    let mut untested = Vec::new();
+    if facts.dimension == 2 && facts.contact.touches == Touches::Edge && facts.passages > LONGEST {
+        untested.push(format!("{} wave passages", short(facts.passages, 2)));
+    }
+    if facts.has_just_begun() && facts.passages < SHORTEST {
+        untested.push(format!("{} wave passages after the first touch", short(facts.passages, 2)));
+    }
+    if facts.corner.is_some() && facts.passages > LONG {
+        untested.push(format!("{} wave passages in a corner", short(facts.passages, 2)));
+    }
+    untested
+}
+
+/// What no history of the evidence has.
+fn untested_of_histories(facts: &Facts) -> Vec<String> {
+    let mut untested = Vec::new();
+    if facts.unbalanced > UNBALANCED {
+        untested.push(format!("forces that balance to {} only", percent(facts.unbalanced)));
+    }
+    if facts.by_a_penalty {
+        untested.push(PENALTY.to_string());
+    } else if let Some(off) = facts.off_contact {
+        untested.push(format!("nodes that are {} of an element off their plane in contact", short(off, 2)));
+    }
+    if facts.shifted {
+        untested.push("contact forces of another step".to_string());
+    }
+    if facts.sampled {
+        untested.push("samples instead of steps".to_string());
+    }
+    untested
+}
+
+/// How bodies touch each other where no case of the evidence has it.
+fn untested_of_bodies(facts: &Facts) -> Vec<String> {
+    let touches = match facts.contact.touches {
+        _ if !facts.bodies || facts.dimension == 1 => None,
+        // A mean gap may be open although a corner is inside the other body.
+        Touches::None if facts.slides => Some("surfaces that slide without contact"),
+        Touches::Edge | Touches::End => None,
+        _ if facts.slides => None,
+        _ => Some("bodies that strike each other so"),
+    };
+    let edges = |value: f64| short(value, 2);
+    let slip = (facts.slip > SLIP).then(|| format!("pairs of nodes that slip by {} edges", edges(facts.slip)));
+    let depth = (facts.depth > DEPTH)
+        .then(|| format!("nodes that are {} of an edge inside the other body", edges(facts.depth)));
+    touches.map(str::to_string).into_iter().chain(slip).chain(depth).collect()
+}
+
+/// How the motion begins where no case of the evidence does so.
+fn at_the_start(facts: &Facts) -> impl Iterator<Item = String> {
+    let onset = facts.onset;
+    let named = [
+        (onset.load_jumps, "a load that jumps"),
+        (onset.velocity_jumps, "a velocity that jumps inside a body"),
+        (onset.strained, "a body that is strained at the start"),
+        (onset.pushed, "a body that a traction pushes to its plane"),
+    ];
+    named.into_iter().filter(|(applies, _)| *applies).map(|(_, name)| name.to_string())
+}
+
+/// Meshes and materials that are more uneven than those of the evidence.
+fn of_uneven_meshes(facts: &Facts) -> impl Iterator<Item = String> {
+    let (uneven, plane) = (facts.uneven, facts.dimension == 2);
+    let more = |ratio: f64, most: f64| ratio > most * (1.0 + STATED);
+    let long = plane && !facts.flat && uneven.longest > uneven::LONG;
+    let named = [
+        (long, "elements", uneven.longest, "times as long as their shortest edge"),
+        (plane && more(uneven.impedances, IMPEDANCES), "impedances that differ by a factor of", uneven.impedances, ""),
+        (!plane && more(uneven.sizes, SIZES), "elements of a bar that differ by a factor of", uneven.sizes, ""),
+    ];
+    let told = |(_, before, value, after): (bool, &str, f64, &str)| {
+        format!("{before} {} {after}", short(value, 2)).trim_end().to_string()
+    };
+    named.into_iter().filter(|(applies, ..)| *applies).map(told)
+}
