@@ -25,54 +25,24 @@ pub(super) struct Approach {
 /// neither separate them. Halves of a symmetric model meet along its line of symmetry: of all directions, the hulls of
 /// the whole bodies are furthest apart along it.
 pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
-    let across = first.line_with(second);
-    let own = match across {
-        Some(0) => vec![[0.0, 1.0], [0.0, -1.0]],
-        Some(_) => vec![[1.0, 0.0], [-1.0, 0.0]],
-        None => outward(&first.hull),
-    };
-    let other = if across.is_none() { outward(&second.hull) } else { Vec::new() };
-    let (edges, mut normals) = (own.len(), own);
-    normals.extend(other.into_iter().map(|n| n.map(|x| -x)));
-    let gap = |n: &Vector| {
-        let reach = first.hull.iter().map(|p| dot(p, n)).fold(f64::NEG_INFINITY, f64::max);
-        second.hull.iter().map(|p| dot(p, n)).fold(f64::INFINITY, f64::min) - reach
-    };
-    let relative: Vector = std::array::from_fn(|c| second.velocity[c] - first.velocity[c]);
-    let gaps: Vec<f64> = normals.iter().map(gap).collect();
+    let all = Directions::new(first, second);
+    let Directions { normals, across, tolerance, relative, .. } = &all;
+    let (across, tolerance) = (*across, *tolerance);
+    let gaps: Vec<f64> = normals.iter().map(|n| all.gap(n)).collect();
     let widest = (0..gaps.len()).reduce(|a, b| if gaps[b] > gaps[a] { b } else { a })?;
-    let farthest = first.hull.iter().chain(&second.hull).flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
-    let tolerance = TOUCHES * first.size.max(second.size) + 4.0 * f64::EPSILON * farthest;
     if gaps[widest] < -tolerance {
         return None;
     }
-    // The normal of an edge where the other body faces it, after some time (s).
-    let normal_of = |k: usize, time: f64| {
-        if across.is_some() {
-            return normals[k];
-        }
-        let (edge, [own, other], sign) =
-            if k < edges { (k, [first, second], 1.0) } else { (k - edges, [second, first], -1.0) };
-        let places = other.hull.iter().map(|p| std::array::from_fn(|c| p[c] + sign * time * relative[c]));
-        let places: Vec<Vector> = places.collect();
-        let reach = |p: &Vector| sign * dot(p, &normals[k]);
-        let least = places.iter().map(reach).fold(f64::INFINITY, f64::min);
-        let nearest: Vec<Vector> = places.into_iter().filter(|p| reach(p) <= least + tolerance).collect();
-        normal_at(&own.hull, edge, &nearest).map(|x| sign * x)
-    };
-    let normal = normal_of(widest, 0.0);
+    let normal = all.normal_of(widest, 0.0);
     if gaps[widest] <= tolerance {
         // They touch: whatever moves them, there is contact.
         return Some(Approach { normal, gap: 0.0, meeting: Some((normal, 0.0)), across });
     }
     let speed = relative[0].hypot(relative[1]);
     let (mut latest, mut parting) = ((f64::NEG_INFINITY, widest), f64::INFINITY);
-    let closing = |normal: &Vector| {
-        let closing = -dot(&relative, normal);
-        if closing.abs() > ROUNDING * speed { closing } else { 0.0 }
-    };
     for (k, (normal, &gap)) in normals.iter().zip(&gaps).enumerate() {
-        let closing = closing(normal);
+        let closing = -dot(relative, normal);
+        let closing = if closing.abs() > ROUNDING * speed { closing } else { 0.0 };
         match gap > 0.0 {
             true => {
                 let time = if closing > 0.0 { gap / closing } else { f64::INFINITY };
@@ -87,9 +57,69 @@ pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
         }
     }
     let (last, at) = latest;
-    let meets = last.is_finite() && last < parting;
-    let meeting = meets.then(|| (normal_of(at, last), last));
+    let meeting = (last.is_finite() && last < parting).then(|| (all.normal_of(at, last), last));
     Some(Approach { normal, gap: gaps[widest], meeting, across })
+}
+
+/// The directions from one body to another one along which they may be apart.
+struct Directions<'o> {
+    bodies: [&'o Outline; 2],
+    /// Those of the edges of the first body, then those of the second.
+    normals: Vec<Vector>,
+    /// How many the first body has.
+    edges: usize,
+    /// Of halves, the direction across which their line of symmetry stands.
+    across: Option<usize>,
+    /// Velocity of the second body against the first one (m/s).
+    relative: Vector,
+    /// Shorter lengths are rounding (m).
+    tolerance: f64,
+}
+
+impl<'o> Directions<'o> {
+    fn new(first: &'o Outline, second: &'o Outline) -> Self {
+        let across = first.line_with(second);
+        let own = match across {
+            Some(0) => vec![[0.0, 1.0], [0.0, -1.0]],
+            Some(_) => vec![[1.0, 0.0], [-1.0, 0.0]],
+            None => outward(&first.hull),
+        };
+        let other = if across.is_none() { outward(&second.hull) } else { Vec::new() };
+        let (edges, mut normals) = (own.len(), own);
+        normals.extend(other.into_iter().map(|n| n.map(|x| -x)));
+        let farthest = first.hull.iter().chain(&second.hull).flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
+        Self {
+            bodies: [first, second],
+            normals,
+            edges,
+            across,
+            relative: std::array::from_fn(|c| second.velocity[c] - first.velocity[c]),
+            tolerance: TOUCHES * first.size.max(second.size) + 4.0 * f64::EPSILON * farthest,
+        }
+    }
+
+    /// How far the bodies are apart along a direction (m).
+    fn gap(&self, n: &Vector) -> f64 {
+        let [first, second] = self.bodies.map(|body| body.hull.iter().map(|p| dot(p, n)));
+        second.fold(f64::INFINITY, f64::min) - first.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The direction of an edge where the other body faces it, after some time (s).
+    fn normal_of(&self, k: usize, time: f64) -> Vector {
+        if self.across.is_some() {
+            return self.normals[k];
+        }
+        let [first, second] = self.bodies;
+        let is_of_first = k < self.edges;
+        let (edge, [own, other]) = if is_of_first { (k, [first, second]) } else { (k - self.edges, [second, first]) };
+        let sign = if is_of_first { 1.0 } else { -1.0 };
+        let places = other.hull.iter().map(|p| std::array::from_fn(|c| p[c] + sign * time * self.relative[c]));
+        let places: Vec<Vector> = places.collect();
+        let reach = |p: &Vector| sign * dot(p, &self.normals[k]);
+        let least = places.iter().map(reach).fold(f64::INFINITY, f64::min);
+        let nearest: Vec<Vector> = places.into_iter().filter(|p| reach(p) <= least + self.tolerance).collect();
+        normal_at(&own.hull, edge, &nearest).map(|x| sign * x)
+    }
 }
 
 /// The outward normal on an edge of a convex polygon where these places face it. Between nodes at which it turns by
