@@ -139,7 +139,11 @@ pub enum Cause {
     )]
     LoadedSupport { component: char, nodes: Vec<usize> },
     /// Contact on a supported or loaded facet (the paper's §2.1 excludes it).
-    #[error("the {} is {by} and cannot touch a plane too; take it out of one of the two groups", facet(.nodes))]
+    #[error(
+        "the {} is {by} and cannot touch a plane or another body too; take it out of one of the two groups{}",
+        facet(.nodes),
+        if .nodes.len() == 1 { ", or give a plane in place of a bar that is held there" } else { "" }
+    )]
     NotFree { nodes: Vec<usize>, by: HeldBy },
     /// The facets that face a plane are all supported or loaded.
     #[error(
