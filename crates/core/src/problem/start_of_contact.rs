@@ -72,21 +72,20 @@ fn least_gap<const D: usize, const N: usize>(
     least
 }
 
-/// Of surfaces that slide and do not face each other yet, the slave is not all behind the master. Curves and corners
-/// beside each other are in part.
+/// Surfaces that slide and do not face each other yet are not behind each other.
 fn check_apart<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<(), InputError> {
     for sliding in problem.surface().sliding() {
         if !sliding.coupling(problem.surface(), &problem.initial_displacement).segments().is_empty() {
             continue;
         }
         let (slave, master) = (sliding.slave(), sliding.master());
-        let high = (0..slave.len()).map(|k| (eta(problem, sliding, slave, k), k)).max_by(|a, b| a.0.total_cmp(&b.0));
-        let low = (0..master.len()).map(|k| eta(problem, sliding, master, k)).min_by(f64::total_cmp);
-        if let (Some((high, k)), Some(low)) = (high, low)
-            && high < low - problem.contact_tolerance()
+        let low = (0..slave.len()).map(|k| (eta(problem, sliding, slave, k), k)).min_by(|a, b| a.0.total_cmp(&b.0));
+        let high = (0..master.len()).map(|k| eta(problem, sliding, master, k)).max_by(f64::total_cmp);
+        if let (Some((low, k)), Some(high)) = (low, high)
+            && low < high - problem.contact_tolerance()
         {
             let contact = &problem.surface().nodes()[slave.position(k)];
-            let cause = Cause::Overlaps { node: contact.node.index(), depth: low - high };
+            let cause = Cause::Overlaps { node: contact.node.index(), depth: high - low };
             return Err(InputError { place: problem.place_of_obstacle(contact.obstacle), cause });
         }
     }

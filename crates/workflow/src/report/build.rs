@@ -9,6 +9,7 @@ use super::{
     ADMISSIBLE, ContactReport, FORMAT, Impacts, LargestResidual, ObstacleSummary, ProblemSummary, Rebound, Report,
     SlidingReport, SourceReport, Subject, Verdict, Versions, WorstElement, meaning, verdict,
 };
+use crate::foreign::Checked;
 use crate::outline::Outline;
 use percute_core::contact::ContactResults;
 use percute_core::dynamics::{Balance, Simulation};
@@ -95,7 +96,7 @@ fn judged<const D: usize, const N: usize>(
 ) -> (Option<Rebound>, Verdict) {
     let Subject { problem, times, critical_step, checked, .. } = *subject;
     let (courant, drift) = (times.longest_step() / critical_step, simulation.balance.energy_drift);
-    let contact_energy = contact_energy(&simulation.balance);
+    let contact_energy = contact_energy(&simulation.balance, checked);
     let rebound = Rebound::new(problem, &simulation.balance_over_time, contact);
     let beside =
         verdict::Beside { options, courant, drift, contact_energy, admissible, rebound: rebound.as_ref(), checked };
@@ -129,7 +130,7 @@ pub fn warnings_of<const D: usize, const N: usize>(
         checked,
         plausibility_warnings: &foreseen,
         drift: balance.energy_drift,
-        contact_energy: contact_energy(balance),
+        contact_energy: contact_energy(balance, checked),
         relative: [estimate.error.relative_sup, estimate.error.relative_mean],
         steps_vary: times.varies(),
         interrupted: estimate.steps < times.step_count(),
@@ -155,10 +156,10 @@ pub fn warnings_of<const D: usize, const N: usize>(
 }
 
 /// Work of contact without that of friction, over the larger of the first and the last energy; at most 0, to rounding,
-/// where contact is what it should be.
-fn contact_energy(balance: &Balance) -> f64 {
+/// where contact is what it should be. A history of another program has works of its samples and its own scheme: 0.
+fn contact_energy(balance: &Balance, checked: Option<&Checked>) -> f64 {
     let energy = balance.initial.max(balance.kinetic + balance.strain);
-    if energy > 0.0 { (balance.work_of_contact + balance.friction) / energy } else { 0.0 }
+    if energy > 0.0 && checked.is_none() { (balance.work_of_contact + balance.friction) / energy } else { 0.0 }
 }
 
 pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<'_, D, N>) -> ProblemSummary {

@@ -7,10 +7,8 @@ use super::partition::Segment;
 pub enum DualShape {
     /// Nothing of the edge is covered.
     None,
-    /// A part of it is, from an end on: ψ and χ are those of an edge that is this part alone. The second hat of the
-    /// edge has these values at its ends. The conditions of the multipliers are those at both ends of the part, which
-    /// change little from step to step. With one condition on less than half of an edge and two on more, the end of a
-    /// master that slides onto the edge would be pushed out of it at once: the shorter the step, the larger the force.
+    /// A part of it is, from a corner of the slave on: ψ and χ are those of an edge that is this part alone. The second
+    /// hat of the edge has these values at its ends.
     Part([f64; 2]),
     /// All of it is, or elsewhere at least half: ψ_k = Σ_i c_ki φ_i, biorthogonal to the hats φ on what is covered, and
     /// χ = φ.
@@ -23,11 +21,6 @@ pub enum DualShape {
 /// the same, and speeds that differ a little turn the edge fast: with two multipliers on 0.04 of an edge from which a
 /// corner slides off at 400 m/s, the estimate is 22 times the true error.
 const SHORT_PART: f64 = 1.0 / 16.0;
-
-/// The same where the part does not begin at a corner: its first node has a multiplier on the next edge as well. When
-/// the end of the master has come so far, the second multiplier sets in, and pushes out the depth to which this end has
-/// entered. With the other share the work of this is four times as large in steps of 0.03 Δt_c.
-const SHORT_END: f64 = 1.0 / 32.0;
 
 /// ∫φ_i and ∫φ_2² over the covered part of an edge.
 #[derive(Clone, Copy, Debug)]
@@ -72,11 +65,8 @@ impl Moments {
         if covered == length {
             return DualShape::Both([[2.0, -1.0], [-1.0, 2.0]]);
         }
-        // A part inside the edge would join both multipliers both ways.
-        let from = [ends[0] == 0.0, ends[1] == 1.0];
-        let from_corner = (from[0] && corners[0]) || (from[1] && corners[1]);
-        let short = if from_corner { SHORT_PART } else { SHORT_END };
-        if joined && (from[0] || from[1]) && covered > short * length {
+        let from_corner = (corners[0] && ends[0] == 0.0) || (corners[1] && ends[1] == 1.0);
+        if joined && from_corner && covered > SHORT_PART * length {
             return DualShape::Part(ends);
         }
         // All of an edge in two halves must not hang on rounding.

@@ -4,7 +4,6 @@ mod half;
 mod invariance;
 mod law;
 mod limits;
-mod overhang;
 mod patch;
 mod refusals;
 mod roles;

@@ -1,14 +1,13 @@
 //! Bodies that touch at the start.
 
 use super::law::check_steps;
-use super::setup::{Blocks, HEIGHT, steps};
-use crate::solution::run::{aluminium, run};
+use super::setup::{Blocks, steps};
+use crate::solution::run::run;
 use percute_core::contact::Interface;
 use percute_core::load::{BodyForce, Profile, Table, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, MeshError, TriangleMesh};
 use percute_core::problem::{BarProblem, Builder, Cause, TriangleProblem};
-use percute_testkit::{rotated, translated};
 
 /// Blocks that touch and move along together.
 fn together() -> Blocks {
@@ -92,24 +91,6 @@ fn bodies_that_only_touch_do_not_act_on_each_other() {
         let most = step.reaction.iter().flatten().fold(0.0_f64, |most, force| most.max(force.abs()));
         assert!(most < 1e-3, "step {n}: {most} N");
     }
-}
-
-/// Beside the end of the other one, a body may lie in part below its surface, as a corner does, but not all.
-#[test]
-fn bodies_beside_each_other_may_lie_lower() {
-    let [upper, lower] =
-        [(8, 0.02), (10, 0.04)].map(|(cells, width)| TriangleMesh::rectangle(width, HEIGHT, cells, 6).unwrap());
-    let beside = |down: f64| {
-        // Its side is 11 mm high, and 17 mm wide.
-        let upper = rotated(&upper, 0.5).unwrap();
-        let low = upper.points().iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
-        let upper = translated(&upper, [0.06, HEIGHT - low - down]).unwrap();
-        let mesh = TriangleMesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap();
-        let interface = Interface::sliding::<2>("upper.bottom", "lower.top", 0.2).unwrap();
-        TriangleProblem::builder(mesh).material(aluminium()).interface(interface).build()
-    };
-    beside(1e-3).unwrap();
-    assert!(matches!(beside(15e-3).unwrap_err().cause, Cause::Overlaps { .. }));
 }
 
 #[test]
