@@ -122,8 +122,9 @@ impl<'o> Directions<'o> {
     }
 }
 
-/// Nearer to a node than this part of an edge, curves meet there.
-const AT_NODE: f64 = 0.25;
+/// Nearer to a node than this part of an edge, curves meet there. With a quarter, normals of polygons that strike each
+/// other in any position would be 0.037 rad off the line of their centres, in the mean, instead of 0.029.
+const AT_NODE: f64 = 0.05;
 
 /// The outward normal on an edge of a convex polygon where these places face it. At a node at which it turns by less
 /// than a corner, as a curve, it is midway between both edges; elsewhere it is that of the edge. With a direction in
