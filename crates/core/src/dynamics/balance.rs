@@ -43,6 +43,14 @@ pub struct Balance {
     largest_impulse: f64,
 }
 
+impl Balance {
+    /// Work of contact reactions, friction left out (J): at most 0, to rounding, where contact is what it should be.
+    #[must_use]
+    pub fn given_by_contact(&self) -> f64 {
+        self.work_of_contact + self.friction
+    }
+}
+
 /// Keeps the balance beside the integrator.
 #[derive(Clone, Debug)]
 pub(super) struct BalanceKeeper<const D: usize> {

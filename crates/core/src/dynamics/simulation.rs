@@ -118,7 +118,6 @@ pub(super) fn unstable<const D: usize, const N: usize>(
     let rank = |e: f64| if e.is_nan() { f64::INFINITY } else { e };
     let node = (0..energies.len()).fold(0, |best, i| if rank(energies[i]) > rank(energies[best]) { i } else { best });
     let (longest_step, critical_step) = (dynamics.times.longest_step(), critical_time_step(dynamics.problem));
-    let given = balance.work_of_contact + balance.friction;
     SimulationError::Unstable {
         step,
         time: dynamics.times.instants()[step],
@@ -126,6 +125,6 @@ pub(super) fn unstable<const D: usize, const N: usize>(
         speed: speed(&velocity[node]),
         longest_step,
         critical_step,
-        by_contact: longest_step < critical_step && 2.0 * given > balance.kinetic + balance.strain,
+        by_contact: longest_step < critical_step && 2.0 * balance.given_by_contact() > balance.kinetic + balance.strain,
     }
 }

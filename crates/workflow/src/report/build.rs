@@ -159,7 +159,7 @@ pub fn warnings_of<const D: usize, const N: usize>(
 /// where contact is what it should be. A history of another program has works of its samples and its own scheme: 0.
 fn contact_energy(balance: &Balance, checked: Option<&Checked>) -> f64 {
     let energy = balance.initial.max(balance.kinetic + balance.strain);
-    if energy > 0.0 && checked.is_none() { (balance.work_of_contact + balance.friction) / energy } else { 0.0 }
+    if energy > 0.0 && checked.is_none() { balance.given_by_contact() / energy } else { 0.0 }
 }
 
 pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<'_, D, N>) -> ProblemSummary {
