@@ -1,7 +1,8 @@
 //! Symmetric matrices with few entries beside the diagonal.
 
-/// The least width. Loops of this width are compiled on their own, without their overhead, and most surfaces need no
-/// more.
+use super::narrow;
+
+/// The least width. Loops of this width are compiled on their own, and most surfaces need no more.
 const LEAST: usize = 4;
 
 /// The lower half of a symmetric matrix, whose entries farther than `width` from the diagonal are 0. A row has the
@@ -10,19 +11,6 @@ const LEAST: usize = 4;
 pub(super) struct Band {
     width: usize,
     values: Vec<f64>,
-}
-
-/// The same expression for any width of a band, with the least one as a constant.
-macro_rules! with_width {
-    ($width:expr, |$w:ident| $body:expr) => {
-        if $width == LEAST {
-            let $w = LEAST;
-            $body
-        } else {
-            let $w = $width;
-            $body
-        }
-    };
 }
 
 impl Band {
@@ -52,7 +40,10 @@ impl Band {
     /// One component of the product with a vector.
     #[inline]
     pub(super) fn product(&self, row: usize, vector: &[f64]) -> f64 {
-        with_width!(self.width, |width| product(width, &self.values, row, vector))
+        match self.width {
+            LEAST => product(LEAST, &self.values, row, vector),
+            width => product(width, &self.values, row, vector),
+        }
     }
 }
 
@@ -84,19 +75,25 @@ impl Factors {
     /// Factorises the rows and columns inside a set. Whether the part is positive definite.
     pub(super) fn factorise(&mut self, matrix: &Band, inside: &[bool]) -> bool {
         let Self { lower, inverse } = self;
-        lower.reset(inside.len(), matrix.width);
+        // With the rows of zeros that `narrow` needs behind.
+        lower.reset(inside.len() + matrix.width, matrix.width);
         inverse.clear();
         inverse.resize(inside.len(), 0.0);
-        with_width!(matrix.width, |width| {
-            (0..inside.len())
-                .filter(|&row| inside[row])
-                .all(|row| eliminate(width, &matrix.values, &mut lower.values, inverse, row))
-        })
+        if matrix.width == LEAST {
+            return narrow::factorise::<LEAST>(&matrix.values, inside, &mut lower.values, inverse);
+        }
+        (0..inside.len())
+            .filter(|&row| inside[row])
+            .all(|row| eliminate(matrix.width, &matrix.values, &mut lower.values, inverse, row))
     }
 
     /// Solves for some right-hand sides, in their place. The solution is 0 outside the set.
-    pub(super) fn solve<const W: usize>(&self, vectors: &mut [[f64; W]]) {
-        with_width!(self.lower.width, |width| substitute(width, &self.lower.values, &self.inverse, vectors));
+    pub(super) fn solve<const V: usize>(&self, vectors: &mut [[f64; V]]) {
+        if self.lower.width == LEAST {
+            narrow::substitute::<LEAST, V>(&self.lower.values, &self.inverse, vectors);
+        } else {
+            substitute(self.lower.width, &self.lower.values, &self.inverse, vectors);
+        }
     }
 }
 
@@ -125,7 +122,7 @@ fn eliminate(width: usize, matrix: &[f64], lower: &mut [f64], inverse: &mut [f64
 /// Solves with L, D and Lᵀ.
 #[inline(always)]
 fn substitute<const W: usize>(width: usize, lower: &[f64], inverse: &[f64], vectors: &mut [[f64; W]]) {
-    for (row, values) in lower.chunks_exact(width + 1).enumerate() {
+    for (row, values) in lower.chunks_exact(width + 1).take(vectors.len()).enumerate() {
         let (before, mut own) = (row.min(width), vectors[row]);
         for (l, x) in values[width - before..width].iter().zip(&vectors[row - before..row]) {
             (0..W).for_each(|w| own[w] -= l * x[w]);
@@ -135,7 +132,7 @@ fn substitute<const W: usize>(width: usize, lower: &[f64], inverse: &[f64], vect
     for (values, inverse) in vectors.iter_mut().zip(inverse) {
         values.iter_mut().for_each(|value| *value *= inverse);
     }
-    for (row, values) in lower.chunks_exact(width + 1).enumerate().rev() {
+    for (row, values) in lower.chunks_exact(width + 1).take(vectors.len()).enumerate().rev() {
         let (before, own) = (row.min(width), vectors[row]);
         for (x, l) in vectors[row - before..row].iter_mut().zip(&values[width - before..width]) {
             (0..W).for_each(|w| x[w] -= l * own[w]);

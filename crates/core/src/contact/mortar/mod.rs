@@ -22,6 +22,7 @@ mod dual;
 mod facing;
 mod friction;
 mod gram;
+mod narrow;
 mod normal;
 mod partition;
 mod relaxation;
