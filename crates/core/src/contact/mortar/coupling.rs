@@ -1,8 +1,8 @@
 //! The matrices D and M of an instant.
 
-use super::dual::{DualShape, Moments};
+use super::dual::{DualShape, Moments, covers};
 use super::normal::largest;
-use super::partition::{Segment, place, segments};
+use super::partition::{PlacedEdge, Segment, place, segments};
 use super::rows::Rows;
 use super::side::{Part, Side};
 
@@ -23,8 +23,8 @@ pub struct Coupling {
     shifts: Vec<f64>,
     /// For each part of the slave, ξ of the nodes of the master (m), as that of this part in the undeformed mesh.
     places: Vec<f64>,
-    /// For each part of the slave, 1 over the length of each edge of the master (1/m).
-    inverse: Vec<f64>,
+    /// The edges of the master at the places for the last part.
+    edges: Vec<PlacedEdge>,
     /// Number of nodes of the master.
     masters: usize,
     /// Rows of D: the values at the node before, at the node and at the node after it.
@@ -44,11 +44,7 @@ impl Coupling {
         self.masters = master.len();
         for (part, &shift) in slave.parts().iter().zip(shifts) {
             self.cut((slave, part), master, shift, tolerance);
-        }
-        self.before.push(self.segments.len());
-        self.rows.open();
-        for (index, part) in slave.parts().iter().enumerate() {
-            part.edges.clone().for_each(|edge| self.add_edge((index, edge), slave, master));
+            part.edges.clone().for_each(|edge| self.add_edge(slave, edge));
         }
         self.weights.extend(self.slave.iter().map(|row| row[0] + row[1] + row[2]));
         self.least = LEAST_WEIGHT * largest(self.weights.iter().copied());
@@ -57,88 +53,86 @@ impl Coupling {
     fn clear(&mut self, multipliers: usize) {
         self.segments.clear();
         self.before.clear();
+        self.before.push(0);
         self.shapes.clear();
         self.shifts.clear();
         self.places.clear();
-        self.inverse.clear();
         self.slave.clear();
         self.slave.resize(multipliers, [0.0; 3]);
         self.rows.reset(multipliers);
         self.weights.clear();
     }
 
-    /// Finds the segments of a part of the slave. The multipliers of both nodes of an edge act on all nodes of the
-    /// master with a segment on it.
+    /// Finds the segments of a part of the slave.
     fn cut(&mut self, (slave, part): (&Side, &Part), master: &Side, shift: f64, tolerance: f64) {
         let start = self.places.len();
         place((slave, part), master, shift, tolerance, &mut self.places);
-        let (places, edges) = (&self.places[start..], master.edges());
-        self.inverse.extend(edges.iter().map(|&first| 1.0 / (places[first + 1] - places[first])));
+        let places = &self.places[start..];
+        self.edges.clear();
+        self.edges.extend(master.edges().iter().map(|&first| PlacedEdge::new(first, places)));
         let mut next = 0;
         for edge in part.edges.clone() {
-            let before = self.segments.len();
-            self.before.push(before);
-            segments((slave, edge), master, places, &mut next, &mut self.segments);
-            if let [low, ..] = self.segments[before..] {
-                let high = self.segments[self.segments.len() - 1];
-                let columns = edges[low.master]..edges[high.master] + 2;
-                let first = slave.edges()[edge];
-                (first..first + 2).for_each(|node| self.rows.widen(node, &columns));
-            }
+            let ends = slave.ends(slave.edges()[edge]);
+            segments((edge, ends), &self.edges, &mut next, &mut self.segments);
+            self.before.push(self.segments.len());
         }
     }
 
     /// Adds one edge of a part of the slave.
-    fn add_edge(&mut self, (part, edge): (usize, usize), slave: &Side, master: &Side) {
-        let (first, inverse) = (slave.edges()[edge], slave.inverse()[edge]);
-        let ends = [slave.xi()[first], slave.xi()[first + 1]];
-        let segments = &self.segments[self.before[edge]..self.before[edge + 1]];
-        let moments = Moments::of(ends, inverse, segments);
-        let shape = moments.shape(ends[1] - ends[0], slave.corners(edge));
-        self.shapes.push(shape);
-        let [one, two] = moments.hats;
-        match shape {
-            DualShape::None => return,
-            DualShape::Both(_) => {
-                self.slave[first][1] += one;
-                self.slave[first + 1][1] += two;
-            }
-            DualShape::Part(hats) => {
-                // Each multiplier stands for one end of the part: ∫ψ_k f = f there times half of the length.
-                let half = 0.5 * moments.covered;
-                self.slave[first][1] += half * (1.0 - hats[0]);
-                self.slave[first][2] += half * hats[0];
-                self.slave[first + 1][0] += half * (1.0 - hats[1]);
-                self.slave[first + 1][1] += half * hats[1];
-            }
-            DualShape::One(0) => {
-                self.slave[first][1] += one;
-                self.slave[first][2] += two;
-            }
-            DualShape::One(_) => {
-                self.slave[first + 1][0] += one;
-                self.slave[first + 1][1] += two;
-            }
+    fn add_edge(&mut self, slave: &Side, edge: usize) {
+        let first = slave.edges()[edge];
+        let (ends, segments) = (slave.ends(first), self.segments_of(edge));
+        if segments.is_empty() {
+            self.shapes.push(DualShape::None);
+        } else if covers(segments, ends) {
+            let half = 0.5 * (ends[1] - ends[0]);
+            self.slave[first][1] += half;
+            self.slave[first + 1][1] += half;
+            self.shapes.push(DualShape::WHOLE);
+            self.add_master(slave, edge, DualShape::WHOLE_LINES);
+        } else {
+            self.add_cut(slave, edge);
         }
-        let places = &self.places[part * self.masters..][..self.masters];
-        let inverses = &self.inverse[part * master.edges().len()..][..master.edges().len()];
-        let ([lines, after_lines], [(own, row), (after, after_row)]) = (shape.lines(), self.rows.pair_mut(first));
-        for &Segment { master: other, ends: [from, to], .. } in segments {
-            let low = master.edges()[other];
-            let (place, scale) = (places[low], inverses[other]);
-            let hat = [(from - place) * scale, (to - place) * scale];
-            let second = [(from - ends[0]) * inverse, (to - ends[0]) * inverse];
+    }
+
+    /// Adds an edge of which the master covers a part.
+    #[cold]
+    fn add_cut(&mut self, slave: &Side, edge: usize) {
+        let first = slave.edges()[edge];
+        let ends = slave.ends(first);
+        let moments = Moments::of(ends, slave.inverse()[edge], self.segments_of(edge));
+        let shape = moments.shape(ends[1] - ends[0], slave.corners(edge));
+        if let [one, two] = &mut self.slave[first..first + 2] {
+            moments.add(shape, one, two);
+        }
+        self.shapes.push(shape);
+        self.add_master(slave, edge, shape.lines());
+    }
+
+    /// Adds ∫ψN over the segments of an edge, with these ψ. The multipliers of both of its nodes act on all nodes of
+    /// the master with a segment on it.
+    #[inline]
+    fn add_master(&mut self, slave: &Side, edge: usize, lines: [[f64; 2]; 2]) {
+        let (first, inverse) = (slave.edges()[edge], slave.inverse()[edge]);
+        let (start, segments) = (slave.xi()[first], &self.segments[self.before[edge]..self.before[edge + 1]]);
+        let [Some(low), Some(high)] = [segments.first(), segments.last()] else { return };
+        let columns = self.edges[low.master].first..self.edges[high.master].first + 2;
+        let (values, rows) = self.rows.widen(first, columns);
+        for segment in segments {
+            let [from, to] = segment.ends;
+            let other = &self.edges[segment.master];
+            let hat = [from, to].map(|xi| (xi - other.ends[0]) * other.inverse);
+            let second = [from, to].map(|xi| (xi - start) * inverse);
             // Both factors are linear: Simpson's rule is exact.
             let sixth = (to - from) * (1.0 / 6.0);
             let upper = [sixth * (2.0 * hat[0] + hat[1]), sixth * (hat[0] + 2.0 * hat[1])];
             let lower = upper.map(|upper| 3.0 * sixth - upper);
-            let add = |values: &mut [f64], [start, slope]: [f64; 2]| {
-                let [f, g] = second.map(|second| start + slope * second);
-                values[0] += lower[0] * f + lower[1] * g;
-                values[1] += upper[0] * f + upper[1] * g;
-            };
-            add(&mut row[low - own..][..2], lines);
-            add(&mut after_row[low - after..][..2], after_lines);
+            let dual = lines.map(|[start, slope]| second.map(|second| start + slope * second));
+            for (column, hat) in [(other.first, lower), (other.first + 1, upper)] {
+                for (row, dual) in rows.iter().zip(&dual) {
+                    values[row.wrapping_add(column)] += hat[0] * dual[0] + hat[1] * dual[1];
+                }
+            }
         }
     }
 
@@ -220,9 +214,15 @@ impl Coupling {
         &self.rows
     }
 
+    /// A smaller value of a multiplier at a node of the master is rounding (m).
+    #[inline]
+    pub(super) fn least_part(&self, node: usize) -> f64 {
+        LEAST_PART * self.weights[node]
+    }
+
     /// The nodes of the master on which a multiplier acts, but for rounding.
     pub(super) fn acts_on(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
-        let ((first, row), least) = (self.master_row(node), LEAST_PART * self.weights[node]);
+        let ((first, row), least) = (self.master_row(node), self.least_part(node));
         row.iter().enumerate().filter(move |(_, value)| value.abs() > least).map(move |(at, _)| first + at)
     }
 

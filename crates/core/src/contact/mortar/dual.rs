@@ -25,9 +25,9 @@ const SHORT_PART: f64 = 1.0 / 16.0;
 /// ∫φ_i and ∫φ_2² over the covered part of an edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moments {
-    pub(super) hats: [f64; 2],
+    hats: [f64; 2],
     square: f64,
-    pub(super) covered: f64,
+    covered: f64,
     /// φ_2 at the ends of what is covered.
     ends: [f64; 2],
     /// Whether there is no hole in it.
@@ -37,11 +37,6 @@ pub(super) struct Moments {
 impl Moments {
     /// Over segments of an edge from `ends[0]` to `ends[1]`, of which `inverse` is 1 over the length.
     pub(super) fn of(ends: [f64; 2], inverse: f64, segments: &[Segment]) -> Self {
-        if covers(segments, ends) {
-            let length = ends[1] - ends[0];
-            let hats = [0.5 * length; 2];
-            return Self { hats, square: length / 3.0, covered: length, ends: [0.0, 1.0], joined: true };
-        }
         let (mut second, mut square, mut covered) = (0.0, 0.0, 0.0);
         let hat = |xi: f64| if xi == ends[1] { 1.0 } else { (xi - ends[0]) * inverse };
         for segment in segments {
@@ -56,6 +51,36 @@ impl Moments {
         Self { hats: [covered - second, second], square, covered, ends: part, joined: is_joined(segments) }
     }
 
+    /// Adds ∫ψφ, with these shape functions on the edge, to the rows of its nodes: the values at the node before, at
+    /// the node and at the node after it.
+    #[inline]
+    pub(super) fn add(&self, shape: DualShape, first: &mut [f64; 3], second: &mut [f64; 3]) {
+        let [one, two] = self.hats;
+        match shape {
+            DualShape::None => (),
+            DualShape::Both(_) => {
+                first[1] += one;
+                second[1] += two;
+            }
+            DualShape::Part(hats) => {
+                // Each multiplier stands for one end of the part: ∫ψ_k f = f there times half of the length.
+                let half = 0.5 * self.covered;
+                first[1] += half * (1.0 - hats[0]);
+                first[2] += half * hats[0];
+                second[0] += half * (1.0 - hats[1]);
+                second[1] += half * hats[1];
+            }
+            DualShape::One(0) => {
+                first[1] += one;
+                first[2] += two;
+            }
+            DualShape::One(_) => {
+                second[0] += one;
+                second[1] += two;
+            }
+        }
+    }
+
     /// The shape functions on an edge of this length, and whether its nodes are corners.
     pub(super) fn shape(&self, length: f64, corners: [bool; 2]) -> DualShape {
         let Self { hats: [first, second], square, covered, ends, joined } = *self;
@@ -63,7 +88,7 @@ impl Moments {
             return DualShape::None;
         }
         if covered == length {
-            return DualShape::Both([[2.0, -1.0], [-1.0, 2.0]]);
+            return DualShape::WHOLE;
         }
         let from_corner = (corners[0] && ends[0] == 0.0) || (corners[1] && ends[1] == 1.0);
         if joined && from_corner && covered > SHORT_PART * length {
@@ -83,7 +108,8 @@ impl Moments {
 }
 
 /// Whether segments cover all between two ends.
-fn covers(segments: &[Segment], ends: [f64; 2]) -> bool {
+#[inline]
+pub(super) fn covers(segments: &[Segment], ends: [f64; 2]) -> bool {
     let [Some(first), Some(last)] = [segments.first(), segments.last()] else { return false };
     first.ends[0] == ends[0] && last.ends[1] == ends[1] && is_joined(segments)
 }
@@ -94,6 +120,11 @@ fn is_joined(segments: &[Segment]) -> bool {
 }
 
 impl DualShape {
+    /// That of an edge of which all is covered: ∫ψφ is half of its length at each node.
+    pub(super) const WHOLE: Self = Self::Both([[2.0, -1.0], [-1.0, 2.0]]);
+    /// Its [lines](Self::lines).
+    pub(super) const WHOLE_LINES: [[f64; 2]; 2] = [[2.0, -3.0], [-1.0, 3.0]];
+
     /// ψ of both nodes where the second hat is 0, and by how much it grows until the second hat is 1.
     #[inline]
     pub(super) fn lines(&self) -> [[f64; 2]; 2] {

@@ -19,19 +19,35 @@ pub(super) fn gram(matrix: &mut Band, coupling: &Coupling, inverse: [&[f64]; 2],
 fn fill_short(matrix: &mut Band, coupling: &Coupling, inverse: [&[f64]; 2]) {
     let (rows, width) = (coupling.master(), matrix.width());
     for (row, sums) in matrix.rows_mut().enumerate() {
-        let begin = row.saturating_sub(width);
-        // A row of M m'⁻¹ between zeros.
-        let (mut window, (low, values)) = ([0.0; 3 * SHORT], rows.row(row));
-        let scaled = window[SHORT..].iter_mut().zip(values).zip(&inverse[1][low..]);
-        scaled.for_each(|((scaled, value), inverse)| *scaled = value * inverse);
-        for (sum, (other_low, other)) in sums[begin + width - row..].iter_mut().zip(rows.short(begin..=row)) {
-            let common = window.get((SHORT + other_low).wrapping_sub(low)..).and_then(|window| window.first_chunk());
-            if let Some::<&[f64; SHORT]>(common) = common {
-                let [a, b, c, d] = std::array::from_fn(|at| common[at] * other[at]);
-                *sum = (a + c) + (b + d);
+        let (low, values) = rows.short(row);
+        let scaled = scaled(values, &inverse[1][low..]);
+        let before = row.min(width);
+        for (other, sum) in (row - before..).zip(&mut sums[width - before..]) {
+            if let Some(other) = rows.from(other, low) {
+                *sum = product(&scaled, other);
+            } else if rows.columns(other).start > low {
+                // Of another body.
+                let (first, other) = rows.short(other);
+                let scaled = |at: usize| scaled.get(first - low + at).copied().unwrap_or(0.0);
+                *sum = product(&std::array::from_fn(scaled), other);
             }
         }
         add_slave(sums, coupling, row, inverse[0]);
+    }
+}
+
+#[inline]
+fn product(a: &[f64; SHORT], b: &[f64; SHORT]) -> f64 {
+    let [first, second, third, fourth] = std::array::from_fn(|at| a[at] * b[at]);
+    (first + third) + (second + fourth)
+}
+
+/// A row of M m'⁻¹, whose last places may be beyond the last node.
+#[inline]
+fn scaled(values: &[f64; SHORT], inverse: &[f64]) -> [f64; SHORT] {
+    match inverse.first_chunk::<SHORT>() {
+        Some(inverse) => std::array::from_fn(|at| values[at] * inverse[at]),
+        None => std::array::from_fn(|at| inverse.get(at).map_or(0.0, |inverse| values[at] * inverse)),
     }
 }
 
@@ -57,8 +73,14 @@ fn fill(matrix: &mut Band, coupling: &Coupling, inverse: [&[f64]; 2], window: &m
 }
 
 /// Adds a row of D m⁻¹ Dᵀ.
+#[inline]
 fn add_slave(sums: &mut [f64], coupling: &Coupling, row: usize, inverse: &[f64]) {
-    let (own, last) = (coupling.slave_row(row), sums.len() - 1);
+    let (own, before, last) = (coupling.slave_row(row), coupling.slave_row(row.saturating_sub(1)), sums.len() - 1);
+    if own[0] == 0.0 && own[2] == 0.0 && before[2] == 0.0 {
+        // No cut edge is near.
+        sums[last] += own[1] * own[1] * inverse[row];
+        return;
+    }
     let mut add = |apart: usize, product: f64, node: usize| {
         if product != 0.0 {
             sums[last - apart] += product * inverse[node];
@@ -68,7 +90,6 @@ fn add_slave(sums: &mut [f64], coupling: &Coupling, row: usize, inverse: &[f64])
     add(0, own[0] * own[0], row.wrapping_sub(1));
     add(0, own[2] * own[2], row + 1);
     if row > 0 {
-        let before = coupling.slave_row(row - 1);
         add(1, own[0] * before[1], row - 1);
         add(1, own[1] * before[2], row);
     }
@@ -80,27 +101,21 @@ fn add_slave(sums: &mut [f64], coupling: &Coupling, row: usize, inverse: &[f64])
 /// How far from the diagonal A has entries.
 fn width(coupling: &Coupling) -> usize {
     // Where edges are cut, D joins nodes up to two apart.
-    let (mut width, mut first, mut last) = (2, 0, 0);
+    let (mut width, mut first, mut last, rows) = (2, 0, 0, coupling.master());
     for row in 0..coupling.len() {
-        let (low, values) = coupling.master_row(row);
-        if values.is_empty() {
+        let columns = rows.columns(row);
+        if columns.is_empty() {
             continue;
         }
         // Another body may begin before the end of the last one.
-        if low < last {
+        if columns.start < last {
             first = 0;
         }
-        last = low;
-        while first + width < row && !reaches(coupling, first, low) {
+        last = columns.start;
+        while first + width < row && rows.columns(first).end <= columns.start {
             first += 1;
         }
         width = width.max(row - first);
     }
     width
-}
-
-/// Whether a row of M has columns from this one on.
-fn reaches(coupling: &Coupling, row: usize, column: usize) -> bool {
-    let (first, values) = coupling.master_row(row);
-    first + values.len() > column
 }

@@ -1,16 +1,15 @@
 //! Matrices whose rows have consecutive columns.
 
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 
 /// A row has room for so many values at least: most surfaces need no more.
 pub(super) const SHORT: usize = 4;
 
-/// A matrix with few values in a row, side by side: in memory at hand, made anew in three stages. All rows are
-/// [widened](Rows::widen), then [opened](Rows::open), then [filled](Rows::pair_mut).
+/// A matrix with few values in a row, side by side: in memory at hand. Rows get columns in ascending order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Rows {
     rows: Vec<Row>,
-    /// Room that is left has zeros.
+    /// Zeros of rows without columns, then the values of the others, each with [`SHORT`] zeros behind at least.
     values: Vec<f64>,
     /// The most values of a row, at least [`SHORT`].
     longest: usize,
@@ -29,40 +28,31 @@ impl Rows {
     pub(super) fn reset(&mut self, count: usize) {
         self.rows.clear();
         self.rows.resize(count, Row::default());
-    }
-
-    /// A row gets these columns, too: none of them is before its first one, and the last of them is not before its last
-    /// one.
-    #[inline]
-    pub(super) fn widen(&mut self, row: usize, columns: &Range<usize>) {
-        let row = &mut self.rows[row];
-        if row.end == 0 {
-            row.first = columns.start;
-        }
-        row.end = columns.end;
-    }
-
-    /// All values are 0.
-    pub(super) fn open(&mut self) {
-        let mut room = 0;
-        self.longest = SHORT;
-        for row in &mut self.rows {
-            row.start = room;
-            let length = row.end - row.first;
-            self.longest = self.longest.max(length);
-            room += length.max(SHORT);
-        }
         self.values.clear();
-        self.values.resize(room, 0.0);
+        self.values.extend_from_slice(&[0.0; 2 * SHORT]);
+        self.longest = SHORT;
     }
 
-    /// The first columns of a row and of the one after it, and the values from there on: those of the first up to the
-    /// second, and those of the second up to the end of all.
+    /// A row and the one after it get these columns, too, with zeros: none of them is before their first one, and the
+    /// last of them is not before their last one. Later rows have none yet. Gives the values of all rows, and where
+    /// column 0 of both rows would be among them, modulo 2⁶⁴.
     #[inline]
-    pub(super) fn pair_mut(&mut self, row: usize) -> [(usize, &mut [f64]); 2] {
-        let [own, after] = [self.rows[row], self.rows[row + 1]];
-        let (before, rest) = self.values.split_at_mut(after.start);
-        [(own.first, &mut before[own.start..]), (after.first, rest)]
+    pub(super) fn widen(&mut self, row: usize, columns: Range<usize>) -> (&mut [f64], [usize; 2]) {
+        let places = [row, row + 1].map(|row| {
+            let row = &mut self.rows[row];
+            if row.end == 0 {
+                (row.first, row.start) = (columns.start, self.values.len());
+                self.values.extend_from_slice(&[0.0; 2 * SHORT]);
+            }
+            row.end = columns.end;
+            let length = row.end - row.first;
+            if length > SHORT {
+                self.values.resize(row.start + length + SHORT, 0.0);
+                self.longest = self.longest.max(length);
+            }
+            row.start.wrapping_sub(row.first)
+        });
+        (&mut self.values, places)
     }
 
     /// The first column of a row, and its values.
@@ -72,11 +62,25 @@ impl Rows {
         (first, &self.values[start..][..end - first])
     }
 
-    /// The same of some rows with zeros behind, if no row is longer.
+    /// The first column of a row, and its values with zeros behind, if no row is longer.
     #[inline]
-    pub(super) fn short(&self, rows: RangeInclusive<usize>) -> impl Iterator<Item = (usize, &[f64; SHORT])> {
-        let (values, _) = self.values.as_chunks();
-        self.rows[rows.clone()].iter().map(|row| row.first).zip(&values[rows])
+    pub(super) fn short(&self, row: usize) -> (usize, &[f64; SHORT]) {
+        let Row { first, start, .. } = self.rows[row];
+        (first, &self.values.as_chunks().0[start / SHORT])
+    }
+
+    /// So many values of a row from a column on, with zeros beyond: none if the row begins after it, or so far before.
+    #[inline]
+    pub(super) fn from(&self, row: usize, column: usize) -> Option<&[f64; SHORT]> {
+        let Row { first, start, .. } = self.rows[row];
+        let skipped = column.wrapping_sub(first);
+        if skipped < SHORT { self.values[start + skipped..].first_chunk() } else { None }
+    }
+
+    /// The columns of a row.
+    #[inline]
+    pub(super) fn columns(&self, row: usize) -> Range<usize> {
+        self.rows[row].first..self.rows[row].end
     }
 
     /// The most values of a row, at least [`SHORT`].

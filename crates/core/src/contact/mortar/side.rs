@@ -157,6 +157,12 @@ impl Side {
         &self.edges
     }
 
+    /// ξ of both ends of the edge with this first node (m).
+    #[inline]
+    pub(super) fn ends(&self, first: usize) -> [f64; 2] {
+        [self.xi[first], self.xi[first + 1]]
+    }
+
     /// 1 over the length of each edge along ξ (1/m).
     #[inline]
     pub(super) fn inverse(&self) -> &[f64] {

@@ -288,6 +288,33 @@ proptest! {
     }
 }
 
+/// The matrix of two bodies side by side, of which each moves in its own way, until both have segments on the same
+/// edges of the master and the second one begins before the end of the first one.
+#[test]
+fn the_matrix_of_two_bodies() {
+    let xi = [0.0, 0.9, 1.7, 2.0, 2.1, 3.0, 4.0, 4.2];
+    let slave = Side::new(0, [xi.to_vec(), vec![0.0; 8]], vec![0, 1, 2, 4, 5, 6], &[0, 4]);
+    for (edges, count) in [(1.1, 5), (0.3, 16)] {
+        let master = side(&(0..count).map(|k| edges * f64::from(k)).collect::<Vec<_>>());
+        for shift in [0.0, -0.3, -0.7, -1.2] {
+            let mut coupling = Coupling::default();
+            coupling.update([&slave, &master], &[0.1, shift], ONE_PLACE);
+            let inverse = [&slave, &master].map(|side| side.xi().iter().map(|xi| 1.0 + 0.3 * xi).collect::<Vec<_>>());
+            let inverse = inverse.each_ref().map(|m| &m[..]);
+            let mut matrix = Band::default();
+            gram(&mut matrix, &coupling, inverse, &mut Vec::new());
+            let full = dense(&coupling, inverse);
+            for (k, row) in full.iter().enumerate() {
+                for (l, value) in row.iter().enumerate() {
+                    let unit: Vec<f64> = (0..slave.len()).map(|at| f64::from(u8::from(at == l))).collect();
+                    // Of numbers of order 1.
+                    assert!((matrix.product(k, &unit) - value).abs() < 1e-15, "{edges} {shift} {k} {l}");
+                }
+            }
+        }
+    }
+}
+
 /// The work of a step, on surfaces of 20 to 320 edges: entries of a row do not depend on the number of rows, and both
 /// active sets settle in a few rounds, whatever sticks, slips and opens.
 #[test]
