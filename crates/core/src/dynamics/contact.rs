@@ -62,10 +62,7 @@ impl<const D: usize> Contact<D> {
         self.touching_next.fill(false);
         self.reaction.fill([0.0; D]);
         for sliding in &mut self.sliding {
-            sliding.react(problem.surface(), &prediction, |at, force| match force {
-                Some(force) => self.reaction[at] = force,
-                None => self.touching_next[at] = true,
-            });
+            sliding.react(problem.surface(), &prediction, &mut self.reaction, &mut self.touching_next);
         }
         solve(&self.constraints, steps, problem.contact_tolerance(), |at, reaction| {
             let nodes = problem.surface().nodes();

@@ -43,11 +43,9 @@ impl FrictionProblem {
         self.clear(limit.len());
         self.slips.clear();
         self.slips.resize(pressed.len(), 0.0);
-        if !sticking.is_empty() {
+        if !sticking.is_empty() && !slip(&mut self.slips, |k| sticking[k][1], limit, pressed) {
             pressed.iter().for_each(|&k| self.force[k] = sticking[k][1]);
-            if !self.slip(limit, pressed) {
-                return 0;
-            }
+            return 0;
         }
         let bound = RESIDUAL * largest(pressed.iter().map(|&k| right(k).abs()));
         for round in 1..=ROUNDS {
@@ -103,18 +101,21 @@ impl FrictionProblem {
             }
         }
         // Those that have just come to stick have forces at their limits, not beyond.
-        self.slip(limit, pressed) || changed
+        let Self { slips, force, .. } = self;
+        slip(slips, |k| force[k], limit, pressed) || changed
     }
+}
 
-    /// What sticks beyond its limit slips. Whether anything does.
-    fn slip(&mut self, limit: &[f64], pressed: &[usize]) -> bool {
-        let mut changed = false;
-        for (&k, slips) in pressed.iter().zip(&mut self.slips).filter(|(_, slips)| **slips == 0.0) {
-            if self.force[k].abs() > limit[k] {
-                *slips = self.force[k].signum();
-                changed = true;
-            }
+/// What sticks with a force beyond its limit slips. Whether anything does.
+#[inline]
+fn slip(slips: &mut [f64], force: impl Fn(usize) -> f64, limit: &[f64], pressed: &[usize]) -> bool {
+    let mut changed = false;
+    for (&k, slips) in pressed.iter().zip(slips).filter(|(_, slips)| **slips == 0.0) {
+        let force = force(k);
+        if force.abs() > limit[k] {
+            *slips = force.signum();
+            changed = true;
         }
-        changed
     }
+    changed
 }

@@ -129,6 +129,12 @@ impl Side {
         self.start + node
     }
 
+    /// The positions of all nodes in the contact surface.
+    #[inline]
+    pub(super) fn positions(&self) -> Range<usize> {
+        self.start..self.start + self.len()
+    }
+
     /// The node at a position in the contact surface, if it is of this side.
     #[inline]
     #[must_use]

@@ -74,25 +74,31 @@ impl State {
         }
     }
 
-    /// The motion of a step without contact.
-    fn predict<const D: usize>(
-        &mut self,
-        side: &Side,
-        (normal, tangent): (&[f64; D], &[f64; D]),
-        prediction: &Prediction<'_, D>,
-    ) {
-        let (dt, nodes) = (prediction.steps[0], &prediction.nodes[side.position(0)..]);
+    /// The motion of a step without contact, with the normal and the tangent as axes.
+    fn predict<const D: usize>(&mut self, side: &Side, axes: [&[f64; D]; 2], prediction: &Prediction<'_, D>) {
+        let (dt, nodes) = (prediction.steps[0], &prediction.nodes[side.positions()]);
         let [mut low, mut high] = [f64::INFINITY, f64::NEG_INFINITY];
         let own = self.motion.iter_mut().zip(&mut self.along);
         for ((motion, along), (eta, Predicted { displacement, velocity })) in own.zip(side.eta().iter().zip(nodes)) {
-            let eta = eta + dot(displacement, normal) + dt * dot(velocity, normal);
-            let speed = dot(velocity, tangent);
+            let [normal, tangential] = axes.map(|axis| [dot(displacement, axis), dot(velocity, axis)]);
+            let eta = eta + normal[0] + dt * normal[1];
             low = if eta < low { eta } else { low };
             high = if eta > high { eta } else { high };
-            *motion = [eta, speed];
-            *along = dot(displacement, tangent) + dt * speed;
+            *motion = [eta, tangential[1]];
+            *along = tangential[0] + dt * tangential[1];
         }
         self.range = [low, high];
+    }
+
+    /// Sets the forces in global axes (N) where they are not 0.
+    fn act<const D: usize>(&self, [normal, tangent]: [&[f64; D]; 2], reaction: &mut [[f64; D]]) {
+        let forces = self.force.iter().zip(&self.guided);
+        for (reaction, (&[press, along], guided)) in reaction.iter_mut().zip(forces) {
+            if press != 0.0 || along != 0.0 {
+                let along = if *guided { 0.0 } else { along };
+                *reaction = std::array::from_fn(|c| press * normal[c] + along * tangent[c]);
+            }
+        }
     }
 }
 
@@ -118,35 +124,28 @@ impl SlidingContact {
         }
     }
 
-    /// Hands on the forces of a step on nodes of the contact surface (N), and then, without a force, the nodes that
-    /// touch at t_{n+1}.
+    /// Sets the forces of a step on nodes of the contact surface (N), where they are not 0, and marks those that touch
+    /// at t_{n+1}.
     pub(crate) fn react<const D: usize>(
         &mut self,
         surface: &ContactSurface<D>,
         prediction: &Prediction<'_, D>,
-        mut act: impl FnMut(usize, Option<[f64; D]>),
+        reaction: &mut [[f64; D]],
+        touching: &mut [bool],
     ) {
         let sliding = &surface.sliding()[self.index];
-        let (normal, tangent) = (sliding.frame().normal(), sliding.tangent());
-        for (state, side) in self.sides.iter_mut().zip([sliding.slave(), sliding.master()]) {
-            state.predict(side, (normal, tangent), prediction);
+        let (sides, axes) = ([sliding.slave(), sliding.master()], [sliding.frame().normal(), sliding.tangent()]);
+        for (state, side) in self.sides.iter_mut().zip(sides) {
+            state.predict(side, axes, prediction);
         }
         self.touches = self.is_touched(sliding, prediction);
         if !self.touches {
             return;
         }
         self.solve(sliding);
-        self.add_up();
-        for (state, side) in self.sides.iter().zip([sliding.slave(), sliding.master()]) {
-            for (node, &[press, along]) in state.force.iter().enumerate().filter(|(_, force)| **force != [0.0; 2]) {
-                let along = if state.guided[node] { 0.0 } else { along };
-                let force = std::array::from_fn(|c| press * normal[c] + along * tangent[c]);
-                act(side.position(node), Some(force));
-            }
-        }
-        for &k in self.normal.pressed() {
-            act(sliding.slave().position(k), None);
-            self.coupling.acts_on(k).for_each(|node| act(sliding.master().position(node), None));
+        self.add_up(touching, sides);
+        for (state, side) in self.sides.iter().zip(sides) {
+            state.act(axes, &mut reaction[side.positions()]);
         }
     }
 
@@ -194,19 +193,32 @@ impl SlidingContact {
         friction.solve(matrix, |k| right[k][1], &self.limit, (normal.pressed(), normal.sticking()));
     }
 
-    /// Forces Dᵀλ on the slave and −Mᵀλ on the master.
-    fn add_up(&mut self) {
+    /// Forces Dᵀλ on the slave and −Mᵀλ on the master. Marks the nodes on which multipliers act, of the master but for
+    /// rounding.
+    fn add_up(&mut self, touching: &mut [bool], [own, other]: [&Side; 2]) {
         let Self { coupling, sides: [slave, master], normal, friction, .. } = self;
         slave.force.fill([0.0; 2]);
         master.force.fill([0.0; 2]);
         for &k in normal.pressed() {
             let multipliers = [normal.force()[k], friction.force()[k]];
             let add = |force: &mut [f64; 2], part: f64| (0..2).for_each(|c| force[c] += part * multipliers[c]);
-            for (at, part) in coupling.slave_row(k).into_iter().enumerate().filter(|(_, part)| *part != 0.0) {
-                add(&mut slave.force[k + at - 1], part);
+            touching[own.position(k)] = true;
+            let [before, here, after] = coupling.slave_row(k);
+            add(&mut slave.force[k], here);
+            if before != 0.0 {
+                add(&mut slave.force[k - 1], before);
             }
-            let (first, row) = coupling.master_row(k);
-            row.iter().zip(&mut master.force[first..]).for_each(|(part, force)| add(force, -part));
+            if after != 0.0 {
+                add(&mut slave.force[k + 1], after);
+            }
+            let ((first, row), least) = (coupling.master_row(k), coupling.least_part(k));
+            let nodes = row.iter().zip(&mut master.force[first..]).zip(&mut touching[other.position(first)..]);
+            for ((part, force), touches) in nodes {
+                add(force, -part);
+                if part.abs() > least {
+                    *touches = true;
+                }
+            }
         }
     }
 
@@ -222,7 +234,7 @@ impl SlidingContact {
         }
         let sliding = &surface.sliding()[self.index];
         for (state, side) in self.sides.iter().zip([sliding.slave(), sliding.master()]) {
-            for (&node, reaction) in state.nodes.iter().zip(&reaction[side.position(0)..]) {
+            for (&node, reaction) in state.nodes.iter().zip(&reaction[side.positions()]) {
                 (0..D).for_each(|c| force[node][c] += reaction[c]);
             }
         }
