@@ -52,6 +52,12 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         self.mesh.facet_normal(facet).1 * (self.law)(facet).extent()
     }
 
+    /// ρc² of the element at a facet, times its section or thickness (Pa·m in the plane).
+    pub(super) fn stiffness(&self, facet: FacetId) -> f64 {
+        let law = (self.law)(facet);
+        law.density() * law.wave_speed() * law.wave_speed() * law.extent()
+    }
+
     /// Both sides of an interface, which are of different bodies with one hypothesis. Of surfaces that slide, one side
     /// may be of several bodies.
     pub(super) fn sides(&self, interface: &Interface) -> Result<[Side<D>; 2], Cause> {

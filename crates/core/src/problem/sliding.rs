@@ -78,6 +78,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let chains = self.chains(side, |node| dot(&from_origin(node), &along))?;
         let (start, obstacle) = (surface.nodes().len(), surface.obstacles().len());
         let (mut nodes, mut xi, mut edges, mut facets) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut compliance = Vec::new();
         let mut starts = Vec::with_capacity(chains.len());
         for chain in chains {
             starts.push(nodes.len());
@@ -90,6 +91,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
                 nodes.push(ends[1].1);
                 xi.push(ends[1].0);
                 edges.push(first);
+                compliance.push(1.0 / self.stiffness(facet));
                 let nodes = self.mesh.facets()[facet.index()].nodes.map(|node| first + usize::from(node == ends[1].1));
                 facets.push(ContactFacet { facet, nodes, area: self.area(facet), obstacle });
             }
@@ -112,7 +114,8 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let fastest = velocity.iter().fold(0.0_f64, |most, v| most.max(dot(v, v).sqrt()));
         let velocity: Vec<f64> = velocity.iter().map(|velocity| dot(velocity, &along)).collect();
         surface.add(facing, contacts, facets);
-        Ok(Line::new(start, [xi, eta], edges, &starts).held(&velocity, &steady, ONE_SPEED * fastest))
+        let line = Line::new(start, [xi, eta], edges, &starts).held(&velocity, &steady, ONE_SPEED * fastest);
+        Ok(line.with_compliance(compliance))
     }
 
     /// The facets of each body of a side, of bodies in ascending order of their first ξ.

@@ -32,6 +32,15 @@ impl Band {
         self.values.chunks_exact_mut(self.width + 1)
     }
 
+    /// Adds a multiple of the square of the difference between an entry of a vector and the next one.
+    pub(super) fn add_difference(&mut self, row: usize, factor: f64) {
+        let size = self.width + 1;
+        let (own, next) = (row * size + self.width, (row + 1) * size + self.width);
+        self.values[own] += factor;
+        self.values[next] += factor;
+        self.values[next - 1] -= factor;
+    }
+
     #[inline]
     pub(super) fn diagonal(&self, row: usize) -> f64 {
         self.values[row * (self.width + 1) + self.width]

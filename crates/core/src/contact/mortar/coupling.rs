@@ -1,7 +1,9 @@
 //! The matrices D and M of an instant.
 
+use super::band::Band;
 use super::dual::{DualShape, Moments, covers};
 use super::normal::largest;
+use super::onset::Onset;
 use super::partition::{PlacedEdge, Segment, place, segments};
 use super::rows::Rows;
 use super::side::{Part, Side};
@@ -33,6 +35,7 @@ pub struct Coupling {
     rows: Rows,
     weights: Vec<f64>,
     least: f64,
+    onsets: Vec<Onset>,
 }
 
 impl Coupling {
@@ -44,7 +47,7 @@ impl Coupling {
         self.masters = master.len();
         for (part, &shift) in slave.parts().iter().zip(shifts) {
             self.cut((slave, part), master, shift, tolerance);
-            part.edges.clone().for_each(|edge| self.add_edge(slave, edge));
+            part.edges.clone().for_each(|edge| self.add_edge([slave, master], edge));
         }
         self.weights.extend(self.slave.iter().map(|row| row[0] + row[1] + row[2]));
         self.least = LEAST_WEIGHT * largest(self.weights.iter().copied());
@@ -61,6 +64,7 @@ impl Coupling {
         self.slave.resize(multipliers, [0.0; 3]);
         self.rows.reset(multipliers);
         self.weights.clear();
+        self.onsets.clear();
     }
 
     /// Finds the segments of a part of the slave.
@@ -79,7 +83,7 @@ impl Coupling {
     }
 
     /// Adds one edge of a part of the slave.
-    fn add_edge(&mut self, slave: &Side, edge: usize) {
+    fn add_edge(&mut self, [slave, master]: [&Side; 2], edge: usize) {
         let first = slave.edges()[edge];
         let (ends, segments) = (slave.ends(first), self.segments_of(edge));
         if segments.is_empty() {
@@ -91,13 +95,13 @@ impl Coupling {
             self.shapes.push(DualShape::WHOLE);
             self.add_master(slave, edge, DualShape::WHOLE_LINES);
         } else {
-            self.add_cut(slave, edge);
+            self.add_cut([slave, master], edge);
         }
     }
 
     /// Adds an edge of which the master covers a part.
     #[cold]
-    fn add_cut(&mut self, slave: &Side, edge: usize) {
+    fn add_cut(&mut self, [slave, master]: [&Side; 2], edge: usize) {
         let first = slave.edges()[edge];
         let ends = slave.ends(first);
         let moments = Moments::of(ends, slave.inverse()[edge], self.segments_of(edge));
@@ -106,6 +110,10 @@ impl Coupling {
             moments.add(shape, one, two);
         }
         self.shapes.push(shape);
+        if let DualShape::Part(part) = shape {
+            let onset = Onset::new((slave, edge), (&part, moments.covered()), master, self.segments_of(edge));
+            self.onsets.extend(onset);
+        }
         self.add_master(slave, edge, shape.lines());
     }
 
@@ -134,6 +142,32 @@ impl Coupling {
                 }
             }
         }
+    }
+
+    /// Whether any multiplier sets in.
+    #[inline]
+    pub(super) fn sets_in(&self) -> bool {
+        !self.onsets.is_empty()
+    }
+
+    /// Adds what the conditions give way, times a rate (1/s²), to the matrix of their problem.
+    pub(super) fn soften(&self, matrix: &mut Band, rate: f64) {
+        for (first, compliance) in self.onsets.iter().map(Onset::softens) {
+            matrix.add_difference(first, rate * compliance);
+        }
+    }
+
+    /// Whether a multiplier acts and does not just set in: its condition is to hold.
+    #[must_use]
+    pub fn binds(&self, node: usize) -> bool {
+        self.is_active(node) && self.onsets.iter().all(|onset| onset.late() != node)
+    }
+
+    /// How far the condition of a node gives way under these multipliers (N/m), in m²: its weighted gap times w_k is
+    /// not less than minus this.
+    #[must_use]
+    pub fn give(&self, node: usize, multiplier: impl Fn(usize) -> f64) -> f64 {
+        self.onsets.iter().map(|onset| onset.give(node, &multiplier)).sum()
     }
 
     /// Number of multipliers, one for each node of the slave.
@@ -262,20 +296,26 @@ impl Coupling {
     /// act are 0.
     #[must_use]
     pub fn multipliers(&self, force: &[f64]) -> Vec<f64> {
-        let mut rest = force.to_vec();
-        let active = |node: usize| self.is_active(node);
-        // An edge joins two multipliers one way only: no multiplier waits for itself.
-        for node in 1..rest.len() {
-            let after = self.slave[node - 1][2];
-            if after != 0.0 && active(node - 1) {
-                rest[node] -= after * rest[node - 1] / self.slave[node - 1][1];
+        let (mut rest, mut above) = (force.to_vec(), vec![0.0; force.len()]);
+        let joins = |node: usize, part: f64| if self.is_active(node) { part } else { 0.0 };
+        for node in 0..rest.len() {
+            if !self.is_active(node) {
+                rest[node] = 0.0;
+                continue;
+            }
+            let mut pivot = self.slave[node][1];
+            if node > 0 {
+                let before = joins(node - 1, self.slave[node - 1][2]);
+                pivot -= before * above[node - 1];
+                rest[node] -= before * rest[node - 1];
+            }
+            rest[node] /= pivot;
+            if node + 1 < rest.len() {
+                above[node] = joins(node + 1, self.slave[node + 1][0]) / pivot;
             }
         }
-        for node in (0..rest.len()).rev() {
-            if node + 1 < rest.len() && self.slave[node + 1][0] != 0.0 && active(node + 1) {
-                rest[node] -= self.slave[node + 1][0] * rest[node + 1];
-            }
-            rest[node] = if active(node) { rest[node] / self.slave[node][1] } else { 0.0 };
+        for node in (1..rest.len()).rev() {
+            rest[node - 1] -= above[node - 1] * rest[node];
         }
         rest
     }

@@ -13,6 +13,9 @@
 //! the predicted displacements, so that the step is explicit. On matching surfaces D = M is diagonal, and nodes are
 //! pairs.
 //!
+//! Where the end of the master slides along an edge of the slave, the second multiplier of this edge sets in: its
+//! condition gives way, the less the more of the edge is covered.
+//!
 //! Wohlmuth, *A mortar finite element method using dual spaces for the Lagrange multiplier*; the part of an edge that
 //! the other surface covers has a dual basis of its own.
 
@@ -24,6 +27,7 @@ mod friction;
 mod gram;
 mod narrow;
 mod normal;
+mod onset;
 mod partition;
 mod relaxation;
 mod rows;

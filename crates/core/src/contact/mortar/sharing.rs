@@ -6,13 +6,13 @@ use super::gram::gram;
 
 impl Coupling {
     /// The changes of velocity of the nodes of the slave and of the master, by the least kinetic energy, that change
-    /// the values D v − M v' of the multipliers that act by these (m²/s): m⁻¹Dᵀy and −m'⁻¹Mᵀy with A y = `change`.
+    /// the values D v − M v' of the multipliers that bind by these (m²/s): m⁻¹Dᵀy and −m'⁻¹Mᵀy with A y = `change`.
     /// `inverse` has 1/m of the nodes of both (1/kg).
     #[must_use]
     pub fn share(&self, inverse: [&[f64]; 2], change: &[f64]) -> [Vec<f64>; 2] {
         let (mut matrix, mut factors) = (Band::default(), Factors::default());
         gram(&mut matrix, self, inverse, &mut Vec::new());
-        let acting: Vec<bool> = (0..self.len()).map(|k| self.is_active(k)).collect();
+        let acting: Vec<bool> = (0..self.len()).map(|k| self.binds(k)).collect();
         let mut shared = inverse.map(|inverse| vec![0.0; inverse.len()]);
         if !factors.factorise(&matrix, &acting) {
             return shared;

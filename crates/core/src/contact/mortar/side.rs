@@ -23,6 +23,8 @@ pub struct Side {
     inverse: Vec<f64>,
     /// The share of each node in the motion of its part along ξ.
     share: Vec<f64>,
+    /// 1 over the stiffness ρc² of the element at each edge and its thickness (1/(Pa·m)).
+    compliance: Vec<f64>,
 }
 
 /// The part of a surface that belongs to one body.
@@ -56,7 +58,13 @@ impl Side {
         }
         let inverse = edges.iter().map(|&first| 1.0 / (xi[first + 1] - xi[first])).collect();
         let corners = corners([&xi, &eta], &edges);
-        Self { start, parts, xi, eta, corners, edges, inverse, share }
+        let compliance = vec![0.0; edges.len()];
+        Self { start, parts, xi, eta, corners, edges, inverse, share, compliance }
+    }
+
+    /// The same with 1 over the stiffness ρc² of the element at each edge and its thickness (1/(Pa·m)); elsewhere 0.
+    pub(crate) fn with_compliance(self, compliance: Vec<f64>) -> Self {
+        Self { compliance, ..self }
     }
 
     /// The same where supports hold nodes, from the initial velocities along the tangent (m/s). `steady` nodes keep
@@ -173,6 +181,12 @@ impl Side {
     #[inline]
     pub(super) fn inverse(&self) -> &[f64] {
         &self.inverse
+    }
+
+    /// 1 over the stiffness ρc² of the element at an edge and its thickness (1/(Pa·m)).
+    #[inline]
+    pub(super) fn compliance(&self, edge: usize) -> f64 {
+        self.compliance[edge]
     }
 
     /// The motion of a part along ξ, from that of its nodes: the mean by length, or that of nodes that supports hold.

@@ -24,6 +24,8 @@ pub(crate) struct SlidingContact {
     shifts: Vec<f64>,
     coupling: Coupling,
     normal_matrix: Band,
+    /// That of the normal part where multipliers set in.
+    softened: Band,
     /// Another one only if the tangential motion of some node is prescribed.
     tangential_matrix: Option<Band>,
     /// Memory of [`gram`].
@@ -34,6 +36,8 @@ pub(crate) struct SlidingContact {
     limit: Vec<f64>,
     /// b of the normal and of the tangential part, for each multiplier.
     right: Vec<[f64; 2]>,
+    /// 1/(Δt_n h_n) (1/s²), of b over the gap.
+    rate: f64,
     sides: [State; 2],
     touches: bool,
 }
@@ -113,12 +117,14 @@ impl SlidingContact {
             shifts: Vec::new(),
             coupling: Coupling::default(),
             normal_matrix: Band::default(),
+            softened: Band::default(),
             tangential_matrix: guided.then(Band::default),
             window: Vec::new(),
             normal: NormalProblem::default(),
             friction: FrictionProblem::default(),
             limit: Vec::new(),
             right: Vec::new(),
+            rate: 0.0,
             sides,
             touches: false,
         }
@@ -160,6 +166,7 @@ impl SlidingContact {
         sliding.update(coupling, shifts);
         let ([dt, h], mut touches) = (prediction.steps, false);
         let over = [1.0 / (dt * h), 1.0 / h];
+        self.rate = over[0];
         right.clear();
         right.extend((0..coupling.len()).map(|k| {
             let [gap, slip] = coupling.differences(k, &slave.motion, &master.motion);
@@ -171,11 +178,17 @@ impl SlidingContact {
 
     /// Solves for the multipliers.
     fn solve<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>) {
-        let Self { coupling, sides: [slave, master], normal, friction, right, .. } = self;
+        let Self { coupling, sides: [slave, master], normal, friction, right, softened, .. } = self;
         let inverse = |which: usize| [&slave.inverse_mass[which][..], &master.inverse_mass[which][..]];
         let rough = sliding.law().friction() > 0.0;
         gram(&mut self.normal_matrix, coupling, inverse(0), &mut self.window);
-        normal.solve(&self.normal_matrix, right, |k| coupling.is_active(k));
+        let soft = coupling.sets_in();
+        if soft {
+            softened.clone_from(&self.normal_matrix);
+            coupling.soften(softened, self.rate);
+        }
+        let matrix = if soft { &*softened } else { &self.normal_matrix };
+        normal.solve(matrix, right, |k| coupling.is_active(k));
         if !rough {
             friction.clear(coupling.len());
             return;
@@ -190,7 +203,9 @@ impl SlidingContact {
             }
             None => &self.normal_matrix,
         };
-        friction.solve(matrix, |k| right[k][1], &self.limit, (normal.pressed(), normal.sticking()));
+        // The solution with the softened matrix is none of the friction.
+        let sticking = if soft { &[] } else { normal.sticking() };
+        friction.solve(matrix, |k| right[k][1], &self.limit, (normal.pressed(), sticking));
     }
 
     /// Forces Dᵀλ on the slave and −Mᵀλ on the master. Marks the nodes on which multipliers act, of the master but for

@@ -165,48 +165,83 @@ fn one_side_may_be_narrower() {
     assert!(apart.segments().is_empty() && (0..4).all(|k| !apart.is_active(k)));
 }
 
-/// A part of an edge from a corner of the slave on has a multiplier for each of its ends, but for a short part. If less
-/// than half is covered elsewhere, the node inside the overlap has the only one, and in the middle of an edge the
-/// nearer one.
+/// A part of an edge from an end on has a multiplier for each of its ends, a short one only one: of a corner up to a
+/// 16th, elsewhere up to an eighth. In the middle of an edge, half of it has two, and less the one of the nearer node.
 #[test]
 fn an_edge_may_be_covered_in_part() {
-    let slave = side(&[0.0, 1.0, 2.0]);
-    let shape = |from: f64, to: f64| coupling(&slave, &side(&[from, to]), 0.0).shape(0);
-    assert_eq!(shape(0.6, 3.0), DualShape::One(1));
-    assert!(matches!(shape(0.5, 3.0), DualShape::Both(_)));
-    assert_eq!(shape(-1.0, 0.45), DualShape::Part([0.0, 0.45]));
-    assert_eq!(shape(-1.0, 0.05), DualShape::One(0));
-    let last = |from: f64| coupling(&slave, &side(&[from, 3.0]), 0.0).shape(1);
-    assert_eq!(last(1.75), DualShape::Part([0.75, 1.0]));
-    assert_eq!(last(1.25), DualShape::Part([0.25, 1.0]));
-    assert_eq!(last(1.95), DualShape::One(1));
-    assert_eq!(shape(0.55, 0.8), DualShape::One(1));
-    assert_eq!(shape(1.5, 3.0), DualShape::None);
+    let slave = side(&[-1.0, 0.0, 1.0, 2.0]);
+    let on_edge = |edge: usize, from: f64, to: f64| coupling(&slave, &side(&[from, to]), 0.0).shape(edge);
+    let parts = [(1, 0.6, 3.0, 0, 0.44), (1, 0.05, 3.0, 0, 1.0), (1, -2.0, 0.45, 1, 0.52), (0, -2.0, -0.9, 1, 1.0)];
+    for (edge, from, to, late, onset) in parts {
+        let DualShape::Part(part) = on_edge(edge, from, to) else { panic!("{from} {to}") };
+        assert!(part.late().0 == late && (part.late().1 - onset).abs() < 1e-14, "{from} {to}: {part:?}");
+    }
+    assert_eq!(on_edge(1, -2.0, 0.12), DualShape::One(0));
+    assert_eq!(on_edge(1, 0.9, 3.0), DualShape::One(1));
+    assert_eq!(on_edge(0, -2.0, -0.95), DualShape::One(0));
+    assert_eq!(on_edge(2, 1.95, 3.0), DualShape::One(1));
+    assert!(matches!(on_edge(1, 0.2, 0.8), DualShape::Both(_)));
+    assert_eq!(on_edge(1, 0.55, 0.8), DualShape::One(1));
+    assert_eq!(on_edge(1, 1.5, 3.0), DualShape::None);
 }
 
-/// A node at which the slave turns away from its master by more than 40° is a corner, not one of a curve or of a notch.
+/// A node at which the slave turns away from its master by more than 40° is a corner, not one of a curve or of a notch:
+/// the second multiplier sets in at once.
 #[test]
 fn a_slave_may_have_a_corner_inside() {
     for (eta, is_corner) in [([1.0, 0.0, 1.0], true), ([0.3, 0.0, 0.3], false), ([-1.0, 0.0, -1.0], false)] {
         let slave = Side::new(0, [vec![0.0, 1.0, 2.0], eta.to_vec()], vec![0, 1], &[0]);
-        let shape = coupling(&slave, &side(&[-1.0, 1.3]), 0.0).shape(1);
-        assert_eq!(matches!(shape, DualShape::Part(_)), is_corner, "{eta:?}");
+        let coupling = coupling(&slave, &side(&[-1.0, 1.3]), 0.0);
+        assert_eq!(coupling.binds(2), is_corner, "{eta:?}");
     }
 }
 
-/// The gaps of a slave of one edge, of which a part is covered, are those at both ends of the part.
+/// A side of elements that are not stiff.
+fn soft(xi: &[f64]) -> Side {
+    side(xi).with_compliance(vec![0.1; xi.len() - 1])
+}
+
+/// The gaps of an edge of which a part is covered are those at both ends of the part once the second multiplier has set
+/// in. Until then its weight grows from nothing, and the gap of the other one goes over from the mean.
 #[test]
 fn a_part_of_an_edge_has_the_gaps_at_its_ends() {
-    let slave = side(&[0.0, 1.0]);
-    for covered in [0.07, 0.3, 0.49, 0.8] {
-        for (from, to) in [(-1.0, covered), (1.0 - covered, 3.0)] {
-            let coupling = coupling(&slave, &side(&[from, to]), 0.0);
+    let slave = soft(&[-1.0, 0.0, 1.0, 2.0]);
+    for (covered, onset) in [(0.75, 1.0), (0.9, 1.0), (0.125 + 1e-9, 1.6e-9), (0.3, 0.28), (0.7, 0.92)] {
+        for (late, [from, to]) in [(2, [-2.0, covered]), (1, [1.0 - covered, 3.0])] {
+            let coupling = coupling(&slave, &soft(&[from, to]), 0.0);
             let gap = |xi: f64| 0.2 + 0.7 * xi;
-            let found = [0, 1].map(|k| coupling.difference(k, |k| gap(slave.xi()[k]), |_| 0.0) / coupling.weight(k));
-            for (found, expected) in found.into_iter().zip([from.max(0.0), to.min(1.0)].map(gap)) {
-                assert!((found - expected).abs() < 1e-14, "{covered}: {found} {expected}");
-            }
+            let of = |k: usize| coupling.difference(k, |k| gap(slave.xi()[k]), |_| 0.0) / coupling.weight(k);
+            let (own, node) = (3 - late, gap(slave.xi()[3 - late]));
+            let end = gap(if late == 2 { covered } else { 1.0 - covered });
+            // Half of the whole edge beside it, and of the part all that the late multiplier has not taken.
+            let before = (1.0 - onset) * covered;
+            let sum = 0.5 * node + 0.5 * onset * covered * node + before * 0.5 * (node + end);
+            let expected = sum / (0.5 + 0.5 * onset * covered + before);
+            assert!((of(late) - end).abs() < 1e-12 && (of(own) - expected).abs() < 1e-12, "{covered}: {}", of(own));
+            // 1e-9 beyond the begin of the onset is known to 1e-16.
+            assert!((coupling.weight(late) - 0.5 * onset * covered).abs() < 1e-6 * onset);
+            assert_eq!([coupling.binds(late), coupling.binds(own)], [onset == 1.0, true]);
         }
+    }
+}
+
+/// What the conditions of an edge give way: nothing before and after the onset, and then the more the more their
+/// multipliers differ; both together nothing.
+#[test]
+fn conditions_give_way_while_a_multiplier_sets_in() {
+    let (slave, multiplier) = (soft(&[0.0, 1.0, 2.0]), [3.0, 5.0, 8.0]);
+    let give = |covered: f64| {
+        let coupling = coupling(&slave, &soft(&[-1.0, 1.0 + covered]), 0.0);
+        [0, 1, 2].map(|k| coupling.give(k, |k| multiplier[k]))
+    };
+    for covered in [0.05, 0.125, 0.75, 0.9] {
+        assert_eq!(give(covered), [0.0; 3]);
+    }
+    for covered in [0.2, 0.4, 0.6] {
+        let [none, own, late] = give(covered);
+        let onset = (covered - 0.125) / 0.625;
+        let expected = 2.0 * onset * (1.0 - onset) * 0.5 * covered * (0.1 + 0.1) * 3.0;
+        assert!(none == 0.0 && own == -late && (late - expected).abs() < 1e-12, "{covered}: {late} {expected}");
     }
 }
 

@@ -42,7 +42,7 @@ pub(super) struct Record {
     /// Normal velocity (m/s) and normal displacement (m) of the nodes of the slave, then of the master.
     normal: NormalMotions,
     /// Weighted normal velocity W of the nodes of the slave (m/s), and c = g − ∫W dt with the weighted gap g (m): the
-    /// part of the gap that comes from sliding. NaN while a multiplier does not act.
+    /// part of the gap that comes from sliding. NaN while a multiplier does not act, or just sets in.
     weighted: NormalMotions,
     /// ∫W dt so far, and W at the last instant.
     path: Vec<Pair>,
@@ -96,7 +96,7 @@ impl Record {
         let [slave, master] = [0, 1].map(|k| (&pairs[k], sides[k].eta()));
         for k in 0..coupling.len() {
             let [path, last] = self.path[k];
-            let pair = if coupling.is_active(k) {
+            let pair = if coupling.binds(k) {
                 let value = |part: &dyn Fn(&Pair, f64) -> f64| {
                     let of = |(pairs, eta): (&Vec<Pair>, &[f64]), node: usize| part(&pairs[node], eta[node]);
                     coupling.difference(k, |node| of(slave, node), |node| of(master, node)) / coupling.weight(k)
