@@ -1,10 +1,13 @@
 //! What can be wrong with a problem, where it is, and what to do.
 
+mod terms;
+
+pub use terms::{GroupOf, HeldBy};
+
 use crate::contact::ObstacleError;
 use crate::load::TableError;
 use crate::material::MaterialError;
 use crate::message::{counted, facet, named, quoted, short, trimmed, vector};
-use crate::simplex::Shape;
 use std::fmt;
 use thiserror::Error;
 
@@ -316,7 +319,6 @@ pub enum Cause {
         facet(&.nodes[0]), facet(&.nodes[1])
     )]
     Covered { nodes: Box<[Vec<usize>; 2]> },
-    /// A node of an interface that may touch something else.
     /// Contacts that share nodes with different friction.
     #[error(
         "node {node} belongs to two contacts, which are solved together, but their friction is {} and {}; give both \
@@ -329,6 +331,7 @@ pub enum Cause {
          make it false"
     )]
     SharedPairs { node: usize },
+    /// A node of an interface that may touch something else.
     #[error(
         "node {node} may already touch another obstacle, and a node can touch one only; if that is a plane, name by \
          its `group` the edges that may touch it"
@@ -380,56 +383,6 @@ impl Cause {
     #[must_use]
     pub fn at(self, table: &'static str, index: Option<usize>, key: &'static str) -> InputError {
         InputError { place: Place { table, index, key }, cause: self }
-    }
-}
-
-/// What a group consists of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GroupOf {
-    /// Facets of a bar.
-    Ends,
-    /// Facets of a plane body.
-    Edges,
-    /// Elements.
-    Elements,
-}
-
-impl GroupOf {
-    /// The facets of an element of this shape.
-    #[must_use]
-    pub fn facets(shape: Shape) -> Self {
-        match shape {
-            Shape::Bar => Self::Ends,
-            Shape::Triangle => Self::Edges,
-        }
-    }
-}
-
-impl fmt::Display for GroupOf {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Ends => "ends",
-            Self::Edges => "edges",
-            Self::Elements => "elements",
-        })
-    }
-}
-
-/// What keeps a facet from touching a plane (the paper's §2.1).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HeldBy {
-    /// A support, from 0.
-    Support(usize),
-    /// A traction, from 0.
-    Traction(usize),
-}
-
-impl fmt::Display for HeldBy {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Support(index) => write!(f, "held by support {}", index + 1),
-            Self::Traction(index) => write!(f, "loaded by traction {}", index + 1),
-        }
     }
 }
 

@@ -1,0 +1,54 @@
+//! What groups consist of, and what keeps facets from contact, in words.
+
+use crate::simplex::Shape;
+use std::fmt;
+
+/// What a group consists of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GroupOf {
+    /// Facets of a bar.
+    Ends,
+    /// Facets of a plane body.
+    Edges,
+    /// Elements.
+    Elements,
+}
+
+impl GroupOf {
+    /// The facets of an element of this shape.
+    #[must_use]
+    pub fn facets(shape: Shape) -> Self {
+        match shape {
+            Shape::Bar => Self::Ends,
+            Shape::Triangle => Self::Edges,
+        }
+    }
+}
+
+impl fmt::Display for GroupOf {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Ends => "ends",
+            Self::Edges => "edges",
+            Self::Elements => "elements",
+        })
+    }
+}
+
+/// What keeps a facet from touching a plane (the paper's §2.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeldBy {
+    /// A support, from 0.
+    Support(usize),
+    /// A traction, from 0.
+    Traction(usize),
+}
+
+impl fmt::Display for HeldBy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Support(index) => write!(f, "held by support {}", index + 1),
+            Self::Traction(index) => write!(f, "loaded by traction {}", index + 1),
+        }
+    }
+}
