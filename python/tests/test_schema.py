@@ -90,6 +90,8 @@ BEYOND = {
     "a contact of surfaces that are meshed differently": "the geometry of the bodies",
     "a contact of surfaces that are aside of each other": "the geometry of the bodies",
     "a contact of surfaces that look the same way": "the geometry of the bodies",
+    "a contact of surfaces of bodies that are beside each other": "the geometry of the bodies",
+    "a contact of the sides that look away from each other": "the geometry of the bodies",
     "slopes at a line of symmetry": "the geometry of the bodies",
     "two contacts at a node": "the groups of the mesh",
     "a contact of a surface that is held": "two groups of the mesh",

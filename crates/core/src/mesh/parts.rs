@@ -3,7 +3,7 @@
 //! Elements that share a node belong to one part. Parts may touch, but not overlap.
 
 use super::check::DUPLICATE;
-use super::{Facet, MeshError};
+use super::{Facet, Mesh, MeshError};
 use crate::ids::{ElementId, NodeId};
 use crate::simplex::Simplex;
 use std::cmp::Ordering;
@@ -64,6 +64,39 @@ fn root(parent: &mut [NodeId], mut node: NodeId) -> NodeId {
         node = above;
     }
     node
+}
+
+/// A smaller part of the volume of an element is rounding.
+const AT_FACET: f64 = 1e-9;
+
+impl<const D: usize, const N: usize> Mesh<D, N> {
+    /// Two elements of different parts that overlap if each node is displaced so far (m).
+    pub(crate) fn overlap_after(&self, displacement: &[[f64; D]]) -> Option<[ElementId; 2]> {
+        let (points, part) = (self.displaced(displacement), self.part_of_nodes());
+        match separate(self.simplex, (&points, &part), &self.cells, &self.facets, self.size) {
+            Err(MeshError::PartsTouch { elements }) => Some(elements.map(ElementId::new)),
+            _ => None,
+        }
+    }
+
+    /// Whether a node is in an element of another part if each node is displaced so far (m).
+    pub(crate) fn encloses_after(&self, displacement: &[[f64; D]], node: NodeId) -> bool {
+        let (points, part) = (self.displaced(displacement), self.part_of_nodes());
+        let others = self.cells.iter().filter(|cell| part[cell[0].index()] != part[node.index()]);
+        others.map(|cell| cell.map(|corner| points[corner.index()])).any(|corners| {
+            let least = -AT_FACET * self.simplex.signed_volume(&corners).abs();
+            (0..N).all(|k| {
+                let mut parts = corners;
+                parts[k] = points[node.index()];
+                self.simplex.signed_volume(&parts) >= least
+            })
+        })
+    }
+
+    fn displaced(&self, displacement: &[[f64; D]]) -> Vec<[f64; D]> {
+        let moved = |(point, by): (&[f64; D], &[f64; D])| std::array::from_fn(|c| point[c] + by[c]);
+        self.points.iter().zip(displacement).map(moved).collect()
+    }
 }
 
 /// How two elements meet.

@@ -350,6 +350,27 @@ pub enum Cause {
          the normal", short(*.depth)
     )]
     Overlaps { node: usize, depth: f64 },
+    /// Bodies that overlap beside the surfaces that may touch, which displacements at the start may do.
+    #[error(
+        "elements {} and {} of two bodies overlap with the displacements of the start; change these, or move the \
+         bodies apart", .elements[0], .elements[1]
+    )]
+    ElementsOverlap { elements: [usize; 2] },
+    /// A surface that starts behind the other one although the bodies are apart.
+    #[error(
+        "no body is inside another one, but node {node} of \"{}\" starts {} m behind \"{}\" along their common normal \
+         {}: contact would push the bodies in a wrong direction; name by `groups` the edges that meet, with a contact \
+         for each direction, or start \"{}\" farther along this normal by more than that",
+        .groups[0], short(*.depth), .groups[1], vector(.normal), .groups[0]
+    )]
+    BehindSurface {
+        node: usize,
+        depth: f64,
+        /// That of the node, and the other one.
+        groups: Box<[String; 2]>,
+        /// From the other surface to that of the node.
+        normal: Box<[f64]>,
+    },
     /// Surfaces that are curved or inclined against each other and so near that a mean gap is negative.
     #[error(
         "the bodies start too near: no node is inside the other body, but the gap of node {node}, as the mean over its \

@@ -9,6 +9,7 @@ mod contacts;
 mod distance;
 mod error;
 mod facing_edges;
+mod gaps;
 mod joined;
 mod may_touch;
 mod pairs;

@@ -1,7 +1,12 @@
 //! The place of the bodies at the start: none is behind its obstacle, and none moves into one on which it is.
 
+use super::gaps::Gaps;
 use super::{Cause, InputError, Problem};
-use crate::contact::{Coupling, Side, SlidingSurfaces};
+use crate::contact::SlidingSurfaces;
+use crate::ids::ElementId;
+
+/// Bodies that overlap by less than this part of the size of the mesh are not told from those that touch.
+const ROUNDING: f64 = 1e-9;
 
 /// At t = 0 no candidate node may lie behind its obstacle, nor on it with an inward velocity.
 pub(super) fn check<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<(), InputError> {
@@ -32,73 +37,61 @@ fn check_deepest<const D: usize, const N: usize>(
     let (obstacle, depth, node) = (contact.obstacle, -starts[at].0, contact.node.index());
     let cause = match (problem.obstacles()[obstacle].as_plane(), surface.sliding_of(at)) {
         (Some(plane), _) => Cause::Penetrates { node, depth, clear: plane.point_behind(depth).to_vec() },
-        (None, None) => Cause::Overlaps { node, depth },
+        (None, None) => behind(problem, at, depth),
         // That gap is a mean with weights of both signs: of convex surfaces it is less than all gaps.
-        (None, Some(index)) => match least_gap(problem, &surface.sliding()[index]) {
-            Some((gap, node)) if gap < -tolerance => Cause::Overlaps { node, depth: -gap },
+        (None, Some(index)) => match gaps(problem, &surface.sliding()[index]).least() {
+            Some((gap, at)) if gap < -tolerance => behind(problem, at, -gap),
             _ => Cause::TooNear { node, depth },
         },
     };
     Err(InputError { place: problem.place_of_obstacle(obstacle), cause })
 }
 
-/// The least distance (m) of two surfaces that slide, at places of nodes of one where the other one is, and that node.
-fn least_gap<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    sliding: &SlidingSurfaces<D>,
-) -> Option<(f64, usize)> {
-    let coupling: Coupling = sliding.coupling(problem.surface(), &problem.initial_displacement);
-    let (slave, master) = (sliding.slave(), sliding.master());
-    // η on an edge, at a place between those of its nodes, and the node that is there.
-    let on = |side: &Side, first: usize, [low, high]: [f64; 2], xi: f64| {
-        let eta = [first, first + 1].map(|k| eta(problem, sliding, side, k));
-        let part = (xi - low) / (high - low);
-        let node = if xi == low { Some(first) } else { (xi == high).then_some(first + 1) };
-        ((1.0 - part) * eta[0] + part * eta[1], node.map(|k| side.position(k)))
-    };
-    let mut least: Option<(f64, usize)> = None;
-    for segment in coupling.segments() {
-        let (own, other) = (slave.edges()[segment.slave], master.edges()[segment.master]);
-        let places = coupling.places(slave.part_of_edge(segment.slave));
-        for xi in segment.ends {
-            let (up, of_slave) = on(slave, own, [slave.xi()[own], slave.xi()[own + 1]], xi);
-            let (down, of_master) = on(master, other, [places[other], places[other + 1]], xi);
-            let Some(at) = of_slave.or(of_master) else { continue };
-            if least.is_none_or(|(gap, _)| up - down < gap) {
-                least = Some((up - down, problem.surface().nodes()[at].node.index()));
-            }
-        }
-    }
-    least
-}
-
 /// Surfaces that slide and do not face each other yet are not behind each other.
 fn check_apart<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<(), InputError> {
     for sliding in problem.surface().sliding() {
-        if !sliding.coupling(problem.surface(), &problem.initial_displacement).segments().is_empty() {
-            continue;
-        }
-        let (slave, master) = (sliding.slave(), sliding.master());
-        let low = (0..slave.len()).map(|k| (eta(problem, sliding, slave, k), k)).min_by(|a, b| a.0.total_cmp(&b.0));
-        let high = (0..master.len()).map(|k| eta(problem, sliding, master, k)).max_by(f64::total_cmp);
-        if let (Some((low, k)), Some(high)) = (low, high)
-            && low < high - problem.contact_tolerance()
+        if let Some((depth, at)) = gaps(problem, sliding).behind()
+            && depth > problem.contact_tolerance()
         {
-            let contact = &problem.surface().nodes()[slave.position(k)];
-            let cause = Cause::Overlaps { node: contact.node.index(), depth: high - low };
-            return Err(InputError { place: problem.place_of_obstacle(contact.obstacle), cause });
+            let place = problem.place_of_obstacle(problem.surface().nodes()[at].obstacle);
+            return Err(InputError { place, cause: behind_surface(problem, at, depth) });
         }
     }
     Ok(())
 }
 
-/// η of a node of a side at the start (m).
-fn eta<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    sliding: &SlidingSurfaces<D>,
-    side: &Side,
-    k: usize,
-) -> f64 {
-    let node = problem.surface().nodes()[side.position(k)].node.index();
-    side.eta()[k] + sliding.frame().split(&problem.initial_displacement[node]).0
+fn gaps<'a, const D: usize, const N: usize>(
+    problem: &'a Problem<D, N>,
+    sliding: &'a SlidingSurfaces<D>,
+) -> Gaps<'a, D> {
+    Gaps { surface: problem.surface(), sliding, displacement: &problem.initial_displacement }
+}
+
+/// Why a node that faces the surface of another body may not be so far (m) behind it.
+fn behind<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize, depth: f64) -> Cause {
+    let node = problem.surface().nodes()[at].node;
+    // Surfaces that look away from each other are behind each other, too.
+    let rounding = depth <= ROUNDING * problem.mesh().size();
+    if rounding || problem.mesh().encloses_after(&problem.initial_displacement, node) {
+        return Cause::Overlaps { node: node.index(), depth };
+    }
+    behind_surface(problem, at, depth)
+}
+
+/// Why a node may not be so far (m) behind the surface of another body in which it is not. Displacements alone can make
+/// bodies overlap: those of a mesh do not.
+fn behind_surface<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize, depth: f64) -> Cause {
+    if let Some(elements) = problem.mesh().overlap_after(&problem.initial_displacement) {
+        return Cause::ElementsOverlap { elements: elements.map(ElementId::index) };
+    }
+    let surface = problem.surface();
+    let contact = &surface.nodes()[at];
+    // The two obstacles of an interface follow each other, after all planes.
+    let planes = problem.planes();
+    let other = planes + ((contact.obstacle - planes) ^ 1);
+    let group = |obstacle: usize| surface.obstacles()[obstacle].group().unwrap_or_default().to_string();
+    // A few digits are enough to be shown.
+    let normal = surface.obstacles()[contact.obstacle].flat_frame().normal().map(|n| (1e3 * n).round() / 1e3);
+    let groups = Box::new([group(contact.obstacle), group(other)]);
+    Cause::BehindSurface { node: contact.node.index(), depth, groups, normal: Box::new(normal) }
 }
