@@ -1,4 +1,4 @@
-//! Which of two surfaces that slide is the slave, and the normal of both.
+//! Which of two surfaces that slide is the slave, and on which one the normal stands.
 
 use super::alignment::unit;
 use super::distance::nearest;
@@ -14,15 +14,27 @@ const EQUAL: f64 = 1e-9;
 /// Mean squares of deviations from a normal that differ by a smaller part are equal, and so are those of rounding.
 const FLAT: f64 = 1e-9;
 
+/// What the two sides of an interface are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Roles {
+    /// The side with the multipliers.
+    pub(super) slave: usize,
+    /// The side that the normal stands on.
+    pub(super) face: usize,
+}
+
 impl<const D: usize, const N: usize> Bodies<'_, D, N> {
-    /// Which side is the slave: the one of several bodies, else the one that strikes the other side with a corner, or a
-    /// flat one with a curve: a node is nearer to it at the start than all nodes of that. Else it is the one that
-    /// sticks out less beyond the other one; of two that do so alike, that with the shorter edges, else that of the
-    /// softer body, of the lighter one, or of the one whose centre of mass is nearer. Of bodies that are all alike it
-    /// is the lower or the left one.
-    pub(super) fn slave(&self, sides: &[Side<D>; 2], displacement: &[[f64; D]]) -> usize {
+    /// Which side is the slave: the one of several bodies, else the one that strikes the other side. Else it is the one
+    /// that sticks out less beyond the other one; of two that do so alike, that with the shorter edges, else that of
+    /// the softer body, of the lighter one, or of the one whose centre of mass is nearer. Of bodies that are all alike
+    /// it is the lower or the left one.
+    ///
+    /// The normal stands on the surface that a corner of the slave strikes. Else it stands on the flatter one, or on
+    /// the master where both are flat alike.
+    pub(super) fn roles(&self, sides: &[Side<D>; 2], displacement: &[[f64; D]]) -> Roles {
+        let on_flatter = |slave: usize| Roles { slave, face: self.flatter(sides).unwrap_or(1 - slave) };
         if let Some(several) = sides.iter().position(|side| side.bodies.len() > 1) {
-            return several;
+            return on_flatter(several);
         }
         let direction = between(sides);
         let along = tangent(&direction);
@@ -36,33 +48,49 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let common = (first[1].min(second[1]) - first[0].max(second[0])).max(0.0);
         let lengths = [first, second].map(|[low, high]| high - low);
         let rounding = EQUAL * lengths[0].min(lengths[1]);
-        let edges = sides.each_ref().map(|side| self.edges(side, displacement));
-        let nodes = nearest(edges.each_ref().map(Vec::as_slice), &direction, &along, rounding);
-        let strikes = |one: usize| {
-            let (own, other) = (nodes[one], nodes[1 - one]);
-            other.distance - own.distance > rounding && (own.is_corner || self.spread(&sides[1 - one]) <= FLAT)
-        };
-        if let Some(striking) = [0, 1].into_iter().find(|&one| strikes(one)) {
-            return striking;
+        if let Some((slave, is_corner)) = self.striking(sides, [&direction, &along], rounding, displacement) {
+            return if is_corner { Roles { slave, face: 1 - slave } } else { on_flatter(slave) };
         }
         let outside = lengths.map(|length| length - common);
         if (outside[0] - outside[1]).abs() > OVERHANG * lengths[0].max(lengths[1]) {
-            return usize::from(outside[1] < outside[0]);
+            return on_flatter(usize::from(outside[1] < outside[0]));
         }
         if sides[0].facets.len() != sides[1].facets.len() {
-            return usize::from(sides[1].facets.len() > sides[0].facets.len());
+            return on_flatter(usize::from(sides[1].facets.len() > sides[0].facets.len()));
         }
-        self.weaker(sides, &direction, displacement).unwrap_or_else(|| usize::from(!is_upward(&direction)))
+        on_flatter(self.weaker(sides, &direction, displacement).unwrap_or_else(|| usize::from(!is_upward(&direction))))
     }
 
-    /// The unit normal from the master to the slave: that of the flatter surface, along which a corner of the other one
-    /// slides, or of the master where both are flat alike.
-    pub(super) fn normal(&self, sides: &[Side<D>; 2], slave: usize) -> [f64; D] {
+    /// The side that strikes the other one with a corner, or a flat one with a curve, and whether it is a corner: one
+    /// of its nodes is nearer to the other side at the start than all nodes of that. The direction is from the first
+    /// side to the second one, and lengths below `rounding` (m) are equal.
+    fn striking(
+        &self,
+        sides: &[Side<D>; 2],
+        [direction, along]: [&[f64; D]; 2],
+        rounding: f64,
+        displacement: &[[f64; D]],
+    ) -> Option<(usize, bool)> {
+        let edges = sides.each_ref().map(|side| self.edges(side, displacement));
+        let nodes = nearest(edges.each_ref().map(Vec::as_slice), direction, along, rounding);
+        let strikes = |&one: &usize| {
+            let (own, other) = (nodes[one], nodes[1 - one]);
+            other.distance - own.distance > rounding && (own.is_corner || self.spread(&sides[1 - one]) <= FLAT)
+        };
+        [0, 1].into_iter().find(strikes).map(|one| (one, nodes[one].is_corner))
+    }
+
+    /// The side that is flatter, if one is.
+    fn flatter(&self, sides: &[Side<D>; 2]) -> Option<usize> {
         let spread = sides.each_ref().map(|side| self.spread(side));
         let alike = (spread[0] - spread[1]).abs() <= FLAT * (spread[0].max(spread[1]) + FLAT);
-        let flatter = if alike { 1 - slave } else { usize::from(spread[1] < spread[0]) };
-        let outward = self.outward(sides)[flatter];
-        if flatter == slave { outward.map(|n| -n) } else { outward }
+        (!alike).then_some(usize::from(spread[1] < spread[0]))
+    }
+
+    /// The unit normal from the master to the slave that stands on a side.
+    pub(super) fn normal(&self, sides: &[Side<D>; 2], Roles { slave, face }: Roles) -> [f64; D] {
+        let outward = self.outward(sides)[face];
+        if face == slave { outward.map(|n| -n) } else { outward }
     }
 
     /// The mean square of the difference of the normals of edges and their mean one, by length.

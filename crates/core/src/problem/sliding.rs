@@ -1,5 +1,7 @@
 //! Two surfaces of different bodies that may slide along each other.
 
+use super::gaps::Gaps;
+use super::roles::Roles;
 use super::sides::{Bodies, Side, check_nodes};
 use super::symmetry::{Motion, ONE_PLACE};
 use super::{Cause, candidates};
@@ -26,27 +28,61 @@ pub(super) fn add<const D: usize, const N: usize>(
 ) -> Result<(), Cause> {
     let sides = bodies.sides(interface)?;
     check_nodes(surface, &sides)?;
-    let slave = bodies.slave(&sides, displacement);
-    let normal = bodies.normal(&sides, slave);
-    bodies.check_directions([&sides[slave], &sides[1 - slave]], &normal)?;
-    bodies.check_ridge(&sides, &normal)?;
-    // All coordinates are from a place on the interface, so that a distant origin leaves no rounding in them.
-    let origin = bodies.mesh.points()[sides[slave].nodes[0].index()];
-    let mut lines = Vec::new();
-    for (k, side) in sides.iter().enumerate() {
-        let frame = if k == slave { normal } else { normal.map(|n| -n) };
-        let group = interface.groups()[k].to_string();
-        let facing = Obstacle::surface(frame, interface.law(), group, Some(surface.sliding().len()));
-        lines.push(bodies.add_side(surface, side, (&normal, &origin), facing)?);
-    }
-    let [Some(first), Some(second)] = [lines.pop(), lines.pop()] else { return Ok(()) };
-    let ordered = if slave == 1 { [first, second] } else { [second, first] };
-    let tolerance = ONE_PLACE * bodies.mesh.size();
-    surface.add_sliding(SlidingSurfaces::new(ordered, normal, interface.law(), tolerance));
+    let roles = bodies.roles(&sides, displacement);
+    let with = |roles: Roles| -> Result<ContactSurface<D>, Cause> {
+        let mut surface = surface.clone();
+        bodies.add_surfaces(&mut surface, interface, &sides, roles)?;
+        Ok(surface)
+    };
+    let first = with(roles)?;
+    // A body that is beside a face and partly behind it does not meet this face: a corner of it may meet the other one.
+    let several = sides[roles.slave].bodies.len() > 1;
+    let reversed = Roles { slave: if several { roles.slave } else { roles.face }, face: 1 - roles.face };
+    *surface = match starts_behind(&first, bodies, displacement).then(|| with(reversed)) {
+        Some(Ok(other)) if !starts_behind(&other, bodies, displacement) => other,
+        _ => first,
+    };
     Ok(())
 }
 
+/// Whether the surfaces that were added last do not face each other and one starts behind the other one.
+fn starts_behind<const D: usize, const N: usize>(
+    surface: &ContactSurface<D>,
+    bodies: &Bodies<'_, D, N>,
+    displacement: &[[f64; D]],
+) -> bool {
+    let behind = surface.sliding().last().and_then(|sliding| Gaps { surface, sliding, displacement }.behind());
+    behind.is_some_and(|(depth, _)| depth > ONE_PLACE * bodies.mesh.size())
+}
+
 impl<const D: usize, const N: usize> Bodies<'_, D, N> {
+    /// Adds both sides to the contact surface.
+    fn add_surfaces(
+        &self,
+        surface: &mut ContactSurface<D>,
+        interface: &Interface,
+        sides: &[Side<D>; 2],
+        roles: Roles,
+    ) -> Result<(), Cause> {
+        let (slave, normal) = (roles.slave, self.normal(sides, roles));
+        self.check_directions([&sides[slave], &sides[1 - slave]], &normal)?;
+        self.check_ridge(sides, &normal)?;
+        // All coordinates are from a place on the interface, so that a distant origin leaves no rounding in them.
+        let origin = self.mesh.points()[sides[slave].nodes[0].index()];
+        let mut lines = Vec::new();
+        for (k, side) in sides.iter().enumerate() {
+            let frame = if k == slave { normal } else { normal.map(|n| -n) };
+            let group = interface.groups()[k].to_string();
+            let facing = Obstacle::surface(frame, interface.law(), group, Some(surface.sliding().len()));
+            lines.push(self.add_side(surface, side, (&normal, &origin), facing)?);
+        }
+        let [Some(first), Some(second)] = [lines.pop(), lines.pop()] else { return Ok(()) };
+        let ordered = if slave == 1 { [first, second] } else { [second, first] };
+        let tolerance = ONE_PLACE * self.mesh.size();
+        surface.add_sliding(SlidingSurfaces::new(ordered, normal, interface.law(), tolerance));
+        Ok(())
+    }
+
     /// On a line of symmetry one of the surfaces at least stands across it: a force along the line is not normal to
     /// two slopes.
     fn check_ridge(&self, sides: &[Side<D>; 2], normal: &[f64; D]) -> Result<(), Cause> {

@@ -1,5 +1,6 @@
 //! Contact of two bodies that slide along each other, with any nodes.
 
+mod beside;
 mod half;
 mod invariance;
 mod law;
