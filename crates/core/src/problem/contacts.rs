@@ -1,7 +1,7 @@
 //! From contacts as users state them to pairs of surfaces.
 
 use super::bodies::{Between, Contact, Found, Start, Wanted, find, outlines};
-use super::facing_edges::facing_each_other;
+use super::facing_edges::FacingEdges;
 use super::joined::{Member, Proposal, Source, joined, listed};
 use super::sides::Bodies;
 use super::{Cause, InputError, Place};
@@ -80,63 +80,86 @@ pub(super) fn surfaces<const D: usize, const N: usize>(
         proposals.push(Proposal { contact, place, source, facets: source.facets(bodies.mesh) });
     }
     for members in joined(bodies, &proposals)? {
-        let Proposal { contact, place, source, .. } = &proposals[members[0].contact];
-        let choice = match source {
-            _ if members.len() > 1 => made.of_several(bodies.mesh, (&proposals, &members), &pairs.names),
-            Source::Groups(groups) => made.of_groups::<D>(contact, groups),
-            Source::Found(found) => made.of_found(bodies.mesh, contact, (&pairs.names, found)),
-        };
-        made.choices.push((choice.map_err(|cause| InputError { place: *place, cause: cause.into() })?, *place));
+        let place = proposals[members[0].contact].place;
+        let choice = made.of_members(bodies.mesh, (&proposals, &members), &pairs.names);
+        if let Some(choice) = choice.map_err(|cause| InputError { place, cause })? {
+            made.choices.push((choice, place));
+        }
     }
     Ok(made)
 }
 
 impl Surfaces {
+    /// The interface of contacts that are solved together. Bodies that are not named may have none: what is left of
+    /// their edges beside those of other contacts cannot meet.
+    fn of_members<const D: usize, const N: usize>(
+        &mut self,
+        mesh: &Mesh<D, N>,
+        (proposals, members): (&[Proposal<'_>], &[Member]),
+        names: &[String],
+    ) -> Result<Option<Choice>, Cause> {
+        let Proposal { contact, source, .. } = &proposals[members[0].contact];
+        match source {
+            _ if members.len() > 1 => Ok(Some(self.of_several(mesh, (proposals, members), names)?)),
+            Source::Groups(groups) => Ok(Some(self.of_groups::<D>(contact, groups)?)),
+            Source::Found(found) => match self.of_found(mesh, contact, (names, found))? {
+                None if matches!(contact.between, Between::Bodies(_)) => {
+                    Err(Cause::NothingSees { bodies: found.pair.map(|body| names[body].clone()) })
+                }
+                choice => Ok(choice),
+            },
+        }
+    }
+
     fn of_groups<const D: usize>(&self, contact: &Contact, groups: &[String; 2]) -> Result<Choice, ObstacleError> {
         let groups = groups.each_ref().map(String::as_str);
         let otherwise = contact.matching.is_none().then(|| contact.interface::<D>(groups, false)).transpose()?;
         Ok(Choice { first: contact.interface::<D>(groups, contact.matching != Some(false))?, otherwise })
     }
 
+    /// The interface of two surfaces that are found, if they have edges that face each other.
     fn of_found<const D: usize, const N: usize>(
         &mut self,
         mesh: &Mesh<D, N>,
         contact: &Contact,
         (names, found): (&[String], &Found),
-    ) -> Result<Choice, ObstacleError> {
+    ) -> Result<Option<Choice>, ObstacleError> {
         let shortest =
             found.seeing.iter().flatten().map(|&facet| mesh.facet_normal(facet).1).fold(f64::INFINITY, f64::min);
         let stays = found.slide <= SLIDES * shortest;
         let mut make = |matching: bool| {
             let groups = self.groups_of(mesh, names, found, matching);
-            contact.interface::<D>(groups.each_ref().map(String::as_str), matching)
+            groups.map(|groups| contact.interface::<D>(groups.each_ref().map(String::as_str), matching)).transpose()
         };
-        match contact.matching.or((!stays).then_some(false)) {
-            Some(matching) => Ok(Choice { first: make(matching)?, otherwise: None }),
-            None => Ok(Choice { first: make(true)?, otherwise: Some(make(false)?) }),
-        }
+        let (first, otherwise) = match contact.matching.or((!stays).then_some(false)) {
+            Some(matching) => (make(matching)?, None),
+            None => (make(true)?, make(false)?),
+        };
+        Ok(first.map(|first| Choice { first, otherwise }))
     }
 
-    /// The names of both surfaces: those of groups of the mesh, if there are such, else of new ones.
+    /// The names of both surfaces, if they face each other: those of groups of the mesh, if there are such, else of new
+    /// ones.
     fn groups_of<const D: usize, const N: usize>(
         &mut self,
         mesh: &Mesh<D, N>,
         names: &[String],
         found: &Found,
         matching: bool,
-    ) -> [String; 2] {
+    ) -> Option<[String; 2]> {
         let relation = if matching { "facing" } else { "sliding on" };
         let mut sides = found.seeing.clone();
         if !matching {
             sides.iter_mut().zip(&found.beside).for_each(|(side, beside)| side.extend(beside));
             sides.iter_mut().for_each(|side| side.sort_unstable());
         }
-        let mut sides = facing_each_other(mesh, sides, found.across);
-        [0, 1].map(|side| {
+        let nearest = [0, 1].map(|side| found.nearest.iter().map(|nearest| nearest[side]).collect());
+        let mut sides = FacingEdges { mesh, nearest, across: found.across }.of(&sides)?;
+        Some([0, 1].map(|side| {
             let facets = std::mem::take(&mut sides[side]);
             let [own, other] = [side, 1 - side].map(|k| &names[found.pair[k]]);
             self.group(mesh, format!("{own} {relation} {other}"), facets)
-        })
+        }))
     }
 
     /// The interface between a common surface and those of several bodies.
@@ -191,6 +214,7 @@ fn facets_of_several<const D: usize, const N: usize>(
     members: &[Member],
 ) -> [Vec<FacetId>; 2] {
     let mut sides = [BTreeSet::new(), BTreeSet::new()];
+    let mut nearest = [Vec::new(), Vec::new()];
     let (mut named, mut across) = (false, None);
     for Member { contact, common } in members {
         let Proposal { facets, source, .. } = &proposals[*contact];
@@ -204,9 +228,17 @@ fn facets_of_several<const D: usize, const N: usize>(
                 }
             }
         }
+        if let Source::Found(Found { nearest: Some(facets), .. }) = source {
+            nearest[0].push(facets[*common]);
+            nearest[1].push(facets[1 - common]);
+        }
     }
     let sides = sides.map(|side| side.into_iter().collect());
-    if named { sides } else { facing_each_other(mesh, sides, across) }
+    if named {
+        return sides;
+    }
+    // If there are none, the check of the interface has a message.
+    FacingEdges { mesh, nearest, across }.of(&sides).unwrap_or(sides)
 }
 
 /// The pairs of bodies whose surfaces were looked for.

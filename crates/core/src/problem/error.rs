@@ -247,7 +247,8 @@ pub enum Cause {
     /// Bodies of which no edges see each other.
     #[error(
         "no free edges of \"{}\" and \"{}\" see each other: another body, a support or a load is on or between them, \
-         or they pass each other; leave the contact out, or name the surfaces by `groups`", .bodies[0], .bodies[1]
+         contact with a third body has them, or they pass each other; leave the contact out, or name the surfaces by \
+         `groups`", .bodies[0], .bodies[1]
     )]
     NothingSees { bodies: [String; 2] },
     /// An edge that could touch two bodies.

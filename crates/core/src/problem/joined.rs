@@ -92,8 +92,7 @@ fn join<const D: usize, const N: usize>(
     if others(first, pair[0]).iter().any(|body| there.contains(body)) {
         return false;
     }
-    let [a, b] = pair.map(|one| unit(&outward(bodies.mesh, &proposals[one.contact].facets[one.common])));
-    if dot(&a, &b) < ONE_DIRECTION {
+    if !one_direction(bodies.mesh, pair.map(|one| (&proposals[one.contact], one.common))) {
         return false;
     }
     for (at, one) in [first, second].into_iter().zip(pair) {
@@ -104,6 +103,16 @@ fn join<const D: usize, const N: usize>(
     let more = std::mem::take(&mut made[second]);
     made[first].extend(more);
     true
+}
+
+/// Whether two surfaces that share a node are one. Of those that are found, the search has decided it: it looks along
+/// the directions in which bodies meet, and the mean normal of edges beside a corner may be far from them.
+fn one_direction<const D: usize, const N: usize>(mesh: &Mesh<D, N>, pair: [(&Proposal<'_>, usize); 2]) -> bool {
+    if let [Source::Found(first), Source::Found(second)] = pair.map(|(proposal, _)| proposal.source) {
+        return first.shared == second.shared;
+    }
+    let [a, b] = pair.map(|(proposal, common)| unit(&outward(mesh, &proposal.facets[common])));
+    dot(&a, &b) >= ONE_DIRECTION
 }
 
 /// What contacts that are solved together must have in common.

@@ -4,4 +4,6 @@ mod beside;
 mod mesh;
 mod parts;
 mod problem;
+mod proposals;
+mod random;
 mod time;

@@ -2,6 +2,7 @@
 
 use super::approach::dot;
 use super::outline::{Edge, Outline, Vector};
+use crate::ids::FacetId;
 use crate::problem::alignment::FOUND;
 
 /// Lengths below this part of the size of a body, or of an edge, are rounding, wherever the origin is.
@@ -87,6 +88,37 @@ impl<'o> View<'o> {
             }
             facing
         })
+    }
+
+    /// Of the edges that see each other, the two that are nearest; of several at a corner, the most opposite ones.
+    pub(super) fn nearest(&self, pair: [usize; 2], sides: &[Facing; 2]) -> Option<[FacetId; 2]> {
+        let edges = pair.map(|body| &self.outlines[body].edges);
+        // All along the direction from the first body to the second one.
+        let seen = [0, 1].map(|k| {
+            let places = sides[k].seeing.iter().map(|&(at, _)| at);
+            places.map(|at| (at, self.seen(pair[k], &edges[k][at], &self.normal))).collect::<Vec<_>>()
+        });
+        let room = TOUCH * pair.map(|body| self.outlines[body].size).into_iter().fold(0.0, f64::max);
+        let mut best: Option<(f64, f64, [FacetId; 2])> = None;
+        for (own, one) in &seen[0] {
+            for (other, two) in &seen[1] {
+                let common = [one.xi[0].max(two.xi[0]), one.xi[1].min(two.xi[1])];
+                let distance = common.into_iter().filter_map(|xi| Some(two.eta_at(xi)? - one.eta_at(xi)?));
+                let distance = distance.fold(f64::INFINITY, f64::min);
+                if common[1] < common[0] - room || distance == f64::INFINITY {
+                    continue;
+                }
+                let (own, other) = (&edges[0][*own], &edges[1][*other]);
+                let opposite = -dot(&own.normal, &other.normal);
+                let nearer = |&(least, most, _): &(f64, f64, [FacetId; 2])| {
+                    distance < least - room || (distance <= least + room && opposite > most)
+                };
+                if best.as_ref().is_none_or(nearer) {
+                    best = Some((distance, opposite, [own.facet, other.facet]));
+                }
+            }
+        }
+        best.map(|(_, _, facets)| facets)
     }
 
     fn seen(&self, body: usize, edge: &Edge, towards: &Vector) -> Seen {

@@ -50,6 +50,10 @@ pub(super) struct Found {
     /// The facets that see the other body, ascending, and those beside them.
     pub(super) seeing: [Vec<FacetId>; 2],
     pub(super) beside: [Vec<FacetId>; 2],
+    /// Those of both bodies that are nearest to each other when they meet.
+    pub(super) nearest: Option<[FacetId; 2]>,
+    /// Pairs of one number have a surface of a body in common.
+    pub(super) shared: usize,
     /// How far they slide along each other while they touch, with their velocities at the start (m).
     pub(super) slide: f64,
     /// Of halves, the direction across which their line of symmetry stands.
@@ -62,6 +66,8 @@ struct Candidates<'w> {
     wanted: &'w Wanted,
     /// From the first body to the second one.
     normal: Vector,
+    /// When they are looked at (s).
+    time: f64,
     gap: f64,
     /// When they meet with their velocities at the start, if they do (s).
     meets: Option<f64>,
@@ -105,6 +111,7 @@ pub(super) fn find(
             at,
             wanted: one,
             normal,
+            time,
             gap: way.gap,
             meets: way.meeting.map(|(_, time)| time),
             slide,
@@ -155,6 +162,27 @@ fn slide([first, second]: [&Outline; 2], normal: &Vector) -> f64 {
 }
 
 impl Candidates<'_> {
+    /// The surfaces, with the edges beside them.
+    fn found(&self, outlines: &[Outline], beside: [Vec<FacetId>; 2], shared: usize) -> Found {
+        let Self { at, wanted, normal, time, slide, across, sides, .. } = self;
+        let seeing = [0, 1].map(|side| {
+            let edges = &outlines[wanted.pair[side]].edges;
+            let mut facets: Vec<FacetId> = sides[side].seeing.iter().map(|&(at, _)| edges[at].facet).collect();
+            facets.sort_unstable();
+            facets
+        });
+        Found {
+            wanted: *at,
+            pair: wanted.pair,
+            seeing,
+            beside,
+            nearest: View::new(outlines, *time, *normal).nearest(wanted.pair, sides),
+            shared,
+            slide: *slide,
+            across: *across,
+        }
+    }
+
     /// Whether both pairs meet at about one time.
     fn meets_with(&self, other: &Self) -> bool {
         self.meets.zip(other.meets).is_some_and(|(a, b)| (a - b).abs() <= AT_ONCE * a.max(b))
@@ -265,9 +293,21 @@ fn claimed(
             owner.extend(side.seeing.iter().flat_map(|&(at, _)| &edges[at].nodes).map(|&node| (node, k)));
         }
     }
+    let mut found = with_edges_beside(outlines, &all, &shared, owner);
+    found.sort_by_key(|found| found.wanted);
+    Ok(found)
+}
+
+/// The surfaces of all pairs that have edges, with those beside them that no other pair owns.
+fn with_edges_beside(
+    outlines: &[Outline],
+    all: &[Candidates<'_>],
+    shared: &Shared,
+    mut owner: BTreeMap<NodeId, usize>,
+) -> Vec<Found> {
     let mut found = Vec::new();
     for (k, candidates) in all.iter().enumerate() {
-        let (room, Candidates { at, wanted, slide, across, sides, .. }) = (candidates.room(outlines), candidates);
+        let (room, Candidates { wanted, sides, .. }) = (candidates.room(outlines), candidates);
         let beside = [0, 1].map(|side| {
             let edges = &outlines[wanted.pair[side]].edges;
             let near = sides[side].beside.iter().filter(|(_, aside)| !less(room, *aside)).map(|&(at, _)| &edges[at]);
@@ -281,18 +321,11 @@ fn claimed(
             chosen.sort_unstable();
             chosen
         });
-        let seeing = [0, 1].map(|side| {
-            let edges = &outlines[wanted.pair[side]].edges;
-            let mut facets: Vec<FacetId> = sides[side].seeing.iter().map(|&(at, _)| edges[at].facet).collect();
-            facets.sort_unstable();
-            facets
-        });
-        if seeing.iter().all(|facets| !facets.is_empty()) {
-            found.push(Found { wanted: *at, pair: wanted.pair, seeing, beside, slide: *slide, across: *across });
+        if sides.iter().all(|side| !side.seeing.is_empty()) {
+            found.push(candidates.found(outlines, beside, shared.of[k]));
         }
     }
-    found.sort_by_key(|found| found.wanted);
-    Ok(found)
+    found
 }
 
 /// How all bodies come together.
