@@ -41,6 +41,11 @@ impl<'p, const D: usize> Conditions<'p, D> {
         if self.holds(at) { self.facing.gap(at, displacement) } else { f64::INFINITY }
     }
 
+    /// How far one gives way (m) under the forces of all (N): its gap plus this is 0 where it is closed.
+    pub(super) fn give(&self, at: usize, forces: &[[f64; D]]) -> f64 {
+        self.facing.give(at, forces)
+    }
+
     /// The smallest of its gaps (m) with these.
     pub(super) fn nearest(&self, at: usize, displacements: &[Cow<'_, [[f64; D]]>]) -> f64 {
         displacements.iter().map(|displacement| self.gap(at, displacement)).fold(f64::INFINITY, f64::min)

@@ -110,7 +110,7 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
             if !conditions.holds(at) {
                 continue;
             }
-            gaps[at] = conditions.gap(at, &after.displacement);
+            gaps[at] = conditions.gap(at, &after.displacement) + conditions.give(at, &forces);
             let place = [gaps[at], along(&frame, problem.surface().point(at), &after.displacement[node])];
             let path = frame.split(&conditions.relative(at, &after.displacement)).0;
             self.gap(at, (&frame, place, path), (&forces[at], terms.map(|terms| terms.rest(node))));

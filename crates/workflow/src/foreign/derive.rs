@@ -143,10 +143,12 @@ impl<'p, const D: usize, const N: usize> Derivation<'p, D, N> {
         let (conditions, places) = (self.conditions(window), self.places(window));
         let near = self.nearness.tolerance(unsure([Some(window.now), window.after]));
         let nodes = self.balance.problem().surface().nodes();
+        let forces = conditions.forces(reaction);
         let touches = |(at, force): (usize, &[f64; D])| {
-            nodes[at].free && self.acts(at, window.now.index, force) && conditions.nearest(at, &places) <= near
+            let gap = || conditions.nearest(at, &places) + conditions.give(at, &forces);
+            nodes[at].free && self.acts(at, window.now.index, force) && gap() <= near
         };
-        let mut touching: Vec<bool> = conditions.forces(reaction).iter().enumerate().map(touches).collect();
+        let mut touching: Vec<bool> = forces.iter().enumerate().map(touches).collect();
         conditions.settle_masters(&mut touching);
         touching
     }

@@ -29,14 +29,15 @@ pub struct EndPart {
     onset: f64,
 }
 
-/// The parts of an edge between which its second multiplier sets in. Short of that the conditions at the ends of the part
-/// are nearly the same, and speeds that differ a little would turn the edge fast. A multiplier that set in at once would
-/// push out the end of the master, which has entered the edge, in one step: with a force like 1/Δt².
+/// The parts of an edge between which its second multiplier sets in. Short of that the conditions at the ends of the
+/// part are nearly the same, and speeds that differ a little would turn the edge fast. A multiplier that set in at once
+/// would push out the end of the master, which has entered the edge, in one step: with a force like 1/Δt².
 const ONSET: [f64; 2] = [1.0 / 8.0, 3.0 / 4.0];
 
-/// The part of an edge from a corner of the slave on at which its second multiplier sets in, at once. The corner touches
-/// first and stays: with conditions that give way, the estimate would be up to 6 times the true error of an impact close
-/// to the end of a plate. From 0.04 of an edge on, it is 22 times that of a corner that slides off at 400 m/s.
+/// The part of an edge from a corner of the slave on at which its second multiplier sets in, at once. The corner
+/// touches first and stays: with conditions that give way, the estimate would be up to 6 times the true error of an
+/// impact close to the end of a plate. From 0.04 of an edge on, it is 22 times that of a corner that slides off at
+/// 400 m/s.
 const CORNER_ONSET: f64 = 1.0 / 16.0;
 
 /// ∫φ_i and ∫φ_2² over the covered part of an edge.
@@ -163,8 +164,8 @@ impl EndPart {
         rows
     }
 
-    /// sψ* or sχ* of the late multiplier, from ψ* or χ* of both where the second hat of the part has a value, and 1 less
-    /// that of the other one.
+    /// sψ* or sχ* of the late multiplier, from ψ* or χ* of both where the second hat of the part has a value; of the
+    /// other one 1 less that.
     fn of_both(&self, second: f64, shape: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
         let here = (second - self.ends[0]) / (self.ends[1] - self.ends[0]);
         let late = self.onset * shape(here)[self.late];

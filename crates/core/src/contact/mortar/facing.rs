@@ -74,6 +74,18 @@ impl<'a, const D: usize> Facing<'a, D> {
         if matches!(place, Place::Slave(_)) { gap } else { -gap }
     }
 
+    /// How far the condition of a node gives way (m) under the forces of all conditions (N), while a multiplier sets in:
+    /// its gap is not less than minus this.
+    #[must_use]
+    pub fn give(&self, at: usize, forces: &[[f64; D]]) -> f64 {
+        let Some((sliding, coupling, Place::Slave(node))) = self.place(at) else { return 0.0 };
+        let multiplier = |k: usize| {
+            let press = dot(&forces[sliding.slave().position(k)], sliding.frame().normal());
+            if coupling.is_active(k) { press / coupling.weight(k) } else { 0.0 }
+        };
+        if coupling.is_active(node) { coupling.give(node, multiplier) / coupling.weight(node) } else { 0.0 }
+    }
+
     /// How deep a node of two surfaces that slide is inside the other one at its own place, along the normal (m): a
     /// weighted gap that is not negative does not exclude it. 0 outside, beside the other surface and elsewhere.
     #[must_use]
