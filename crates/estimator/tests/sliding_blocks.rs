@@ -147,7 +147,7 @@ impl Row {
 
 /// At least 1, and at most 0.05 above the prototype. Of bodies that touch from the start, the velocities of the
 /// prototype are not known, and waves without a front have an index closer to 1: at least 0.95. Where a surface ends on
-/// an edge of the other one, or enters beside it, indices are smaller by up to 0.2: the stress in the star of a node
+/// an edge of the other one, or enters beside it, indices are smaller by up to 0.32: the stress in the star of a node
 /// has less energy than that in an edge's element, and both surfaces give way, only while it is needed.
 #[test]
 #[ignore = "takes a minute"]
@@ -174,11 +174,11 @@ fn effectivity_indices_of_two_blocks_that_slide() {
     }
 }
 
-/// A block on its corner (10°) at three speeds: measured are 1.68 to 1.70, 1.94 to 2.05 and 2.22 to 2.40. With
+/// A block on its corner (10°) at three speeds: measured are 1.36 to 1.39, 1.35 to 1.40 and 1.47 to 1.56. With
 /// tractions as wide as edges it would be 10 to 25 at the lowest speed.
 #[test]
 fn effectivity_indices_of_a_corner_that_slides() {
-    for (speed, most) in [(100.0, 1.9), (10.0, 2.2), (1.0, 2.6)] {
+    for (speed, most) in [(100.0, 1.5), (10.0, 1.5), (1.0, 1.7)] {
         let velocities = [[0.0, -speed], [0.0, speed]];
         let place = Row { width: 0.02, aside: 0.0113, tilt: 10.0, friction: 0.2, ..HEAD_ON };
         let row = Row { name: "corner", velocities, gap: 2e-6 * speed, ..place };
