@@ -109,7 +109,7 @@ def test_half_of_a_body_touches_as_the_whole(slope: float, curvature: float, tou
 @pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
 @pytest.mark.parametrize(("pair", "gives"), [(ends.PAIRS[-1], True), (ends.PAIRS[1], False)], ids=["gives", "takes"])
 def test_contact_that_gives_energy_has_low_trust(pair: ends.Pair, gives: bool) -> None:
-    """A small block on the end of another one, of two or three elements: contact gives 15 % of the energy. No contact gives any."""
+    """A small block on the end of another one, of two or three elements: contact gives 20 % of the energy. No contact gives any."""
     estimate = pc.estimate(pc.simulate(pair.problem(), end=pair.end, courant=0.9))
     assert (ends.given(estimate) > 0.01) is gives
     assert ("contact_energy" in warnings_of(estimate)) is gives and (estimate.trust == "low") is gives

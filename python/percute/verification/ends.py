@@ -25,7 +25,7 @@ MESHES, FINER = (0, 1), 3
 
 @dataclass(frozen=True)
 class Pair:
-    """Two blocks, of which the upper one slides off the lower one."""
+    """Two blocks, of which the upper one slides along the end of the lower one."""
 
     name: str
     lower: str
@@ -34,6 +34,8 @@ class Pair:
     """Of the upper block (m/s)."""
     end: float
     """End of the run (s)."""
+    aside: float = 0.0
+    """How far the upper one starts to the right of the lower one (m)."""
     small: bool = False
     """Whether the lower one is turned by 3.5°, and a small block strikes its end; else both are 40 × 25 mm large."""
 
@@ -42,7 +44,7 @@ class Pair:
         sizes = [(0.027, 0.0135, 9, 5), (0.016, 0.008, 5, 2)] if self.small else [(0.04, 0.025, 10, 8), (0.04, 0.025, 7, 6)]
         meshes = [pc.Mesh.rectangle(width, height, nx=nx, ny=ny).refine(refinements) for width, height, nx, ny in sizes]
         laws = [pc.Elastic(**MATERIALS[material], plane="stress") for material in (self.lower, self.upper)]
-        origin = (-0.0097, 0.0142) if self.small else (0.0, 0.02505)
+        origin = (-0.0097, 0.0142) if self.small else (self.aside, 0.02505)
         lower = pc.Body(name="lower", mesh=meshes[0], material=laws[0], rotation=3.5 if self.small else 0.0)
         upper = pc.Body(name="upper", mesh=meshes[1], material=laws[1], origin=origin, velocity=self.velocity)
         return pc.Problem(bodies=[lower, upper], contacts=[pc.Interface(friction=0.2)])
@@ -79,6 +81,7 @@ PAIRS = (
     Pair("plastic over steel, 100 m/s", "steel", "plastic", (100.0, -20.0), 60e-6),
     Pair("steel over plastic, 100 m/s", "plastic", "steel", (100.0, -20.0), 60e-6),
     Pair("steel over plastic, 400 m/s", "plastic", "steel", (400.0, -20.0), 20e-6),
+    Pair("plastic onto steel, 100 m/s", "steel", "plastic", (-100.0, -20.0), 60e-6, aside=0.034),
     Pair("a small plastic block on the end of a steel one", "steel", "plastic", (11.0, -36.0), 77e-6, small=True),
 )
 """The rows of the table."""

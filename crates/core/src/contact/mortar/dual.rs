@@ -34,6 +34,9 @@ pub struct EndPart {
 /// would push out the end of the master, which has entered the edge, in one step: with a force like 1/Δt².
 const ONSET: [f64; 2] = [1.0 / 8.0, 3.0 / 4.0];
 
+/// An onset nearer to its begin or end is there.
+const ROUNDING: f64 = 1e-6;
+
 /// The part of an edge from a corner of the slave on at which its second multiplier sets in, at once. The corner
 /// touches first and stays: with conditions that give way, the estimate would be up to 6 times the true error of an
 /// impact close to the end of a plate. From 0.04 of an edge on, it is 22 times that of a corner that slides off at
@@ -118,7 +121,15 @@ impl Moments {
             let onset = if corner {
                 f64::from(covered > CORNER_ONSET * length)
             } else {
-                ((covered / length - ONSET[0]) / (ONSET[1] - ONSET[0])).min(1.0)
+                let onset = (covered / length - ONSET[0]) / (ONSET[1] - ONSET[0]);
+                // A part of just these shares must not hang on rounding.
+                if onset < ROUNDING {
+                    0.0
+                } else if onset > 1.0 - ROUNDING {
+                    1.0
+                } else {
+                    onset
+                }
             };
             let late = usize::from(from[0]);
             return if onset > 0.0 { DualShape::Part(EndPart { ends, late, onset }) } else { DualShape::One(1 - late) };

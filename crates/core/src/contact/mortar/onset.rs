@@ -4,9 +4,9 @@ use super::dual::EndPart;
 use super::partition::Segment;
 use super::side::Side;
 
-/// What two conditions of an edge give way in the middle of the onset, over what its element and that of the master do:
-/// with 1 to 3, contact gives little energy, and surfaces enter each other no deeper than before it.
-const SOFTNESS: f64 = 2.0;
+/// What two conditions of an edge give way in the middle of the onset, over an eighth of what its element and that of the
+/// master do. With less, contact gives more energy; with more, surfaces enter each other deeper.
+const SOFTNESS: f64 = 4.0;
 
 /// Two multipliers of an edge, of which one sets in. Their conditions give way by the difference of both, the less the
 /// farther it has set in, so that it takes up its force step by step: the condition of the sum stays exact.
@@ -34,7 +34,9 @@ impl Onset {
         let other = if late == 1 { segments.last() } else { segments.first() };
         let soft = slave.compliance(edge) + master.compliance(other?.master);
         let [start, end] = slave.ends(first);
-        let compliance = SOFTNESS * onset * (1.0 - onset) * 0.5 * covered * (end - start) * soft;
+        // It ends with the square: with a linear end, the depth that is left would be pushed out in the last step.
+        let rest = 1.0 - onset;
+        let compliance = SOFTNESS * onset * rest * rest * 0.5 * covered * (end - start) * soft;
         (onset < 1.0).then_some(Self { first, late: first + late, compliance })
     }
 

@@ -206,7 +206,7 @@ fn soft(xi: &[f64]) -> Side {
 #[test]
 fn a_part_of_an_edge_has_the_gaps_at_its_ends() {
     let slave = soft(&[-1.0, 0.0, 1.0, 2.0]);
-    for (covered, onset) in [(0.75, 1.0), (0.9, 1.0), (0.125 + 1e-9, 1.6e-9), (0.3, 0.28), (0.7, 0.92)] {
+    for (covered, onset) in [(0.75 - 1e-9, 1.0), (0.9, 1.0), (0.125 + 1e-6, 1.6e-6), (0.3, 0.28), (0.7, 0.92)] {
         for (late, [from, to]) in [(2, [-2.0, covered]), (1, [1.0 - covered, 3.0])] {
             let coupling = coupling(&slave, &soft(&[from, to]), 0.0);
             let gap = |xi: f64| 0.2 + 0.7 * xi;
@@ -218,30 +218,35 @@ fn a_part_of_an_edge_has_the_gaps_at_its_ends() {
             let sum = 0.5 * node + 0.5 * onset * covered * node + before * 0.5 * (node + end);
             let expected = sum / (0.5 + 0.5 * onset * covered + before);
             assert!((of(late) - end).abs() < 1e-12 && (of(own) - expected).abs() < 1e-12, "{covered}: {}", of(own));
-            // 1e-9 beyond the begin of the onset is known to 1e-16.
-            assert!((coupling.weight(late) - 0.5 * onset * covered).abs() < 1e-6 * onset);
+            // 1e-6 beyond the begin of the onset is known to 1e-16; its end is 1e-6 early.
+            assert!((coupling.weight(late) - 0.5 * onset * covered).abs() < 1e-9 * onset);
             assert_eq!([coupling.binds(late), coupling.binds(own)], [onset == 1.0, true]);
         }
     }
 }
 
 /// What the conditions of an edge give way: nothing before and after the onset, and then the more the more their
-/// multipliers differ; both together nothing.
+/// multipliers differ; both together nothing. The softness of the master is that of its edge at the end.
 #[test]
 fn conditions_give_way_while_a_multiplier_sets_in() {
-    let (slave, multiplier) = (soft(&[0.0, 1.0, 2.0]), [3.0, 5.0, 8.0]);
-    let give = |covered: f64| {
-        let coupling = coupling(&slave, &soft(&[-1.0, 1.0 + covered]), 0.0);
-        [0, 1, 2].map(|k| coupling.give(k, |k| multiplier[k]))
+    let (slave, multiplier) = (soft(&[-1.0, 0.0, 1.0, 2.0]), [2.0, 3.0, 5.0, 8.0]);
+    let give = |ends: [f64; 3]| {
+        let master = side(&ends).with_compliance(vec![0.3, 0.7]);
+        let coupling = coupling(&slave, &master, 0.0);
+        [0, 1, 2, 3].map(|k| coupling.give(k, |k| multiplier[k]))
     };
     for covered in [0.05, 0.125, 0.75, 0.9] {
-        assert_eq!(give(covered), [0.0; 3]);
+        assert_eq!(give([-2.0, 0.03, covered]), [0.0; 4]);
     }
     for covered in [0.2, 0.4, 0.6] {
-        let [none, own, late] = give(covered);
         let onset = (covered - 0.125) / 0.625;
-        let expected = 2.0 * onset * (1.0 - onset) * 0.5 * covered * (0.1 + 0.1) * 3.0;
-        assert!(none == 0.0 && own == -late && (late - expected).abs() < 1e-12, "{covered}: {late} {expected}");
+        let rest = 1.0 - onset;
+        let expected = |soft: f64| 4.0 * onset * rest * rest * 0.5 * covered * (0.1 + soft) * 2.0;
+        let to_end = (give([-2.0, 0.1, covered]), expected(0.7));
+        for (found, late) in [to_end, (give([1.0 - covered, 0.9, 3.0]), expected(0.3))] {
+            assert!(found[0] == 0.0 && found[3] == 0.0 && found[1] == -found[2], "{covered}: {found:?}");
+            assert!((found[2] - late).abs() < 1e-12, "{covered}: {found:?} {late}");
+        }
     }
 }
 

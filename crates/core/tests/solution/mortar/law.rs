@@ -4,6 +4,7 @@ use super::setup::{Blocks, steel, steps};
 use crate::solution::run::{Run, run, swinging_steps};
 use percute_core::contact::{Coupling, SlidingSurfaces};
 use percute_core::dynamics::critical_time_step;
+use percute_core::material::Elastic;
 
 /// What contact did in a run.
 #[derive(Debug, Default)]
@@ -229,4 +230,35 @@ fn one_block_is_narrower() {
     assert!(seen.reactions > 100, "{seen:?}");
     let seen = checked(Blocks { widths: [0.04, 0.02], aside: -0.0113, ..narrow }, 14e-6);
     assert!(seen.reactions > 100, "{seen:?}");
+}
+
+/// The left end of the upper block is on 0.55 of an edge of the lower one.
+fn end_inside_an_edge() -> Blocks {
+    Blocks { aside: 0.0009, velocities: [[1.0, -20.0], [0.0, 20.0]], friction: 0.9, ..Blocks::oblique() }
+}
+
+/// Friction has nothing of what the conditions give way: nodes stick without any slip.
+#[test]
+fn nodes_stick_where_a_multiplier_sets_in() {
+    let problem = end_inside_an_edge().problem();
+    let sliding = &problem.surface().sliding()[0];
+    let coupling = sliding.coupling_at(&[0.0]);
+    assert!((0..coupling.len()).any(|k| coupling.is_active(k) && !coupling.binds(k)));
+    let seen = checked(end_inside_an_edge(), 14e-6);
+    assert!(seen.reactions > 100 && seen.sticks > 50, "{seen:?}");
+}
+
+/// Forces grow in proportion to the thickness, and conditions give way alike.
+#[test]
+fn the_thickness_does_not_matter() {
+    let end = |thickness: f64| {
+        let material = Elastic::plane_stress(70e9, 0.3, 2700.0, thickness).unwrap();
+        let problem = Blocks { materials: [material; 2], ..end_inside_an_edge() }.problem();
+        let run = run(&problem, &steps(&problem, 14e-6));
+        run.displacement(run.last()).to_vec()
+    };
+    for (thin, thick) in end(0.25).iter().flatten().zip(end(1.0).iter().flatten()) {
+        // Bodies move by 3e-4 m; a quarter is exact.
+        assert!((thin - thick).abs() <= 1e-15, "{thin} {thick}");
+    }
 }

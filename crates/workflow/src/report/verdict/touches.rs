@@ -177,8 +177,8 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
     }
 
     /// Of nodes on surfaces that slide, the one that strikes the other surface, and whether it is of the master: there
-    /// it is not farther than the mean gap of the slave, and the outline turns more. Nodes far from contact share the force,
-    /// too.
+    /// it is not farther than the mean gap of the slave, and the outline turns more. Nodes far from contact share the
+    /// force, too.
     fn striking(&self, nodes: &[usize]) -> Option<(usize, bool)> {
         let (slaves, masters) = self.sides(nodes);
         let least = |nodes: Vec<usize>| nodes.into_iter().min_by(|&a, &b| self.gap[a].total_cmp(&self.gap[b]));
