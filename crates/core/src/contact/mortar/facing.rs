@@ -74,8 +74,8 @@ impl<'a, const D: usize> Facing<'a, D> {
         if matches!(place, Place::Slave(_)) { gap } else { -gap }
     }
 
-    /// How far the condition of a node gives way (m) under the forces of all conditions (N), while a multiplier sets in:
-    /// its gap is not less than minus this.
+    /// How far the condition of a node gives way (m) under the forces of all conditions (N), while a multiplier sets
+    /// in: its gap is not less than minus this.
     #[must_use]
     pub fn give(&self, at: usize, forces: &[[f64; D]]) -> f64 {
         let Some((sliding, coupling, Place::Slave(node))) = self.place(at) else { return 0.0 };

@@ -4,8 +4,8 @@ use super::dual::EndPart;
 use super::partition::Segment;
 use super::side::Side;
 
-/// What two conditions of an edge give way in the middle of the onset, over an eighth of what its element and that of the
-/// master do. With less, contact gives more energy; with more, surfaces enter each other deeper.
+/// How far two conditions of an edge give way, over s(1 − s)² times what its element and that of the master do. With
+/// less, contact gives more energy; with more, surfaces enter each other deeper.
 const SOFTNESS: f64 = 4.0;
 
 /// Two multipliers of an edge, of which one sets in. Their conditions give way by the difference of both, the less the
