@@ -160,7 +160,7 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
         let terms = |&element: &ElementId| {
             let (data, law) = (&self.elements[element.index()], self.problem.material(element));
             let gradient = data.gradient(&data.gather(&forces.level.displacement)).iter().fold(0.0, largest);
-            let modulus = law.density() * law.wave_speed() * law.wave_speed();
+            let modulus = law.wave_modulus();
             modulus * gradient * data.gradients.iter().fold(0.0, largest)
         };
         let elements = self.problem.mesh().stars().star(node).elements;

@@ -10,13 +10,10 @@ import warnings
 from dataclasses import dataclass
 
 import percute as pc
-from percute.verification.block import ALUMINIUM
+from percute.verification import two_bodies
+from percute.verification.bodies import STEEL
 
-MATERIALS = {
-    "aluminium": ALUMINIUM,
-    "steel": {"young": 210e9, "poisson": 0.3, "density": 7800.0},
-    "plastic": {"young": 3e9, "poisson": 0.35, "density": 1200.0},
-}
+MATERIALS = {**two_bodies.MATERIALS, "steel": STEEL}
 STEPS = (0.9, 0.3)
 """Steps over the critical one."""
 MESHES, FINER = (0, 1), 3

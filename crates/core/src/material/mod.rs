@@ -37,6 +37,11 @@ pub trait Law {
     /// Largest wave speed in the undeformed body, in the dimension of the mesh (m/s).
     fn wave_speed(&self) -> f64;
 
+    /// ρc² with the largest wave speed (Pa): the stiffness of a wave.
+    fn wave_modulus(&self) -> f64 {
+        self.density() * self.wave_speed() * self.wave_speed()
+    }
+
     /// Stress σ (Pa) of a displacement gradient.
     fn stress<const D: usize>(&self, gradient: &Tensor<D>) -> Tensor<D>;
 

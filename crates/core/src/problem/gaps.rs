@@ -27,7 +27,7 @@ impl<const D: usize> Gaps<'_, D> {
             let (own, other) = (slave.edges()[segment.slave], master.edges()[segment.master]);
             let places = coupling.places(slave.part_of_edge(segment.slave));
             for xi in segment.ends {
-                let (up, of_slave) = on(slave, own, [slave.xi()[own], slave.xi()[own + 1]], xi);
+                let (up, of_slave) = on(slave, own, slave.ends(own), xi);
                 let (down, of_master) = on(master, other, [places[other], places[other + 1]], xi);
                 let Some(at) = of_slave.or(of_master) else { continue };
                 if least.is_none_or(|(gap, _)| up - down < gap) {
@@ -57,7 +57,6 @@ impl<const D: usize> Gaps<'_, D> {
 
     /// η of a node of a side (m).
     fn eta(&self, side: &Side, k: usize) -> f64 {
-        let node = self.surface.nodes()[side.position(k)].node.index();
-        side.eta()[k] + self.sliding.frame().split(&self.displacement[node]).0
+        self.sliding.eta(self.surface, side, k, self.displacement)
     }
 }

@@ -128,7 +128,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let (mut sum, mut length) = (0.0, 0.0);
         for &facet in &side.facets {
             let (law, area) = ((self.law)(facet), self.mesh.facet_normal(facet).1);
-            sum += area * law.density() * law.wave_speed().powi(2);
+            sum += area * law.wave_modulus();
             length += area;
         }
         sum / length

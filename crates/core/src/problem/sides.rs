@@ -55,7 +55,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
     /// ρc² of the element at a facet, times its section or thickness (Pa·m in the plane).
     pub(super) fn stiffness(&self, facet: FacetId) -> f64 {
         let law = (self.law)(facet);
-        law.density() * law.wave_speed() * law.wave_speed() * law.extent()
+        law.wave_modulus() * law.extent()
     }
 
     /// Both sides of an interface, which are of different bodies with one hypothesis. Of surfaces that slide, one side

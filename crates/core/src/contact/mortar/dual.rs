@@ -109,28 +109,12 @@ impl Moments {
     /// The shape functions on an edge of this length, and whether its nodes are corners.
     pub(super) fn shape(&self, length: f64, corners: [bool; 2]) -> DualShape {
         let Self { hats: [first, second], square, covered, ends, joined } = *self;
-        if covered <= 0.0 {
-            return DualShape::None;
-        }
         if covered == length {
             return DualShape::WHOLE;
         }
         let from = [ends[0] == 0.0, ends[1] == 1.0];
         if joined && (from[0] || from[1]) {
-            let corner = (from[0] && corners[0]) || (from[1] && corners[1]);
-            let onset = if corner {
-                f64::from(covered > CORNER_ONSET * length)
-            } else {
-                let onset = (covered / length - ONSET[0]) / (ONSET[1] - ONSET[0]);
-                // A part of just these shares must not hang on rounding.
-                if onset < ROUNDING {
-                    0.0
-                } else if onset > 1.0 - ROUNDING {
-                    1.0
-                } else {
-                    onset
-                }
-            };
+            let onset = onset(covered / length, (from[0] && corners[0]) || (from[1] && corners[1]));
             let late = usize::from(from[0]);
             return if onset > 0.0 { DualShape::Part(EndPart { ends, late, onset }) } else { DualShape::One(1 - late) };
         }
@@ -144,6 +128,19 @@ impl Moments {
         let inverse = 1.0 / (own * square - mixed * mixed);
         let (one, two) = (first * inverse, second * inverse);
         DualShape::Both([[one * square, -one * mixed], [-two * mixed, two * own]])
+    }
+}
+
+/// How far the second multiplier has set in where this share of an edge is covered, from a corner of the slave on or not.
+fn onset(share: f64, corner: bool) -> f64 {
+    if corner {
+        return f64::from(share > CORNER_ONSET);
+    }
+    // A part of just the first or the last share must not hang on rounding.
+    match (share - ONSET[0]) / (ONSET[1] - ONSET[0]) {
+        early if early < ROUNDING => 0.0,
+        late if late > 1.0 - ROUNDING => 1.0,
+        onset => onset,
     }
 }
 

@@ -64,7 +64,7 @@ impl<'a, const D: usize> Facing<'a, D> {
         if !faces(sliding, coupling, place) {
             return f64::INFINITY;
         }
-        let eta = |side: &Side, node: usize| self.eta(sliding, side, node, displacement);
+        let eta = |side: &Side, node: usize| sliding.eta(self.surface, side, node, displacement);
         let gap = difference(
             sliding,
             coupling,
@@ -92,7 +92,7 @@ impl<'a, const D: usize> Facing<'a, D> {
     pub fn depth(&self, at: usize, displacement: &[[f64; D]]) -> f64 {
         let Some((sliding, coupling, place)) = self.place(at) else { return 0.0 };
         let (slave, master) = (sliding.slave(), sliding.master());
-        let eta = |side: &Side, node: usize| self.eta(sliding, side, node, displacement);
+        let eta = |side: &Side, node: usize| sliding.eta(self.surface, side, node, displacement);
         let gap = match place {
             Place::Slave(node) => {
                 let (places, xi) = (coupling.places(slave.part_of(node)), slave.xi()[node]);
@@ -149,11 +149,6 @@ impl<'a, const D: usize> Facing<'a, D> {
         for (sliding, coupling) in self.surface.sliding().iter().zip(&self.couplings) {
             sliding.settle_master(coupling, touching);
         }
-    }
-
-    /// The place of a node along the normal (m), with these displacements of all nodes of the mesh.
-    fn eta(&self, sliding: &SlidingSurfaces<D>, side: &Side, node: usize, displacement: &[[f64; D]]) -> f64 {
-        side.eta()[node] + dot(&displacement[self.node(side, node)], sliding.frame().normal())
     }
 
     fn node(&self, side: &Side, node: usize) -> usize {

@@ -1,6 +1,7 @@
 //! The normal part of the contact problem of a step: A λ + b ≥ 0, λ ≥ 0, λ·(A λ + b) = 0.
 
 use super::band::{Band, Factors};
+use super::partition::larger;
 use super::relaxation::relax;
 
 /// Rounds of the active set before relaxation takes over.
@@ -10,7 +11,7 @@ pub(super) const RESIDUAL: f64 = 1e-14;
 
 /// The largest of some numbers, and at least 0.
 pub(super) fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
-    numbers.fold(0.0, |most, number| if number > most { number } else { most })
+    numbers.fold(0.0, |most, number| larger(number, most))
 }
 
 /// Its solver, with its memory.

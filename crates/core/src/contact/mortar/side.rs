@@ -173,7 +173,8 @@ impl Side {
 
     /// ξ of both ends of the edge with this first node (m).
     #[inline]
-    pub(super) fn ends(&self, first: usize) -> [f64; 2] {
+    #[must_use]
+    pub fn ends(&self, first: usize) -> [f64; 2] {
         [self.xi[first], self.xi[first + 1]]
     }
 

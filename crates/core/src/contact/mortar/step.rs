@@ -5,6 +5,7 @@ use super::coupling::Coupling;
 use super::friction::FrictionProblem;
 use super::gram::gram;
 use super::normal::NormalProblem;
+use super::partition::{larger, smaller};
 use super::side::Side;
 use super::surfaces::SlidingSurfaces;
 use crate::contact::frame::dot;
@@ -36,8 +37,6 @@ pub(crate) struct SlidingContact {
     limit: Vec<f64>,
     /// b of the normal and of the tangential part, for each multiplier.
     right: Vec<[f64; 2]>,
-    /// 1/(Δt_n h_n) (1/s²), of b over the gap.
-    rate: f64,
     sides: [State; 2],
     touches: bool,
 }
@@ -86,8 +85,7 @@ impl State {
         for ((motion, along), (eta, Predicted { displacement, velocity })) in own.zip(side.eta().iter().zip(nodes)) {
             let [normal, tangential] = axes.map(|axis| [dot(displacement, axis), dot(velocity, axis)]);
             let eta = eta + normal[0] + dt * normal[1];
-            low = if eta < low { eta } else { low };
-            high = if eta > high { eta } else { high };
+            (low, high) = (smaller(eta, low), larger(eta, high));
             *motion = [eta, tangential[1]];
             *along = tangential[0] + dt * tangential[1];
         }
@@ -124,7 +122,6 @@ impl SlidingContact {
             friction: FrictionProblem::default(),
             limit: Vec::new(),
             right: Vec::new(),
-            rate: 0.0,
             sides,
             touches: false,
         }
@@ -148,7 +145,7 @@ impl SlidingContact {
         if !self.touches {
             return;
         }
-        self.solve(sliding);
+        self.solve(sliding, prediction.steps);
         self.add_up(touching, sides);
         for (state, side) in self.sides.iter().zip(sides) {
             state.act(axes, &mut reaction[side.positions()]);
@@ -166,7 +163,6 @@ impl SlidingContact {
         sliding.update(coupling, shifts);
         let ([dt, h], mut touches) = (prediction.steps, false);
         let over = [1.0 / (dt * h), 1.0 / h];
-        self.rate = over[0];
         right.clear();
         right.extend((0..coupling.len()).map(|k| {
             let [gap, slip] = coupling.differences(k, &slave.motion, &master.motion);
@@ -176,8 +172,8 @@ impl SlidingContact {
         touches
     }
 
-    /// Solves for the multipliers.
-    fn solve<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>) {
+    /// Solves for the multipliers of a step of Δt (s) with h (s).
+    fn solve<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>, [dt, h]: [f64; 2]) {
         let Self { coupling, sides: [slave, master], normal, friction, right, softened, .. } = self;
         let inverse = |which: usize| [&slave.inverse_mass[which][..], &master.inverse_mass[which][..]];
         let rough = sliding.law().friction() > 0.0;
@@ -185,7 +181,7 @@ impl SlidingContact {
         let soft = coupling.sets_in();
         if soft {
             softened.clone_from(&self.normal_matrix);
-            coupling.soften(softened, self.rate);
+            coupling.soften(softened, 1.0 / (dt * h));
         }
         let matrix = if soft { &*softened } else { &self.normal_matrix };
         normal.solve(matrix, right, |k| coupling.is_active(k));

@@ -151,6 +151,12 @@ impl<const D: usize> SlidingSurfaces<D> {
         }
     }
 
+    /// The place of a node of a side along the normal (m), with these displacements of all nodes of the mesh.
+    pub(crate) fn eta(&self, surface: &ContactSurface<D>, side: &Side, node: usize, displacement: &[[f64; D]]) -> f64 {
+        let node_of_mesh = surface.nodes()[side.position(node)].node;
+        side.eta()[node] + dot(&displacement[node_of_mesh.index()], self.frame.normal())
+    }
+
     /// The tangential component of a field at a node of a side.
     pub(super) fn along(&self, surface: &ContactSurface<D>, side: &Side, node: usize, field: &[[f64; D]]) -> f64 {
         dot(&field[surface.nodes()[side.position(node)].node.index()], &self.tangent)

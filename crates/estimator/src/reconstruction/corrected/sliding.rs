@@ -263,7 +263,7 @@ const JOINED: f64 = 1e-12;
 fn reaches(slave: &Side, coupling: &Coupling, node: usize) -> Option<[Reach; 2]> {
     let reach = |edge: usize, end: usize| -> Option<Reach> {
         let first = slave.edges()[edge];
-        let (own, segments) = ([slave.xi()[first], slave.xi()[first + 1]], coupling.segments_of(edge));
+        let (own, segments) = (slave.ends(first), coupling.segments_of(edge));
         let ends = [segments.first()?.ends[0], segments.last()?.ends[1]];
         // A step of the master has two ends at one place, to rounding; a slot is wider.
         let joined = |pair: &[Segment]| pair[1].ends[0] - pair[0].ends[1] <= JOINED * (own[1] - own[0]);
