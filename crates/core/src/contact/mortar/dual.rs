@@ -131,7 +131,8 @@ impl Moments {
     }
 }
 
-/// How far the second multiplier has set in where this share of an edge is covered, from a corner of the slave on or not.
+/// How far the second multiplier has set in where this share of an edge is covered, from a corner of the slave on or
+/// not.
 fn onset(share: f64, corner: bool) -> f64 {
     if corner {
         return f64::from(share > CORNER_ONSET);
