@@ -5,7 +5,7 @@
 mod common;
 
 use common::each_case;
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use percute_benches::{Motion, problem, steps};
 use percute_core::dynamics::{Dynamics, critical_time_step};
 use percute_core::ids::NodeId;
@@ -24,10 +24,15 @@ fn setup(criterion: &mut Criterion) {
         group.bench_function(format!("problem/{name}"), |b| {
             let mesh = || case.problem.mesh().clone();
             let make = |mesh| problem(mesh, Motion::Impact, case.gap).expect("a valid problem");
-            b.iter_batched(mesh, make, criterion::BatchSize::PerIteration);
+            b.iter_batched(mesh, make, BatchSize::PerIteration);
         });
         group.bench_function(format!("critical step/{name}"), |b| {
-            b.iter(|| critical_time_step(black_box(&case.problem)));
+            // A problem keeps its critical step.
+            b.iter_batched_ref(
+                || case.problem.clone(),
+                |problem| critical_time_step(black_box(problem)),
+                BatchSize::PerIteration,
+            );
         });
         let times = || steps(case.step, 1000).expect("steps");
         group.bench_function(format!("dynamics/{name}"), |b| {

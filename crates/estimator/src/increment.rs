@@ -1,4 +1,4 @@
-//! ∫₀ᵗ dt of ã and of the lumping difference, of which u̇_DA is made \[13\].
+//! ∫₀ᵗ dt of ã, or of a_c and o₂, of which u̇_DA is made \[13\].
 
 use crate::lanes::Value;
 use crate::nodal_field::{FieldPool, NodalField};

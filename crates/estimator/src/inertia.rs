@@ -6,9 +6,9 @@ use crate::options::Acceleration;
 /// The linear map, constant in time, from nodal ã to the nodal values of Γ_DA/ρ.
 ///
 /// All choices balance the resultant and the moment of the equilibrated tractions. These do the lumped work
-/// ρ|E|/(D+1) Σ ã_i·u_i on every linear field u. With `mixed` they do the work ∫ρ ã_h·u + ρ|E|/(D+1) Σ o_i·u_i, o the
-/// lumping difference: ρ ã_h lacks only the resultant and the moment of o. As the map is linear, it turns the time
-/// integrals of ã and o into ∫Γ_DA/ρ dt as well.
+/// ρ|E|/(D+1) Σ ã_i·u_i on every linear field u. With `split` they do the work ∫ρ a_c·u + ρ|E|/(D+1) Σ o_i·u_i on rigid
+/// motions u, o the acceleration of the skew part of the stress of lumping: ρ a_c lacks only the resultant and the moment
+/// of o. As the map is linear, it turns the time integrals of ã, or of a_c and o, into ∫Γ_DA/ρ dt as well.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inertia<const D: usize, const N: usize> {
     choice: Acceleration,
@@ -76,14 +76,10 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
         Self { choice, rotations }
     }
 
-    /// Γ_DA/ρ at the nodes (m/s²), or its time integral, from ã and the lumping difference, which `mixed` has, or from
+    /// Γ_DA/ρ at the nodes (m/s²), or its time integral, from ã, or a_c and o with `split`, or from
     /// theirs.
     #[inline(always)]
-    pub(crate) fn apply<T: Value>(
-        &self,
-        acceleration: &[[T; D]; N],
-        lumping_difference: Option<&[[T; D]; N]>,
-    ) -> [[T; D]; N] {
+    pub(crate) fn apply<T: Value>(&self, acceleration: &[[T; D]; N], skew: Option<&[[T; D]; N]>) -> [[T; D]; N] {
         let mean = mean(acceleration);
         // The lumped moment is D + 2 times that of the linear field.
         match self.choice {
@@ -100,8 +96,8 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
                 }
                 field
             }
-            Acceleration::Mixed => {
-                let Some(difference) = lumping_difference else { return *acceleration };
+            Acceleration::Split => {
+                let Some(difference) = skew else { return *acceleration };
                 let mean = self::mean(difference);
                 let mut shifted = *acceleration;
                 for value in &mut shifted {
@@ -164,6 +160,28 @@ impl<const D: usize, const N: usize> Rotation<D, N> {
     }
 }
 
+/// Adds the symmetric part of the stress that lumping the mass of an element is: for a linear field w, the nodal forces
+/// (M − M_c) w of the element are |E| τ∇φ_i with τ = ρ/(D+2) Σ w_i ⊗ d_i, d_i the places of the nodes from the centroid.
+#[inline(always)]
+pub(crate) fn add_lumping_stress<T: Value, const D: usize, const N: usize>(
+    density: f64,
+    arms: &[[f64; D]; N],
+    w: &[[T; D]; N],
+    stress: &mut [[T; D]; D],
+) {
+    let half = 0.5 * density / (D + 2) as f64;
+    // The places sum up to 0: a translation leaves no rounding.
+    for i in 1..N {
+        for a in 0..D {
+            let change = (w[i][a] - w[0][a]) * half;
+            for b in 0..D {
+                stress[a][b] += change * arms[i][b];
+                stress[b][a] += change * arms[i][b];
+            }
+        }
+    }
+}
+
 /// ∫ρ a·b over an element of this mass (kg) for two linear fields.
 #[inline(always)]
 pub(crate) fn mass_product<T: Value, const D: usize, const N: usize>(mass: f64, a: &[[T; D]; N], b: &[[T; D]; N]) -> T {
@@ -206,11 +224,11 @@ mod tests {
 
     const LUMPING: [[f64; 2]; 3] = [[0.3, 1.0], [-2.0, 0.4], [0.9, -0.1]];
 
-    /// `mixed` gives, of all linear fields that do the work of the consistent mass on ã and of the lumped mass on o on
+    /// `split` gives, of all linear fields that do the work of the consistent mass on ã and of the lumped mass on o on
     /// rigid motions, the nearest to ã: the solution g of the least-squares problem |g − ã|² → min, Bg = f with a
     /// multiplier for each rigid motion.
     #[test]
-    fn mixed_solves_the_least_squares_problem() {
+    fn split_solves_the_least_squares_problem() {
         let arms = arms(&POINTS);
         let rigid = [[[1.0, 0.0]; 3], [[0.0, 1.0]; 3], arms.map(|d| [-d[1], d[0]])];
         let unit = |k: usize| std::array::from_fn(|i| std::array::from_fn(|c| f64::from(u8::from(2 * i + c == k))));
@@ -228,16 +246,16 @@ mod tests {
             right[6 + r] = mass_product(1.0, &NODAL, motion) + lumped;
         }
         let nearest = matrix.lu().solve(&right).unwrap();
-        let field = Inertia::new(Acceleration::Mixed, &arms).apply(&NODAL, Some(&LUMPING));
+        let field = Inertia::new(Acceleration::Split, &arms).apply(&NODAL, Some(&LUMPING));
         for (k, value) in field.as_flattened().iter().enumerate() {
             assert!((value - nearest[k]).abs() < 1e-13, "{value} against {}", nearest[k]);
         }
     }
 
-    /// In a bar nothing turns: `mixed` adds the mean of o.
+    /// In a bar nothing turns: `split` adds the mean of o.
     #[test]
-    fn mixed_bar() {
-        let map = Inertia::new(Acceleration::Mixed, &arms(&[[0.0], [2.0]]));
+    fn split_bar() {
+        let map = Inertia::new(Acceleration::Split, &arms(&[[0.0], [2.0]]));
         assert_eq!(map.apply(&[[1.0], [4.0]], Some(&[[0.5], [1.0]])), [[1.75], [4.75]]);
     }
 

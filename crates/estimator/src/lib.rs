@@ -42,6 +42,7 @@ mod residual;
 mod sampling;
 mod scratch_file;
 mod simd;
+mod smoothing;
 mod sources;
 mod stress;
 mod time_level;

@@ -38,9 +38,9 @@ pub enum Acceleration {
     Rigid,
     /// The linear one that does the lumped work on each shape function.
     Weak,
-    /// The one nearest to ρ ã_h if the tractions balance the consistent mass term and, lumped, by how much lumping
-    /// changes the acceleration. For `corrected` only.
-    Mixed,
+    /// The one nearest to ρ a_c if the tractions balance M ã = M_c a_c + (M − M_c) w, of which the last term is a
+    /// stress in each element. For `corrected` only.
+    Split,
 }
 
 impl Acceleration {
@@ -53,11 +53,11 @@ impl Acceleration {
         }
     }
 
-    /// The one that is taken where none is chosen. On a bar nothing turns, and `mixed` has no advantage.
+    /// The one that is taken where none is chosen. On a bar nothing turns, and `split` has no advantage.
     #[must_use]
     pub fn default_of(reconstruction: Reconstruction, dimension: usize) -> Self {
         match (reconstruction, dimension) {
-            (Reconstruction::Corrected, 2..) => Self::Mixed,
+            (Reconstruction::Corrected, 2..) => Self::Split,
             _ => Self::Closest,
         }
     }
@@ -215,7 +215,7 @@ named!(
         NormalWork = "normal work",
         DoubledWork = "doubled work"
 );
-named!(Acceleration: Closest = "closest", Rigid = "rigid", Weak = "weak", Mixed = "mixed");
+named!(Acceleration: Closest = "closest", Rigid = "rigid", Weak = "weak", Split = "split");
 
 #[cfg(test)]
 mod tests {

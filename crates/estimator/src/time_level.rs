@@ -44,8 +44,35 @@ pub(crate) struct TimeLevel<const D: usize> {
     /// Prescribed moments on the loaded facets (N).
     pub(crate) load_moments: Vec<[[f64; D]; D]>,
     pub(crate) surface: SurfaceStep<D>,
-    /// M⁻¹(M − M_c)ã (m/s²), which `mixed` needs.
-    pub(crate) lumping_difference: Option<NodalField<D>>,
+    /// The other fields of a split mass term.
+    pub(crate) split: Option<SplitFields<D>>,
+    /// Whether its stress is that of smoothed strains.
+    pub(crate) smoothed: bool,
+}
+
+/// The fields of a split mass term beside a_c (m/s²): M ã = M_c a_c + (M − M_c) w.
+#[derive(Clone, Debug)]
+pub(crate) struct SplitFields<const D: usize> {
+    /// w.
+    pub(crate) lumped: NodalField<D>,
+    /// o₂, the acceleration of the skew part of the stress that (M − M_c) w is.
+    pub(crate) skew: NodalField<D>,
+}
+
+/// The inertia that is balanced, as far as it is known without F_DA.
+#[derive(Clone, Debug)]
+pub(crate) enum Inertia<const D: usize> {
+    /// All nodal forces but those of contact (N): external, internal, of supports.
+    Forces(NodalField<D>),
+    /// ã under all forces; a_c of a split mass term (m/s²).
+    Acceleration(NodalField<D>),
+}
+
+impl<const D: usize> TimeLevel<D> {
+    /// o₂ of a split mass term.
+    pub(crate) fn skew(&self) -> Option<&[[f64; D]]> {
+        self.split.as_ref().map(|split| &split.skew[..])
+    }
 }
 
 /// A level of which the motion is known.
@@ -56,8 +83,7 @@ pub(crate) struct MotionKnown<const D: usize> {
     pub(crate) now: NodalMotion<D>,
     /// u̇_CA at t_{n−½} (m/s).
     pub(crate) mid_velocity: Option<NodalField<D>>,
-    /// All nodal forces but those of contact (N): external, internal, of supports.
-    pub(crate) force: NodalField<D>,
+    pub(crate) inertia: Inertia<D>,
 }
 
 /// Motion and ∫ã dt at an instant.
@@ -65,8 +91,8 @@ pub(crate) struct MotionKnown<const D: usize> {
 pub(crate) struct Velocities<const D: usize> {
     pub(crate) motion: NodalMotion<D>,
     pub(crate) increment: Increment<D>,
-    /// The same of the lumping difference.
-    pub(crate) lumping_increment: Option<Increment<D>>,
+    /// The same of o₂.
+    pub(crate) skew_increment: Option<Increment<D>>,
 }
 
 /// A level of which the fields before t_n are known, ã and the contact density among them.
@@ -74,7 +100,7 @@ pub(crate) struct Velocities<const D: usize> {
 pub(crate) struct ForcesBefore<const D: usize> {
     /// The level as it is unless the contact force jumps at t_n. No density acts before t_0.
     pub(crate) forces: ForcesKnown<D>,
-    /// All forces but those of contact at the nodes of the contact surface (N).
+    /// All forces but those of contact at the nodes of the contact surface (N), where ã depends on F_DA.
     pub(crate) surface_force: Vec<[f64; D]>,
 }
 
@@ -85,7 +111,7 @@ pub(crate) struct ForcesKnown<const D: usize> {
     pub(crate) now: Velocities<D>,
     /// u̇_CA at t_{n−½} (m/s); the other fields there follow from those at t_n and at the level before.
     pub(crate) mid_velocity: Option<NodalField<D>>,
-    /// ã after t_n (m/s²).
+    /// ã after t_n; a_c of a split mass term (m/s²).
     pub(crate) acceleration: NodalField<D>,
     /// The contact density after t_n.
     pub(crate) density: Densities<D>,

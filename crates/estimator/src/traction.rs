@@ -25,6 +25,7 @@ use percute_core::material::Law;
 use percute_core::mesh::{Star, Strips};
 use percute_core::observer::StopFlag;
 use percute_core::problem::Problem;
+pub(crate) use solve::Smoothed;
 use solve::StarFields;
 use star_solver::{Compatibility, Ends};
 

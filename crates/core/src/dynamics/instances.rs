@@ -108,8 +108,8 @@ pub fn replay<const D: usize, const N: usize>(
 /// The Ritz value approaches ω²_max from below; its residual is added and the element-wise bound
 /// caps the sum. At least 10 ln n vectors are used: with a random start the expected relative
 /// error of the Ritz value is then below 0.103 (ln n/(k−1))² ≈ 1e-3 for any spectrum
-/// (Kuczyński and Woźniakowski, 1992), half of it for ω, and in practice far smaller.
+/// (Kuczyński and Woźniakowski, 1992), half of it for ω, and in practice far smaller. The problem keeps it.
 #[must_use]
 pub fn critical_time_step<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
-    (Functions::of(problem).critical_time_step)(problem)
+    problem.critical_step(|| (Functions::of(problem).critical_time_step)(problem))
 }

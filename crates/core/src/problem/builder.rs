@@ -12,6 +12,7 @@ use crate::load::{BodyForce, Support, Traction};
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
 use crate::message::axis;
+use std::sync::OnceLock;
 
 /// An initial field.
 #[derive(Clone, Debug)]
@@ -222,6 +223,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             element_body_loads,
             surface,
             contacts: places,
+            critical_step: OnceLock::new(),
             stated: self.stated,
             mesh: self.mesh.with_facet_groups(groups),
         };

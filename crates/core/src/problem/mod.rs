@@ -31,6 +31,7 @@ use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{Profile, Table};
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
+use std::sync::OnceLock;
 
 /// One component of a node's motion that is prescribed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,6 +84,8 @@ pub struct Problem<const D: usize, const N: usize> {
     surface: ContactSurface<D>,
     /// Where each of the interfaces is stated.
     contacts: Vec<Place>,
+    /// Δt_c (s), once it is known.
+    critical_step: OnceLock<f64>,
 }
 
 /// A problem on a mesh of bars.
@@ -323,6 +326,11 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     #[must_use]
     pub fn initial_gap(&self, obstacle: usize) -> f64 {
         self.nearest(obstacle).map_or(f64::INFINITY, |(_, gap)| gap)
+    }
+
+    /// Δt_c (s), made at first use.
+    pub(crate) fn critical_step(&self, make: impl FnOnce() -> f64) -> f64 {
+        *self.critical_step.get_or_init(make)
     }
 
     /// Volume of an element with section or thickness (m³).

@@ -2,17 +2,16 @@
 //!
 //! An exact normal contact force F_n acts only where the gap and the normal velocity are zero. Otherwise the energy
 //! ∫F_n gap is the misfit of the law at displacement level. It is finite, and zero if and only if the complementarity
-//! condition holds. ∫∫F_n|w_n| dt is the work of the normal force, which is zero in the exact solution. It accumulates,
-//! because the waves that carry this energy in the exact solution are missing afterwards. F_n is here the reaction of
+//! condition holds. ∫ΣF_n|w_n| dt is the work of the normal forces, which is zero in the exact solution. It accumulates,
+//! because the waves that carry this energy in the exact solution are missing afterwards. w_n is the gap rate of the node
+//! of each force: the far end of an edge moves freely under it and loses nothing. F_n is here the reaction of
 //! the simulation: a reaction that brings a node to rest within a step removes its kinetic energy, even where F_DA
 //! distributes the impulse over a time in which the node is at rest.
 
 use super::{Densities, NarrowHat};
-use crate::direction::along;
 use crate::kinematic::ContactTrack;
 use crate::numbers::Reader;
 use percute_core::problem::Problem;
-use percute_core::simplex::Simplex;
 use percute_core::time::TimeGrid;
 
 /// A normal force on a facet: linear along it, and hats.
@@ -53,10 +52,10 @@ impl<const D: usize> NormalForce<D> {
         gap_energy(area, &self.linear, &open) + hats
     }
 
-    /// ∫F_n|w_n| (W).
-    fn power<const N: usize>(&self, simplex: &dyn Simplex<D, N>, area: f64, speed: &[f64; D]) -> f64 {
-        let hats: f64 = self.hats.iter().map(|(hat, force)| force * hat.mean_absolute(speed)).sum();
-        normal_power(simplex, area, &self.linear, speed) + hats
+    /// The power of the normal force of each node at the rate of its own gap (W).
+    fn power(&self, area: f64, speed: &[f64; D]) -> f64 {
+        let hats: f64 = self.hats.iter().map(|(hat, force)| force * speed[hat.end].abs()).sum();
+        normal_power(area, &self.linear, speed) + hats
     }
 }
 
@@ -186,7 +185,7 @@ pub(crate) struct FacetPressures<const D: usize> {
 pub(crate) struct NormalMisfit {
     /// ∫F_n gap.
     pub(crate) energy: [f64; 3],
-    /// ∫∫F_n|w_n| dt since its beginning; the middle is that of its first step.
+    /// ∫ΣF_n|w_n| dt since its beginning; the middle is that of its first step.
     pub(crate) work: [f64; 3],
 }
 
@@ -259,7 +258,7 @@ impl<const D: usize> FacetPressures<D> {
                 let motion = facet.nodes.map(|at| tracks[at].at(instant + half));
                 let energy = normal.acting.gap_energy(facet.area, &motion.map(|(_, gap)| gap));
                 let speed = motion.map(|(speed, _)| speed);
-                (energy, normal.sudden.power(problem.mesh().simplex(), facet.area, &speed))
+                (energy, normal.sudden.power(facet.area, &speed))
             };
             let ([(before, p0), (after, p2)], [a, b]) = ([at(0, start), at(2, end)], [at(1, start), at(1, end)]);
             // Forces are linear in time over a step.
@@ -286,20 +285,14 @@ fn gap_energy<const D: usize>(area: f64, force: &[f64; D], gap: &[f64; D]) -> f6
     area * (products + force.iter().sum::<f64>() * gap.iter().sum::<f64>()) / (D * (D + 1)) as f64
 }
 
-/// ∫F_n|w_n| over a facet (W), both linear, the force in Pa.
-fn normal_power<const D: usize, const N: usize>(
-    simplex: &dyn Simplex<D, N>,
-    area: f64,
-    force: &[f64; D],
-    speed: &[f64; D],
-) -> f64 {
-    area * simplex.facet_mean(speed, &|weights| along(weights, force) * along(weights, speed).abs())
+/// ΣF_k|w_k| over the nodes of a facet (W), F_k = ∫F_nφ_k of the part F_kφ_k of a linear force (Pa).
+fn normal_power<const D: usize>(area: f64, force: &[f64; D], speed: &[f64; D]) -> f64 {
+    area / D as f64 * force.iter().zip(speed).map(|(force, speed)| force * speed.abs()).sum::<f64>()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::simplex::{Bar, Triangle};
 
     /// The misfits of the normal law against the midpoint rule, which converges with the square of the interval.
     #[test]
@@ -309,13 +302,18 @@ mod tests {
         let mean =
             |f: &dyn Fn(f64) -> f64| (0..count).map(|k| f((k as f64 + 0.5) / count as f64)).sum::<f64>() / count as f64;
         let line = |[a, b]: [f64; 2], s: f64| (1.0 - s) * a + s * b;
-        for speed in [[3.0, 1.0], [-3.0, 1.0], [0.5, -4.0], [0.0, 0.0]] {
-            let expected = area * mean(&|s| line(force, s) * line(speed, s).abs());
-            assert!((normal_power(&Triangle {}, area, &force, &speed) - expected).abs() < 1e-8, "{speed:?}");
+        for speed in [[3.0_f64, 1.0], [-3.0, 1.0], [0.5, -4.0], [0.0, 0.0]] {
+            // Of each part alone the density, at the rate of its node.
+            let part = |k: usize| {
+                let own = std::array::from_fn(|i| if i == k { force[k] } else { 0.0 });
+                mean(&|s| line(own, s)) * speed[k].abs()
+            };
+            let expected = area * (part(0) + part(1));
+            assert!((normal_power(area, &force, &speed) - expected).abs() < 1e-12, "{speed:?}");
         }
         let expected = area * mean(&|s| line(force, s) * line(gap, s));
         assert!((gap_energy(area, &force, &gap) - expected).abs() < 1e-11);
         // On a bar both are products.
-        assert_eq!((gap_energy(2.0, &[3.0], &[0.5]), normal_power(&Bar {}, 2.0, &[3.0], &[-0.5])), (3.0, 3.0));
+        assert_eq!((gap_energy(2.0, &[3.0], &[0.5]), normal_power(2.0, &[3.0], &[-0.5])), (3.0, 3.0));
     }
 }

@@ -8,10 +8,10 @@ use crate::stress::{Loading, facet_node};
 pub(crate) struct NodalBalance<const D: usize, const N: usize, T = f64> {
     /// Outward moments of each facet at its nodes (N).
     pub(crate) moments: [[[T; D]; D]; N],
-    /// ã at the nodes (m/s²).
+    /// ã at the nodes; a_c with `split` (m/s²).
     pub(crate) acceleration: [[T; D]; N],
-    /// The lumping difference at the nodes, which `mixed` has (m/s²).
-    pub(crate) lumping_difference: Option<[[T; D]; N]>,
+    /// o₂ at the nodes, which `split` has (m/s²).
+    pub(crate) skew: Option<[[T; D]; N]>,
     /// f_d (N/m³).
     pub(crate) body_force: [T; D],
 }

@@ -19,7 +19,7 @@ pub(crate) struct BalanceNode<const D: usize> {
     pub(super) start: [f64; D],
     displacement: [Lanes; D],
     acceleration: [Lanes; D],
-    lumping_difference: [Lanes; D],
+    skew: [Lanes; D],
 }
 
 /// The nodes of a block of elements, at some levels.
@@ -29,7 +29,7 @@ pub(crate) struct BalanceFields<const D: usize> {
     /// The moments by which the stars of the nodes of some elements enter and leave them (N): those of a node follow
     /// each other.
     moments: Vec<[[Lanes; D]; 2]>,
-    mixed: bool,
+    split: bool,
     has_body_force: bool,
 }
 
@@ -44,11 +44,10 @@ impl<const D: usize> BalanceFields<D> {
         levels: &EquilibratedLevels<D>,
     ) {
         let forces = levels.forces();
-        self.mixed = forces.iter().any(|f| f.level.lumping_difference.is_some());
+        self.split = forces.iter().any(|f| f.level.split.is_some());
         self.has_body_force = forces.iter().any(|f| !f.level.body_force.is_empty());
         let (zero, none) = ([0.0; D], [Lanes::ZERO; D]);
-        let rest =
-            BalanceNode { point: zero, start: zero, displacement: none, acceleration: none, lumping_difference: none };
+        let rest = BalanceNode { point: zero, start: zero, displacement: none, acceleration: none, skew: none };
         self.nodes.resize(nodes.len(), rest);
         for (record, &node) in self.nodes.iter_mut().zip(nodes) {
             record.point = problem.mesh().points()[node as usize];
@@ -62,14 +61,14 @@ impl<const D: usize> BalanceFields<D> {
             #[inline(always)]
             |node| &mut node.acceleration,
         );
-        if self.mixed {
+        if self.split {
             gather(
                 like,
                 &mut self.nodes,
                 nodes,
-                forces.iter().map(|f| f.level.lumping_difference.as_deref()),
+                forces.iter().map(|f| f.level.skew()),
                 #[inline(always)]
-                |node| &mut node.lumping_difference,
+                |node| &mut node.skew,
             );
         }
     }
@@ -92,19 +91,19 @@ impl<const D: usize> BalanceFields<D> {
         );
     }
 
-    /// ã and the lumping difference at the nodes, by their places (m/s²).
+    /// ã, or a_c, and o₂ at the nodes, by their places (m/s²).
     #[inline(always)]
     pub(crate) fn accelerations(&self) -> impl Iterator<Item = [&[Lanes; D]; 2]> {
         self.nodes.iter().map(
             #[inline(always)]
-            |node| [&node.acceleration, &node.lumping_difference],
+            |node| [&node.acceleration, &node.skew],
         )
     }
 
-    /// Whether there is a lumping difference.
+    /// Whether the mass term is split.
     #[inline(always)]
-    pub(crate) fn is_mixed(&self) -> bool {
-        self.mixed
+    pub(crate) fn is_split(&self) -> bool {
+        self.split
     }
 
     /// The nodes of an element, which have these places.
@@ -141,10 +140,10 @@ impl<const D: usize> BalanceFields<D> {
         nodes: &[&BalanceNode<D>; N],
     ) -> NodalBalance<D, N, T> {
         let own = &self.moments[N * k..][..N];
-        let (mut acceleration, mut lumping_difference) = ([[like; D]; N], [[like; D]; N]);
+        let (mut acceleration, mut skew) = ([[like; D]; N], [[like; D]; N]);
         for i in 0..N {
             acceleration[i] = load(like, &nodes[i].acceleration);
-            lumping_difference[i] = load(like, &nodes[i].lumping_difference);
+            skew[i] = load(like, &nodes[i].skew);
         }
         NodalBalance {
             moments: outward(
@@ -152,7 +151,7 @@ impl<const D: usize> BalanceFields<D> {
                 |i| [load(like, &own[i][0]), load(like, &own[i][1])],
             ),
             acceleration,
-            lumping_difference: self.mixed.then_some(lumping_difference),
+            skew: self.split.then_some(skew),
             body_force: if self.has_body_force { load(like, &levels.body_force(id)) } else { [like.zero(); D] },
         }
     }

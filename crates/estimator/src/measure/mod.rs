@@ -120,7 +120,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         NodalBalance {
             moments: outward(around),
             acceleration: self.acceleration(level, contact, side),
-            lumping_difference: forces.level.lumping_difference.as_ref().map(|field| self.element.gather(field)),
+            skew: forces.level.skew().map(|field| self.element.gather(field)),
             body_force: forces.level.body_force.get(self.id.index()).copied().unwrap_or([0.0; D]),
         }
     }
@@ -145,7 +145,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     /// Tractions and Γ_DA − f_d.
     #[inline(always)]
     pub(crate) fn balanced<T: Value>(&self, fields: &NodalBalance<D, N, T>) -> Balanced<D, N, T> {
-        let NodalBalance { moments, acceleration, lumping_difference, body_force } = fields;
+        let NodalBalance { moments, acceleration, skew, body_force } = fields;
         let density = self.law.density();
         let mut terms = acceleration[0][0].zero();
         for a in acceleration.as_flattened() {
@@ -154,7 +154,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         for f in body_force {
             terms = terms.max(f.abs());
         }
-        let mut volume = self.inertia.apply(acceleration, lumping_difference.as_ref());
+        let mut volume = self.inertia.apply(acceleration, skew.as_ref());
         for value in &mut volume {
             for c in 0..D {
                 value[c] = value[c] * density - body_force[c];
@@ -168,18 +168,18 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     #[inline]
     pub(crate) fn increment(&self, velocities: &Velocities<D>) -> [[f64; D]; N] {
         let nodes = &self.element.nodes;
-        let lumping = velocities.lumping_increment.as_ref().map(|increment| increment.gather(nodes));
-        self.increment_of(&velocities.increment.gather(nodes), lumping.as_ref())
+        let skew = velocities.skew_increment.as_ref().map(|increment| increment.gather(nodes));
+        self.increment_of(&velocities.increment.gather(nodes), skew.as_ref())
     }
 
-    /// The same from ∫ã dt and that of the lumping difference at the nodes.
+    /// The same from ∫ã dt, or those of a_c and o₂, at the nodes.
     #[inline(always)]
     pub(crate) fn increment_of<T: Value>(
         &self,
         increment: &[[T; D]; N],
-        lumping_increment: Option<&[[T; D]; N]>,
+        skew_increment: Option<&[[T; D]; N]>,
     ) -> [[T; D]; N] {
-        self.inertia.apply(increment, lumping_increment)
+        self.inertia.apply(increment, skew_increment)
     }
 
     /// σ_DA. Its mean is that of the tractions and of Γ_DA − f_d as forces on the nodes.
@@ -346,7 +346,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         level: &EquilibratedLevel<'_, D>,
     ) -> ([[f64; D]; D], [f64; D]) {
         let fields = self.nodal_balance(equilibration, level, &[None; N], Side::After);
-        let inertia = self.inertia.apply(&fields.acceleration, fields.lumping_difference.as_ref());
+        let inertia = self.inertia.apply(&fields.acceleration, fields.skew.as_ref());
         let acceleration = std::array::from_fn(|c| inertia.iter().map(|a| a[c]).sum::<f64>() / N as f64);
         (self.stress_map().mean(&self.balanced(&fields).loading), acceleration)
     }

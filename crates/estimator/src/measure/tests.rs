@@ -12,7 +12,7 @@ fn random_balance(measure: &ElementMeasure<'_, 2, 3>, random: &mut Random) -> Ba
     let mut fields = NodalBalance {
         moments: [(); 3].map(|()| [vector(), vector()]),
         acceleration: [(); 3].map(|()| vector()),
-        lumping_difference: None,
+        skew: None,
         body_force: vector(),
     };
     let ([xx, xy], [_, yy]) = (vector(), vector());

@@ -223,7 +223,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         } else if self.reconstruction.differences().is_some() {
             self.unmeasured = Some(self.pool.copy(step.displacement));
         }
-        let BalancedFields { displacement, force, contact, densities, lumping_difference } = balanced;
+        let BalancedFields { displacement, inertia, contact, densities, split, smoothed } = balanced;
         if let Some(densities) = &densities {
             self.sliding.push(problem, n, densities)?;
         }
@@ -239,9 +239,10 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
                 touching: step.touching.to_vec(),
                 gap: problem.surface().gaps(step.displacement),
             },
-            lumping_difference,
+            split,
+            smoothed,
         };
-        let motion = MotionKnown { level, now, mid_velocity, force };
+        let motion = MotionKnown { level, now, mid_velocity, inertia };
         if n == 0 {
             self.check_initial(&motion.now);
             self.current = Some(self.first(motion));

@@ -233,9 +233,8 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
             let (increment, start) = (increment.gather(&element.nodes), element.gather(start));
             std::array::from_fn(|i| increment::half_way(length, &increment[i], [&start[i], &end[i]]))
         };
-        let lumping = now.lumping_increment.as_ref().zip(start.level.lumping_difference.as_ref());
-        let lumping = lumping.zip(end.level.lumping_difference.as_ref());
-        let lumping = lumping.map(|((increment, start), end)| half_way(increment, start, &element.gather(end)));
+        let skew = now.skew_increment.as_ref().zip(start.level.skew()).zip(end.level.skew());
+        let skew = skew.map(|((increment, start), end)| half_way(increment, start, &element.gather(end)));
         let increment = half_way(&now.increment, &start.acceleration, &last);
         let problem = self.shared.problem;
         let mid_velocity = end.mid_velocity.as_ref();
@@ -243,7 +242,7 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         let motion = ElementMotion::gather(problem, &now.motion, &element.nodes, contact);
         ElementVelocities {
             motion: mid_velocity.map_or(motion, |velocity| motion.half_way(length, velocity)),
-            increment: self.measure.increment_of(&increment, lumping.as_ref()),
+            increment: self.measure.increment_of(&increment, skew.as_ref()),
         }
     }
 

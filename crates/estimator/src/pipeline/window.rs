@@ -37,7 +37,7 @@ const OTHER_LEVELS: usize = 4;
 
 /// Memory of one level (bytes).
 fn bytes_of_level<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> usize {
-    let fields = if options.acceleration(D) == Acceleration::Mixed { 8 } else { 6 };
+    let fields = if options.acceleration(D) == Acceleration::Split { 9 } else { 6 };
     size_of::<[f64; D]>() * fields * problem.mesh().node_count()
 }
 

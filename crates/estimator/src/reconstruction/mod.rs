@@ -18,7 +18,7 @@ use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
 use crate::nodal_field::{FieldPool, NodalField};
 use crate::options::{Acceleration, Options, Reconstruction};
-use crate::time_level::{ForcesKnown, MotionKnown, SurfaceStep};
+use crate::time_level::{ForcesKnown, Inertia, MotionKnown, SplitFields, SurfaceStep};
 use crate::traction::{EquilibratedLevels, Equilibration, Then};
 pub(crate) use admissibility::check;
 use consistent::Consistent;
@@ -64,14 +64,15 @@ pub(crate) struct SimulatedStep<'a, const D: usize> {
 pub(crate) struct BalancedFields<const D: usize> {
     /// The displacement whose stress is equilibrated (m).
     pub(crate) displacement: NodalField<D>,
-    /// Its forces but those of contact (N).
-    pub(crate) force: NodalField<D>,
+    pub(crate) inertia: Inertia<D>,
     /// The forces of which densities are made (N).
     pub(crate) contact: Vec<[f64; D]>,
     /// Their densities, where they depend on no other instant.
     pub(crate) densities: Option<LevelDensities<D>>,
-    /// M⁻¹(M − M_c)ã (m/s²), for `mixed` alone.
-    pub(crate) lumping_difference: Option<NodalField<D>>,
+    /// The other fields of a split mass term.
+    pub(crate) split: Option<SplitFields<D>>,
+    /// Whether the stress is that of smoothed strains.
+    pub(crate) smoothed: bool,
 }
 
 /// A way to build dynamically admissible fields.
@@ -103,7 +104,8 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         let (state, step) = (simulated.state, simulated.state.step());
         let (displacement, contact, mut force) = (pool.copy(step.displacement), step.reaction.to_vec(), pool.take());
         state.write_force_without_contact(dynamics.problem().surface(), &mut force);
-        BalancedFields { displacement, force, contact, densities: None, lumping_difference: None }
+        let inertia = Inertia::Forces(force);
+        BalancedFields { displacement, inertia, contact, densities: None, split: None, smoothed: false }
     }
 
     /// Measures the difference of the simulation and the auxiliary solution at the level that `advance` has taken in
@@ -167,7 +169,7 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         levels: &mut EquilibratedLevels<D>,
         then: Then<'_, D>,
     ) -> f64 {
-        equilibration.solve(forces, levels, then)
+        equilibration.solve(forces, levels, None, then)
     }
 }
 

@@ -81,8 +81,12 @@ pub(crate) trait Registers: Copy {
     fn turn(self, v: Self::Eight) -> Self::Eight;
     /// The first pair.
     fn first(self, v: Self::Eight) -> Self::Four;
+    /// The second pair.
+    fn last(self, v: Self::Eight) -> Self::Four;
     /// The first pair of another, with the second of this.
     fn with_first(self, v: Self::Eight, first: Self::Four) -> Self::Eight;
+    /// Two pairs.
+    fn join(self, first: Self::Four, last: Self::Four) -> Self::Eight;
 
     /// From memory.
     fn load4(self, from: &Four) -> Self::Four;
@@ -252,7 +256,17 @@ impl Registers for Portable {
     }
 
     #[inline(always)]
+    fn last(self, [.., e, f, g, h]: Eight) -> Four {
+        [e, f, g, h]
+    }
+
+    #[inline(always)]
     fn with_first(self, [.., e, f, g, h]: Eight, [a, b, c, d]: Four) -> Eight {
+        [a, b, c, d, e, f, g, h]
+    }
+
+    #[inline(always)]
+    fn join(self, [a, b, c, d]: Four, [e, f, g, h]: Four) -> Eight {
         [a, b, c, d, e, f, g, h]
     }
 
@@ -342,8 +356,9 @@ mod tests {
                 r.swap(a),
                 r.turn(a),
                 r.with_first(b, c),
+                r.join(d, c),
             ];
-            let four = [c, d, r.splat4(self.0[0][2]), r.add4(c, d), r.sub4(c, d), r.mul4(c, d)];
+            let four = [c, d, r.last(b), r.splat4(self.0[0][2]), r.add4(c, d), r.sub4(c, d), r.mul4(c, d)];
             (eight.map(|v| r.store(v)).to_vec(), four.map(|v| r.store4(v)).to_vec())
         }
     }

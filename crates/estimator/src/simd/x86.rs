@@ -135,8 +135,18 @@ impl Registers for V3 {
     }
 
     #[inline(always)]
+    fn last(self, [_, b]: Self::Eight) -> __m256d {
+        b
+    }
+
+    #[inline(always)]
     fn with_first(self, [_, b]: Self::Eight, first: __m256d) -> Self::Eight {
         [first, b]
+    }
+
+    #[inline(always)]
+    fn join(self, first: __m256d, last: __m256d) -> Self::Eight {
+        [first, last]
     }
 }
 
@@ -229,7 +239,17 @@ impl Registers for V4 {
     }
 
     #[inline(always)]
+    fn last(self, v: __m512d) -> __m256d {
+        self.avx512f._mm512_extractf64x4_pd::<1>(v)
+    }
+
+    #[inline(always)]
     fn with_first(self, v: __m512d, first: __m256d) -> __m512d {
         self.avx512f._mm512_insertf64x4::<0>(v, first)
+    }
+
+    #[inline(always)]
+    fn join(self, first: __m256d, last: __m256d) -> __m512d {
+        self.avx512f._mm512_insertf64x4::<1>(self.avx512f._mm512_castpd256_pd512(first), last)
     }
 }

@@ -2,13 +2,13 @@
 
 use crate::lanes::Value;
 
-/// The nodal inertia forces of the elements around a node. Their sum over the star is M ã at the node.
+/// The nodal inertia forces of the elements around a node.
 pub(super) enum MassTerm<'a, const D: usize, const N: usize, T: Value> {
-    /// ρV/(D+1) ã_i, with ã of the node.
+    /// ρV/(D+1) ã_i, with ã of the node; their sum over the star is M ã there.
     Lumped([T; D]),
-    /// (M_c ã)_i + ρV/(D+1) o_i, with ã and the lumping difference o at nodes, and the places of the nodes of each
-    /// element.
-    Mixed { acceleration: &'a [[T::Stored; D]], lumping_difference: &'a [[T::Stored; D]], nodes: &'a [[u32; N]] },
+    /// (M_c a_c)_i + ρV/(D+1) o_i, with a_c and o at nodes, and the places of the nodes of each element. With the
+    /// symmetric part of the stress of lumping, their sum over the star is M ã at the node.
+    Split { acceleration: &'a [[T::Stored; D]], skew: &'a [[T::Stored; D]], nodes: &'a [[u32; N]] },
 }
 
 impl<const D: usize, const N: usize, T: Value> MassTerm<'_, D, N, T> {
@@ -18,15 +18,15 @@ impl<const D: usize, const N: usize, T: Value> MassTerm<'_, D, N, T> {
     pub(super) fn at(&self, like: T, element: usize, i: usize, c: usize) -> [T; 2] {
         match *self {
             Self::Lumped(acceleration) => [acceleration[c], acceleration[c].abs()],
-            Self::Mixed { acceleration, lumping_difference, nodes } => {
+            Self::Split { acceleration, skew, nodes } => {
                 let nodes = &nodes[element];
-                let lumping = like.load(&lumping_difference[nodes[i] as usize][c]);
-                let (mut sum, mut size) = (like.load(&acceleration[nodes[i] as usize][c]), lumping.abs());
+                let skew = like.load(&skew[nodes[i] as usize][c]);
+                let (mut sum, mut size) = (like.load(&acceleration[nodes[i] as usize][c]), skew.abs());
                 for n in nodes {
                     let a = like.load(&acceleration[*n as usize][c]);
                     (sum, size) = (sum + a, size.max(a.abs()));
                 }
-                [sum * (1.0 / (D + 2) as f64) + lumping, size]
+                [sum * (1.0 / (D + 2) as f64) + skew, size]
             }
         }
     }
@@ -36,50 +36,66 @@ impl<const D: usize, const N: usize, T: Value> MassTerm<'_, D, N, T> {
 mod tests {
     use super::*;
     use crate::element::elements;
-    use percute_core::load::Support;
-    use percute_core::material::Elastic;
+    use crate::inertia::{add_lumping_stress, arms};
+    use percute_core::ids::ElementId;
+    use percute_core::material::{Elastic, Law};
     use percute_core::problem::Problem;
     use percute_testkit::{Random, random_rectangle};
 
-    /// Over each star the elements sum up to (M ã)_i where nothing is prescribed, and to (M_c ã)_i, which a support
-    /// carries, where o is 0.
+    /// M ã = M_c a_c + (M − M_c) w for any c: over each star, the elements with a_c = ã + c o, w = (1 − c)ã + c o, o the
+    /// lumping difference of ã, sum up to (M ã)_i, with the symmetric part of the stress of lumping and the acceleration
+    /// of the skew one.
     #[test]
     fn stars_sum_up_to_the_lumped_mass() {
         let problem = Problem::builder(random_rectangle(0.05, 0.04, 4, 1).unwrap())
             .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 0.3).unwrap())
-            .support(Support { group: "left".into(), components: [true, false], velocity: None })
             .build()
             .unwrap();
-        let (mesh, mut random) = (problem.mesh(), Random::new(1));
+        let (mesh, mut random, elements) = (problem.mesh(), Random::new(1), elements(&problem));
         let nodes = mesh.node_count();
-        let acceleration: Vec<_> = (0..nodes).map(|_| [0, 1].map(|_| random.between(-1.0, 1.0))).collect();
-        // (M_c a)_i of an element is m/12 (a_i + Σa_j).
-        let elements = elements(&problem);
-        let mut consistent = vec![[0.0; 2]; nodes];
+        let plain: Vec<_> = (0..nodes).map(|_| [0, 1].map(|_| random.between(-1.0, 1.0))).collect();
+        // M − M_c of an element takes the mean off its nodes, times m/4.
+        let mut once = vec![[0.0; 2]; nodes];
         for element in &elements {
             for (n, c) in element.nodes.iter().flat_map(|n| [(n.index(), 0), (n.index(), 1)]) {
-                let sum: f64 = element.nodes.iter().map(|j| acceleration[j.index()][c]).sum();
-                consistent[n][c] += element.nodal_mass / 4.0 * (acceleration[n][c] + sum);
+                let mean = element.nodes.iter().map(|j| plain[j.index()][c]).sum::<f64>() / 3.0;
+                once[n][c] += 0.75 * element.nodal_mass * (plain[n][c] - mean) / problem.mass()[n];
             }
         }
-        let lumped = |n: usize, c: usize| problem.mass()[n] * acceleration[n][c];
-        let held = |n: usize, c: usize| problem.prescribed().iter().any(|p| (p.node.index(), p.component) == (n, c));
-        let free = |n, c| if held(n, c) { 0.0 } else { (lumped(n, c) - consistent[n][c]) / problem.mass()[n] };
-        let lumping_difference: Vec<_> = (0..nodes).map(|n| [0, 1].map(|c| free(n, c))).collect();
-        let cells: Vec<_> = elements.iter().map(|e| e.nodes.map(|n| n.index() as u32)).collect();
-        let term: MassTerm<'_, 2, 3, f64> =
-            MassTerm::Mixed { acceleration: &acceleration, lumping_difference: &lumping_difference, nodes: &cells };
+        let c = 1.3;
+        let of = |n: usize, own: f64| [0, 1].map(|k| own * plain[n][k] + c * once[n][k]);
+        let acceleration: Vec<_> = (0..nodes).map(|n| of(n, 1.0)).collect();
+        let lumped: Vec<_> = (0..nodes).map(|n| of(n, 1.0 - c)).collect();
+        let mut skew = vec![[0.0; 2]; nodes];
         let mut sums = vec![[0.0; 2]; nodes];
         for (e, element) in elements.iter().enumerate() {
-            for (i, c) in (0..3).flat_map(|i| [(i, 0), (i, 1)]) {
-                sums[element.nodes[i].index()][c] += element.nodal_mass * term.at(0.0, e, i, c)[0];
+            let id = ElementId::new(e);
+            let (arms, w) = (arms(&mesh.cell_points(id)), element.gather(&lumped));
+            let mut symmetric = [[0.0; 2]; 2];
+            let density = problem.material(id).density();
+            add_lumping_stress(density, &arms, &w, &mut symmetric);
+            let tau = |a: usize, b: usize| density / 4.0 * (0..3).map(|i| w[i][a] * arms[i][b]).sum::<f64>();
+            let rest = [0, 1].map(|a| [0, 1].map(|b| tau(a, b) - symmetric[a][b]));
+            assert!((rest[0][1] + rest[1][0]).abs() < 1e-12 * tau(0, 1).abs(), "{rest:?}");
+            for (i, node) in element.nodes.iter().enumerate() {
+                let [even, odd] = [symmetric, rest].map(|stress| element.internal_force(i, &stress));
+                for k in 0..2 {
+                    sums[node.index()][k] += even[k];
+                    skew[node.index()][k] += odd[k] / problem.mass()[node.index()];
+                }
             }
         }
-        assert!(problem.prescribed().len() > 3);
-        for (n, c) in (0..nodes).flat_map(|n| [(n, 0), (n, 1)]) {
-            let wanted = if held(n, c) { consistent[n][c] } else { lumped(n, c) };
-            // Rounding of a dozen terms.
-            assert!((sums[n][c] - wanted).abs() < 1e-14 * problem.mass()[n], "{n}, {c}: {} for {wanted}", sums[n][c]);
+        let cells: Vec<_> = elements.iter().map(|e| e.nodes.map(|n| n.index() as u32)).collect();
+        let term: MassTerm<'_, 2, 3, f64> = MassTerm::Split { acceleration: &acceleration, skew: &skew, nodes: &cells };
+        for (e, element) in elements.iter().enumerate() {
+            for (i, k) in (0..3).flat_map(|i| [(i, 0), (i, 1)]) {
+                sums[element.nodes[i].index()][k] += element.nodal_mass * term.at(0.0, e, i, k)[0];
+            }
+        }
+        for (n, k) in (0..nodes).flat_map(|n| [(n, 0), (n, 1)]) {
+            let wanted = problem.mass()[n] * plain[n][k];
+            // Rounding of some thirty terms.
+            assert!((sums[n][k] - wanted).abs() < 1e-13 * problem.mass()[n], "{n}, {k}: {} for {wanted}", sums[n][k]);
         }
     }
 }

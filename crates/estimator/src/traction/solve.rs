@@ -5,13 +5,16 @@ use super::{EXPLAINED, EquilibratedLevel, EquilibratedLevels, Equilibration, Mas
 use crate::blocks::{BLOCK, MeshPart, StarBlock};
 use crate::element::Element;
 use crate::field_lanes::FieldLanes;
+use crate::inertia::{add_lumping_stress, arms};
 use crate::lanes::{Lanes, Value, load};
 use crate::residual::worse;
 use crate::simd::{Registers, Task, run_task};
+use crate::smoothing::{SmoothedStrains, Smoothing, Strained};
 use crate::stress::hooke;
 use crate::time_level::{ForcesKnown, Side};
 use crate::wide::Wide;
 use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::material::Law;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -20,21 +23,31 @@ use std::ops::Range;
 pub(super) struct StarFields<const D: usize> {
     displacement: FieldLanes<D>,
     acceleration: FieldLanes<D>,
-    lumping_difference: FieldLanes<D>,
-    /// σ_h (Pa).
+    skew: FieldLanes<D>,
+    lumped: FieldLanes<D>,
+    /// The stress that is balanced (Pa): σ_h, or σ̄ with the symmetric part of the stress of lumping.
     stress: Vec<[[Lanes; D]; D]>,
     /// f_d (N/m³), empty if there is none.
     body_force: Vec<[Lanes; D]>,
 }
 
+/// The strains of which the stress of some levels is made.
+pub(crate) type Smoothed<'a> = (&'a SmoothedStrains, &'a Smoothing);
+
 impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
+    /// The elements with what their strains are smoothed with.
+    pub(crate) fn strained<'a>(&'a self, smoothing: &'a Smoothing) -> Strained<'a, D, N> {
+        Strained { problem: self.problem, smoothing, elements: &self.elements, blocks: &self.blocks }
+    }
+
     /// Solves the star problems of at most [`LANES`](crate::lanes::LANES) levels, part by part, and gives `then` each
     /// part when all stars of its elements are solved. Returns the largest relative miss of their equations. `levels`
-    /// gives its memory.
+    /// gives its memory, `strains` those of which stress is made where it is not that of the displacements.
     pub(crate) fn solve(
         &self,
         forces: Vec<ForcesKnown<D>>,
         levels: &mut EquilibratedLevels<D>,
+        strains: Option<Smoothed<'_>>,
         mut then: impl FnMut(&EquilibratedLevels<D>, &MeshPart),
     ) -> f64 {
         levels.force_scale = self.force_scale(&forces);
@@ -48,14 +61,14 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         }
         levels.forces = forces;
         for part in self.parts() {
-            worst = worse(worst, self.solve_part(part, levels));
+            worst = worse(worst, self.solve_part(part, levels, strains));
             then(levels, part);
         }
         worst
     }
 
     /// Solves the stars of a part.
-    fn solve_part(&self, part: &MeshPart, levels: &mut EquilibratedLevels<D>) -> f64 {
+    fn solve_part(&self, part: &MeshPart, levels: &mut EquilibratedLevels<D>, strains: Option<Smoothed<'_>>) -> f64 {
         let EquilibratedLevels { forces, force_scale, moments, .. } = levels;
         let mut blocks = Vec::with_capacity(part.stars.len());
         let mut rest = &mut moments[self.links(&self.nodes(part))];
@@ -66,7 +79,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         }
         let solve = |(block, moments): (usize, &mut [[Lanes; D]])| {
             let task = |fields: &mut StarFields<D>| {
-                run_task(SolveBlock { all: self, forces, force_scale, block, fields, moments })
+                run_task(SolveBlock { all: self, forces, strains, force_scale, block, fields, moments })
             };
             self.star_fields.lend(StarFields::default, task)
         };
@@ -136,14 +149,14 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
     fn solve_block<R: Registers>(
         &self,
         like: Wide<R>,
-        forces: &[ForcesKnown<D>],
+        (forces, strains): (&[ForcesKnown<D>], Option<Smoothed<'_>>),
         force_scale: &Lanes,
         block: usize,
         fields: &mut StarFields<D>,
         mut moments: &mut [[Lanes; D]],
     ) -> f64 {
         let (centres, place) = (self.star_blocks.centres(block), self.star_blocks.block(block));
-        let mixed = fields.gather(like, self, forces, &place);
+        let split = fields.gather(like, self, (forces, strains), &place);
         let floor = like.load(force_scale) * 1e-12;
         let mut worst: f64 = 0.0;
         for node in centres.map(NodeId::new) {
@@ -152,9 +165,9 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
             moments = others;
             let acceleration = fields.acceleration.values();
             let local = self.star_blocks.around(node);
-            let mass_term = if mixed {
-                let lumping_difference = fields.lumping_difference.values();
-                MassTerm::Mixed { acceleration, lumping_difference, nodes: place.local }
+            let mass_term = if split {
+                let skew = fields.skew.values();
+                MassTerm::Split { acceleration, skew, nodes: place.local }
             } else {
                 let own = self.position(star.elements[0], node);
                 MassTerm::Lumped(load(like, &acceleration[place.local[local[0] as usize][own] as usize]))
@@ -268,6 +281,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
 struct SolveBlock<'b, 'p, const D: usize, const N: usize> {
     all: &'b Equilibration<'p, D, N>,
     forces: &'b [ForcesKnown<D>],
+    strains: Option<Smoothed<'b>>,
     force_scale: &'b Lanes,
     block: usize,
     fields: &'b mut StarFields<D>,
@@ -279,8 +293,8 @@ impl<const D: usize, const N: usize> Task for SolveBlock<'_, '_, D, N> {
 
     #[inline(always)]
     fn run<R: Registers>(self, registers: R) -> f64 {
-        let Self { all, forces, force_scale, block, fields, moments } = self;
-        all.solve_block(Wide::zeros(registers), forces, force_scale, block, fields, moments)
+        let Self { all, forces, strains, force_scale, block, fields, moments } = self;
+        all.solve_block(Wide::zeros(registers), (forces, strains), force_scale, block, fields, moments)
     }
 }
 
@@ -302,29 +316,37 @@ impl<const D: usize, const N: usize> Task for LargestForce<'_, '_, D, N> {
 }
 
 impl<const D: usize> StarFields<D> {
-    /// Takes the fields of a block. Returns whether there is a lumping difference.
+    /// Takes the fields of a block. Returns whether the mass term is split.
     #[inline(always)]
     fn gather<R: Registers, const N: usize>(
         &mut self,
         like: Wide<R>,
         all: &Equilibration<'_, D, N>,
-        forces: &[ForcesKnown<D>],
+        (forces, strains): (&[ForcesKnown<D>], Option<Smoothed<'_>>),
         block: &StarBlock<'_, N>,
     ) -> bool {
-        self.displacement.gather(like, block.nodes, forces.iter().map(|f| Some(&f.level.displacement[..])));
+        if strains.is_none() {
+            self.displacement.gather(like, block.nodes, forces.iter().map(|f| Some(&f.level.displacement[..])));
+        }
         self.acceleration.gather(like, block.nodes, forces.iter().map(|f| Some(&f.acceleration[..])));
-        let mixed = forces.iter().any(|f| f.level.lumping_difference.is_some());
-        if mixed {
-            self.lumping_difference.gather(
-                like,
-                block.nodes,
-                forces.iter().map(|f| f.level.lumping_difference.as_deref()),
-            );
+        let split = forces.iter().any(|f| f.level.split.is_some());
+        if split {
+            self.skew.gather(like, block.nodes, forces.iter().map(|f| f.level.skew()));
+            let lumped = forces.iter().map(|f| f.level.split.as_ref().map(|split| &split.lumped[..]));
+            self.lumped.gather(like, block.nodes, lumped);
         }
         self.stress.clear();
         for (id, local) in block.cells() {
-            let element = &all.elements[id.index()];
-            let stress = hooke(all.problem.material(id), &element.gradient(&self.displacement.of(like, local)));
+            let (element, law) = (&all.elements[id.index()], all.problem.material(id));
+            let gradient = match strains {
+                Some((strains, smoothing)) => strains.of(like, all.strained(smoothing), id),
+                None => element.gradient(&self.displacement.of(like, local)),
+            };
+            let mut stress = hooke(law, &gradient);
+            if split {
+                let arms = arms(&all.problem.mesh().cell_points(id));
+                add_lumping_stress(law.density(), &arms, &self.lumped.of(like, local), &mut stress);
+            }
             let mut stored = [[Lanes::ZERO; D]; D];
             for (to, from) in stored.as_flattened_mut().iter_mut().zip(stress.as_flattened()) {
                 *to = from.store();
@@ -339,7 +361,7 @@ impl<const D: usize> StarFields<D> {
             let vector = |&e: &u32| std::array::from_fn(|c| of(e as usize, c));
             self.body_force.extend(block.elements.iter().map(vector));
         }
-        mixed
+        split
     }
 }
 

@@ -38,8 +38,8 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
         found.worst = found.worst.worse(self.measure.resultant_residual(&balanced, like.load(&levels.force_scale())));
         self.check(&balanced, &mut found.residuals);
         let stress = self.measure.stress(&self.form, &balanced);
-        let mixed = fields.balance.is_mixed();
-        let now = self.error(&stress, &fields.now, mixed);
+        let split = fields.balance.is_split();
+        let now = self.error(&stress, &fields.now, split);
         found.levels.add(&now);
         let mut mid = ElementError::filled(like);
         if self.all.has_mids {
@@ -50,7 +50,7 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
                 #[inline(always)]
                 |last: f64, now: Wide<R>| now.later(last),
             );
-            mid = self.error(&AdmissibleStress::middle(&before, &stress), &fields.mid, mixed);
+            mid = self.error(&AdmissibleStress::middle(&before, &stress), &fields.mid, split);
             if !self.all.all_single {
                 mid = mid.only(&self.all.single);
             }
@@ -72,16 +72,16 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
         &self,
         stress: &AdmissibleStress<D, N, Wide<R>>,
         velocities: &[VelocityLanes<D>],
-        mixed: bool,
+        split: bool,
     ) -> ElementError<Wide<R>> {
         let (nodes, like) = (at_places(velocities, self.local), stress.mean[0][0]);
-        let (mut increment, mut lumping, mut motions) = ([[like; D]; N], [[like; D]; N], [&nodes[0].motion; N]);
+        let (mut increment, mut skew, mut motions) = ([[like; D]; N], [[like; D]; N], [&nodes[0].motion; N]);
         for i in 0..N {
             increment[i] = load(like, &nodes[i].increment);
-            lumping[i] = load(like, &nodes[i].lumping_increment);
+            skew[i] = load(like, &nodes[i].skew_increment);
             motions[i] = &nodes[i].motion;
         }
-        let increment = self.measure.increment_of(&increment, mixed.then_some(&lumping));
+        let increment = self.measure.increment_of(&increment, split.then_some(&skew));
         self.measure.error(stress, &increment, &ElementMotion::of_nodes(like, motions), like.zero())
     }
 

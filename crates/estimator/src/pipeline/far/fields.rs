@@ -23,12 +23,12 @@ pub(super) struct BlockFields<const D: usize> {
 pub(super) struct VelocityLanes<const D: usize> {
     pub(super) motion: MotionLanes<D>,
     pub(super) increment: [Lanes; D],
-    pub(super) lumping_increment: [Lanes; D],
+    pub(super) skew_increment: [Lanes; D],
 }
 
 impl<const D: usize> VelocityLanes<D> {
     const REST: Self =
-        Self { motion: MotionLanes::REST, increment: [Lanes::ZERO; D], lumping_increment: [Lanes::ZERO; D] };
+        Self { motion: MotionLanes::REST, increment: [Lanes::ZERO; D], skew_increment: [Lanes::ZERO; D] };
 
     #[inline(always)]
     fn gather<'v, R: Registers>(
@@ -36,7 +36,7 @@ impl<const D: usize> VelocityLanes<D> {
         records: &mut Vec<Self>,
         nodes: &[u32],
         velocities: impl Iterator<Item = Option<&'v Velocities<D>>> + Clone,
-        mixed: bool,
+        split: bool,
     ) {
         records.resize(nodes.len(), Self::REST);
         MotionLanes::gather(
@@ -55,14 +55,14 @@ impl<const D: usize> VelocityLanes<D> {
             #[inline(always)]
             |record| &mut record.increment,
         );
-        if mixed {
+        if split {
             gather(
                 like,
                 records,
                 nodes,
-                velocities.map(|v| v.and_then(|v| v.lumping_increment.as_ref()).map(Increment::values)),
+                velocities.map(|v| v.and_then(|v| v.skew_increment.as_ref()).map(Increment::values)),
                 #[inline(always)]
-                |record| &mut record.lumping_increment,
+                |record| &mut record.skew_increment,
             );
         }
     }
@@ -74,8 +74,8 @@ impl<const D: usize, const N: usize> FarLevels<'_, '_, '_, D, N> {
     pub(super) fn gather<R: Registers>(&self, like: Wide<R>, fields: &mut BlockFields<D>, nodes: &[u32]) {
         let forces = self.levels.levels.forces();
         fields.balance.gather(like, self.shared.problem, nodes, self.levels.levels);
-        let mixed = fields.balance.is_mixed();
-        VelocityLanes::gather(like, &mut fields.now, nodes, forces.iter().map(|f| Some(&f.now)), mixed);
+        let split = fields.balance.is_split();
+        VelocityLanes::gather(like, &mut fields.now, nodes, forces.iter().map(|f| Some(&f.now)), split);
         if self.has_mids {
             fields.mid.resize(nodes.len(), VelocityLanes::REST);
             MotionLanes::gather_velocity(
@@ -93,18 +93,17 @@ impl<const D: usize, const N: usize> FarLevels<'_, '_, '_, D, N> {
     /// Completes the fields of nodes in the middles of the steps before levels, from those at both levels.
     #[inline(always)]
     fn complete_middles<R: Registers>(&self, like: Wide<R>, fields: &mut BlockFields<D>, nodes: &[u32]) {
-        let (length, mixed) = (like.load(&self.lengths), fields.balance.is_mixed());
+        let (length, split) = (like.load(&self.lengths), fields.balance.is_split());
         let before = self.levels.before.map(|level| level.forces());
-        let [acceleration, lumping_difference] =
-            [before.map(|f| &f.acceleration), before.and_then(|f| f.level.lumping_difference.as_ref())];
+        let first_fields = [before.map(|f| &f.acceleration[..]), before.and_then(|f| f.level.skew())];
         let records = fields.mid.iter_mut().zip(&fields.now).zip(fields.balance.accelerations());
-        for (((mid, now), [own, lumping]), &node) in records.zip(nodes) {
+        for (((mid, now), [own, skew]), &node) in records.zip(nodes) {
             mid.motion.complete_half_way(length, &now.motion);
-            let first = acceleration.map_or([0.0; D], |field| field[node as usize]);
+            let first = first_fields[0].map_or([0.0; D], |field| field[node as usize]);
             mid.increment = half_way(length, &now.increment, own, &first);
-            if mixed {
-                let first = lumping_difference.map_or([0.0; D], |field| field[node as usize]);
-                mid.lumping_increment = half_way(length, &now.lumping_increment, lumping, &first);
+            if split {
+                let first = first_fields[1].map_or([0.0; D], |field| field[node as usize]);
+                mid.skew_increment = half_way(length, &now.skew_increment, skew, &first);
             }
         }
     }

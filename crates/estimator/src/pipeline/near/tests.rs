@@ -45,7 +45,7 @@ fn checked(track: &ContactTrack) -> Residuals {
     let mut evaluation = Evaluation::new(&problem, &times);
     let pool = FieldPool::new(problem.mesh().node_count());
     let (_, motion) = FreeMotion::new(&problem, &pool).advance(&problem, &times, &evaluation.advance(&step).unwrap());
-    let velocities = Velocities { motion, increment: Increment::zero(&pool), lumping_increment: None };
+    let velocities = Velocities { motion, increment: Increment::zero(&pool), skew_increment: None };
     let mut stop = near.at(&sampler, &velocities, 0.0);
     near.settle(&context, &mut stop, 2);
     let touching = near.contact.map(|at| [at.is_some(), false]);

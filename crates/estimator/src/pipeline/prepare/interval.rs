@@ -4,8 +4,9 @@ use super::Preparation;
 use crate::acceleration::accelerate;
 use crate::contact_density::{CornerSliding, Densities, OffContact, driving_forces};
 use crate::increment::Increment;
+use crate::nodal_field::NodalField;
 use crate::reconstruction::{self, SurfaceSteps};
-use crate::time_level::{BeforeJump, ForcesBefore, ForcesKnown, MotionKnown, Velocities};
+use crate::time_level::{BeforeJump, ForcesBefore, ForcesKnown, Inertia, MotionKnown, Velocities};
 
 impl<const D: usize, const N: usize> Preparation<'_, D, N> {
     /// Finds F_DA over the earliest step that lacks it; then ã and ∫ã are known up to its end.
@@ -29,16 +30,15 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
 
     /// The first level, before which there is no contact force.
     pub(super) fn first(&self, first: MotionKnown<D>) -> ForcesBefore<D> {
-        let MotionKnown { level, now: motion, mut force, .. } = first;
+        let MotionKnown { level, now: motion, inertia, .. } = first;
         let increment = Increment::zero(&self.pool);
-        let lumping_increment = level.lumping_difference.as_ref().map(|_| increment.clone());
-        let surface_force = self.on_surface(&force);
-        accelerate(self.problem, self.dynamics.inverse_mass(), &mut force, &[]);
+        let skew_increment = level.split.as_ref().map(|_| increment.clone());
+        let (acceleration, surface_force) = self.acceleration(inertia, &[]);
         let forces = ForcesKnown {
             level,
-            now: Velocities { motion, increment, lumping_increment },
+            now: Velocities { motion, increment, skew_increment },
             mid_velocity: None,
-            acceleration: force,
+            acceleration,
             density: Densities::none(self.problem),
             before: None,
             off_contact: Vec::new(),
@@ -65,7 +65,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
     }
 
     /// The level after `now`, with the density at the end of the step between: ã before t_{n+1} \[55\], and ∫ã dt, as ã
-    /// is linear over the step, like the lumping difference.
+    /// is linear over the step, like o₂.
     fn reach(
         &self,
         now: &ForcesKnown<D>,
@@ -79,17 +79,14 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
             let velocities = [now.now.motion.velocity(), middle, next.now.velocity()];
             CornerSliding::all(self.problem, now.level.index, velocities, [&now.density, &density])
         });
-        let MotionKnown { level, now: motion, mid_velocity, force: mut acceleration } = next;
-        let surface_force = self.on_surface(&acceleration);
-        let pull = driving_forces(self.problem, &density);
-        accelerate(self.problem, self.dynamics.inverse_mass(), &mut acceleration, &pull);
+        let MotionKnown { level, now: motion, mid_velocity, inertia } = next;
+        let (acceleration, surface_force) = self.acceleration(inertia, &driving_forces(self.problem, &density));
         let increment = now.now.increment.advance(length, &now.acceleration, &acceleration);
-        let lumping_difference = now.level.lumping_difference.as_ref().zip(level.lumping_difference.as_ref());
-        let lumping = now.now.lumping_increment.as_ref().zip(lumping_difference);
-        let lumping_increment = lumping.map(|(so_far, (start, end))| so_far.advance(length, start, end));
+        let skew = now.now.skew_increment.as_ref().zip(now.level.skew().zip(level.skew()));
+        let skew_increment = skew.map(|(so_far, (start, end))| so_far.advance(length, start, end));
         let forces = ForcesKnown {
             level,
-            now: Velocities { motion, increment, lumping_increment },
+            now: Velocities { motion, increment, skew_increment },
             mid_velocity,
             acceleration,
             density,
@@ -99,6 +96,18 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
             friction,
         };
         ForcesBefore { forces, surface_force }
+    }
+
+    /// ã under these nodal forces of F_DA (N), and the forces but these on the contact surface, where ã depends on them.
+    fn acceleration(&self, inertia: Inertia<D>, pull: &[[f64; D]]) -> (NodalField<D>, Vec<[f64; D]>) {
+        match inertia {
+            Inertia::Forces(mut force) => {
+                let surface_force = self.on_surface(&force);
+                accelerate(self.problem, self.dynamics.inverse_mass(), &mut force, pull);
+                (force, surface_force)
+            }
+            Inertia::Acceleration(acceleration) => (acceleration, Vec::new()),
+        }
     }
 
     /// The values of a nodal field on the contact surface.

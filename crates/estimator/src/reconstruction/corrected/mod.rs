@@ -3,11 +3,11 @@
 
 mod concentration;
 mod impulse_smoothing;
-mod lumping_difference;
 mod moment_correction;
 mod motions;
 mod sliding;
 mod sliding_motion;
+mod split;
 mod traction_minimisation;
 
 use super::{BalancedFields, ReconstructionMethod, SimulatedStep, StepDensities, SurfaceSteps, friction};
@@ -20,15 +20,16 @@ use crate::error::EstimateError;
 use crate::kinematic::ContactTrack;
 use crate::nodal_field::FieldPool;
 use crate::options::{Ablation, Acceleration, Options};
+use crate::pool::Pool;
 use crate::residual::worse;
-use crate::time_level::{ForcesKnown, MotionKnown, SurfaceStep};
+use crate::smoothing::{SmoothedStrains, Smoothing};
+use crate::time_level::{ForcesKnown, Inertia, MotionKnown, SplitFields, SurfaceStep};
 use crate::traction::{EquilibratedLevels, Equilibration, Then};
 pub(crate) use concentration::Concentration;
 use concentration::{Faced, Known, OwnForces};
 use impulse_smoothing::{ImpulseSmoothing, Stopped};
-use lumping_difference::lumping_difference;
 use moment_correction::MomentCorrection;
-use motions::{Approach, AuxiliaryLevel, FreeMotion, Motions, Shares, SimulatedLevel};
+use motions::{Approach, AuxiliaryLevel, FreeMotion, Motions, Shares, SimulatedLevel, SplitLevel};
 use percute_core::contact::{ContactNode, Coupling};
 use percute_core::dynamics::Dynamics;
 use percute_core::history::{State, Step};
@@ -37,6 +38,7 @@ use percute_core::simplex::Shape;
 use percute_core::time::TimeGrid;
 use sliding::SlidingForces;
 use sliding_motion::SlidingMotion;
+use split::skew_acceleration;
 use std::borrow::Cow;
 use std::sync::Arc;
 use traction_minimisation::TractionMinimisation;
@@ -56,8 +58,10 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     motions: Option<Motions<'p, D, N>>,
     /// ΣF²k and ΣF² over the nodes at the last level (N²).
     halvings: [f64; 2],
-    /// Whether the lumping difference is wanted.
-    mixed: bool,
+    smoothing: Arc<Smoothing>,
+    strains: Pool<SmoothedStrains>,
+    /// Whether the mass term is split.
+    splits: bool,
     minimises: bool,
     minimisation: Option<TractionMinimisation>,
     /// Weight of the work of normal forces off contact.
@@ -72,6 +76,8 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             Shape::Bar => false,
             Shape::Triangle => true,
         };
+        let smoothing = Arc::new(Smoothing::new(problem));
+        let motions = || Motions::new(problem, times, Arc::clone(&smoothing), shares);
         Self {
             problem,
             times,
@@ -81,9 +87,11 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             moment_correction: keeps(Ablation::Moment).then(|| MomentCorrection::new(problem)),
             impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
             sliding: SlidingForces::new(problem),
-            motions: keeps(Ablation::AuxiliarySolution).then(|| Motions::new(problem, times, shares)),
+            motions: keeps(Ablation::AuxiliarySolution).then(motions),
+            smoothing,
+            strains: Pool::new(),
             halvings: [0.0; 2],
-            mixed: options.acceleration(D) == Acceleration::Mixed,
+            splits: options.acceleration(D) == Acceleration::Split,
             minimises: keeps(Ablation::LeastEnergy),
             minimisation: None,
             normal_work: match options.ablation {
@@ -138,12 +146,14 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         state.write_force_without_contact(problem.surface(), &mut force);
         let densities = self.level([&contact, &sudden], around);
         let pull = driving_forces(problem, &densities.acting);
-        let lumping_difference = self.mixed.then(|| {
-            let mut acceleration = force.clone();
-            accelerate(problem, inverse_mass, &mut acceleration, &pull);
-            pool.copy(&lumping_difference(problem, inverse_mass, &acceleration))
+        let mut acceleration = force;
+        accelerate(problem, inverse_mass, &mut acceleration, &pull);
+        let split = self.splits.then(|| SplitFields {
+            lumped: pool.copy(&acceleration),
+            skew: pool.copy(&skew_acceleration(problem, inverse_mass, &acceleration)),
         });
-        BalancedFields { displacement, force, contact, densities: Some(densities), lumping_difference }
+        let (inertia, densities) = (Inertia::Acceleration(acceleration), Some(densities));
+        BalancedFields { displacement, inertia, contact, densities, split, smoothed: false }
     }
 
     fn around<'a>(&self, gap: &'a [f64], couplings: &'a [Arc<Coupling>]) -> Around<'a> {
@@ -290,18 +300,17 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         self.halvings = halvings(&contact, &densities.acting);
         let pull = driving_forces(problem, &densities.acting);
         // The pass fills all of them.
-        let (mut displacement, mut force, mut lumping_difference) =
-            (pool.take(), pool.take(), self.mixed.then(|| pool.take()));
-        let level = AuxiliaryLevel {
-            displacement: &mut displacement,
-            force: &mut force,
-            lumping_difference: lumping_difference.as_deref_mut(),
-        };
+        let (mut displacement, mut acceleration) = (pool.take(), pool.take());
+        let mut split = self.splits.then(|| SplitFields { lumped: pool.take(), skew: pool.take() });
+        let fields = split.as_mut().map(|split| SplitLevel { lumped: &mut split.lumped, skew: &mut split.skew });
+        let level = AuxiliaryLevel { displacement: &mut displacement, acceleration: &mut acceleration, split: fields };
         let (velocity, strain, reaction) = (simulated.velocity, state.strain(), step.reaction);
         let simulated = SimulatedLevel { velocity, strain, reaction };
         motions.advance(dynamics, step.index, &simulated, &pull, level);
+        let smoothed = motions.smooths(step.index);
         self.motions = Some(motions);
-        BalancedFields { displacement, force, contact, densities: Some(densities), lumping_difference }
+        let (inertia, densities) = (Inertia::Acceleration(acceleration), Some(densities));
+        BalancedFields { displacement, inertia, contact, densities, split, smoothed }
     }
 
     fn differ(&mut self, simulated: [&[[f64; D]]; 2]) {
@@ -363,9 +372,19 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         levels: &mut EquilibratedLevels<D>,
         then: Then<'_, D>,
     ) -> f64 {
-        let Some(minimisation) = &self.minimisation else { return equilibration.solve(forces, levels, then) };
-        let of = (self.problem, equilibration, choice);
-        minimisation.equilibrate(of, forces, levels, self.concentration.as_ref(), then)
+        let smoothed = forces.iter().any(|forces| forces.level.smoothed);
+        self.strains.lend(SmoothedStrains::default, |strains| {
+            if smoothed {
+                let fields: Vec<_> = forces.iter().map(|f| (&f.level.displacement[..], f.level.smoothed)).collect();
+                strains.fill(equilibration.strained(&self.smoothing), &fields);
+            }
+            let strains = smoothed.then_some((&*strains, &*self.smoothing));
+            let Some(minimisation) = &self.minimisation else {
+                return equilibration.solve(forces, levels, strains, then);
+            };
+            let of = (self.problem, equilibration, choice);
+            minimisation.equilibrate(of, (forces, strains), levels, self.concentration.as_ref(), then)
+        })
     }
 }
 

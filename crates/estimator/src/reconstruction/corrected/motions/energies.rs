@@ -3,7 +3,7 @@
 use super::blocks::Blocks;
 use super::lanes::{Nodal, place};
 use super::pairs::{Pair, Pairs};
-use super::parts::{Part, Plan, View, for_all};
+use super::parts::{Part, Plan, StartOf, View, for_all};
 use super::sweeps::{differences, gradient, stress};
 use super::{AuxiliaryLevel, Fields};
 use crate::difference::Difference;
@@ -34,7 +34,7 @@ impl<'p, const D: usize, const N: usize> Energies<'p, D, N> {
     /// the next pass makes anew are overwritten.
     pub(super) fn measure(
         &self,
-        (pairs, blocks, plan): (&Pairs, &Blocks, &Plan),
+        (pairs, blocks, plan): (&Pairs, &Blocks, (&Plan, StartOf<'_>)),
         fields: &mut Fields,
         simulated: [&[[f64; D]]; 2],
     ) -> Difference {
@@ -99,12 +99,12 @@ impl<const D: usize> Task for PartMeasure<'_, '_, D> {
     fn run<R: Registers>(self, r: R) -> Self::Output {
         let Self { measure, part, mut view } = self;
         let mut sums = Sums { squares: r.splat(0.0), products: r.splat(0.0) };
-        for turn in part.even.start.min(part.odd.start)..part.odd.end {
-            if part.even.contains(&turn) {
+        for turn in part.turns() {
+            if part.sweeps[0].contains(&turn) {
                 measure.add_nodes(r, measure.blocks.begun(turn), &mut view, &mut sums);
                 measure.add_elements(r, measure.blocks.even(turn), &view, &mut sums);
             }
-            if part.odd.contains(&turn) {
+            if part.done[0].contains(&turn) {
                 measure.add_elements(r, measure.blocks.odd(turn), &view, &mut sums);
             }
         }
@@ -163,7 +163,7 @@ fn add_elements<R: Registers>(r: R, all: &Pairs, pairs: &[Pair], [x, y]: [&[Noda
     let y = &y[..x.len()];
     let (mut squares, mut products) = (sums.squares, sums.products);
     for pair in pairs {
-        let moduli = &all.laws[pair.law as usize];
+        let moduli = &all.laws.plain[pair.law as usize];
         let ([a, b, c], [d, e, f]) = (differences(r, pair, x), differences(r, pair, y));
         let [g, h, i, k] = pair.gradients;
         for (gradients, x, y, share) in

@@ -16,6 +16,15 @@ pub(super) struct Nodal(pub(super) Eight);
 #[repr(C, align(32))]
 pub(super) struct FirstPair(pub(super) Four);
 
+/// The derivatives of the vectors of the first pair along x, then those along y.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Gradient(pub(super) Eight);
+
+impl Gradient {
+    pub(super) const ZERO: Self = Self([0.0; 8]);
+}
+
 /// Place of a component of a motion.
 #[inline(always)]
 pub(super) fn place(motion: usize, component: usize) -> usize {

@@ -5,16 +5,22 @@
 //! simulation and those of the balance are late together. The *auxiliary solution* is balanced instead. It starts like
 //! the simulation and takes the steps of the same scheme, but under the nodal forces of F_DA, and with the acceleration
 //!
-//! a = ã + p(M⁻¹(M − M_c))ã − (Δt²/12) M⁻¹K ã,   p(μ) = μ/2 − βμ²,   M ã = F + F_DA − K u,
+//! a = ã + p(M⁻¹(M − M_c))ã − (Δt²/12) M⁻¹K ã,   p(μ) = c₁μ + c₂μ² − c₃μ³,   M ã = F + F_DA − K_s u,
 //!
-//! M the lumped and M_c the consistent mass. The leading errors of the lumped mass and of the central
-//! differences, of the same size and of opposite sign, are thus taken out: dispersion is of fourth order on a
-//! uniform bar, where at the critical step both cancel and β alone is left. ã itself, of which Γ_DA and
-//! the tractions are made, balances M ã as before.
+//! M the lumped and M_c the consistent mass, K_s the stiffness of smoothed strains ([`crate::smoothing`]). The leading
+//! errors of the elements, of the lumped mass and of the central differences are thus taken out: dispersion is of
+//! fourth order on even meshes. On bars strains stay, and at the critical step the last two errors cancel. The
+//! balance is that of M ã, whose mass term is split: M ã = M_c a_c + (M − M_c) w with
+//!
+//! a_c = ã + c₁o,   w = (1 − c₁)ã + c₁o,   o = M⁻¹(M − M_c)ã.
+//!
+//! Γ_DA is made of a_c. (M − M_c) w is in each element exactly the stress τ = ρ/(D + 2) Σ w_i ⊗ d_i, d_i from the
+//! centroid; its symmetric part is balanced with that of the element, its skew part as the acceleration
+//! o₂ = M⁻¹ Σ|E|(τ − τˢ)∇φ.
 //!
 //! Three more motions tell the sources of the difference of simulation and auxiliary solution apart:
 //!
-//! - The *half-size solution* is an auxiliary solution with three quarters of both corrections: the leading dispersion
+//! - The *half-size solution* is an auxiliary solution with three quarters of all corrections: the leading dispersion
 //!   that is left is that of elements and steps half as long.
 //! - The *half-step solution* has the reactions of the simulation, its lumped mass, and three quarters of the
 //!   correction of the central differences: it moves like a simulation with steps half as long.
@@ -33,6 +39,7 @@ mod lanes;
 mod pairs;
 mod parts;
 mod pass;
+mod stability;
 mod surface;
 mod sweeps;
 #[cfg(test)]
@@ -42,17 +49,19 @@ mod weights;
 use crate::difference::Difference;
 use crate::element::Element;
 use crate::simd::run_task;
+use crate::smoothing::Smoothing;
 pub(super) use approach::{Approach, FreeMotion};
 use approach::{BeforePass, NearElements};
 use blocks::Blocks;
 use energies::Energies;
-use lanes::{FirstPair, Nodal};
-use pairs::{Pair, Pairs};
-use parts::{Part, Plan, View, for_all};
+use lanes::{FirstPair, Gradient, Nodal};
+use pairs::{Around, Pair, Pairs};
+use parts::{Part, Plan, Start, StartOf, View, for_all};
 use pass::{Kinetic, PartPass, Pass};
 use percute_core::dynamics::Dynamics;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use std::sync::Arc;
 use surface::SurfaceForces;
 pub(super) use weights::Shares;
 use weights::Weights;
@@ -66,6 +75,7 @@ const UNSTABLE: f64 = 1e6;
 pub(super) struct Motions<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     times: &'p TimeGrid,
+    smoothing: Arc<Smoothing>,
     blocks: Blocks,
     plan: Plan,
     pairs: Pairs,
@@ -85,7 +95,7 @@ pub(super) struct Motions<'p, const D: usize, const N: usize> {
     differences: Vec<Difference>,
 }
 
-/// Nodal fields of all motions.
+/// Fields of all motions.
 #[derive(Debug)]
 struct Fields {
     /// u_n (m), from the pass of level n to that of the next.
@@ -96,10 +106,12 @@ struct Fields {
     rate: Vec<Nodal>,
     /// −Kã (N).
     internal: Vec<Nodal>,
-    /// M⁻¹(M − M_c)ã (m/s²).
-    once: Vec<FirstPair>,
-    /// (M − M_c)M⁻¹(M − M_c)ã (N).
-    twice: Vec<FirstPair>,
+    /// M⁻¹(M − M_c)ã (m/s²), and the same of it once and twice.
+    lumping: [Vec<FirstPair>; 3],
+    /// V∇u of elements (m³); empty where strains stay.
+    gradients: Vec<Gradient>,
+    /// Their sums at patches, times the weight.
+    patches: Vec<Gradient>,
 }
 
 /// A level of the simulation.
@@ -118,35 +130,44 @@ pub(super) struct SimulatedLevel<'a, const D: usize> {
 pub(super) struct AuxiliaryLevel<'a, const D: usize> {
     /// u_n (m).
     pub(super) displacement: &'a mut [[f64; D]],
-    /// Forces but those of contact, with those of supports (N).
-    pub(super) force: &'a mut [[f64; D]],
-    /// M⁻¹(M − M_c)ã (m/s²), if it is wanted.
-    pub(super) lumping_difference: Option<&'a mut [[f64; D]]>,
+    /// a_c of a split mass term, else ã (m/s²).
+    pub(super) acceleration: &'a mut [[f64; D]],
+    /// The other fields of a split mass term, if it is wanted.
+    pub(super) split: Option<SplitLevel<'a, D>>,
+}
+
+/// The fields of a split mass term beside a_c (m/s²).
+#[derive(Debug)]
+pub(super) struct SplitLevel<'a, const D: usize> {
+    /// w.
+    pub(super) lumped: &'a mut [[f64; D]],
+    /// o₂.
+    pub(super) skew: &'a mut [[f64; D]],
 }
 
 impl<'a, const D: usize> AuxiliaryLevel<'a, D> {
     /// No fields.
     fn none() -> Self {
-        Self { displacement: &mut [], force: &mut [], lumping_difference: None }
+        Self { displacement: &mut [], acceleration: &mut [], split: None }
     }
 
     /// The same for a shorter time.
     fn again(&mut self) -> AuxiliaryLevel<'_, D> {
-        AuxiliaryLevel {
-            displacement: self.displacement,
-            force: self.force,
-            lumping_difference: self.lumping_difference.as_deref_mut(),
-        }
+        let split = self.split.as_mut().map(|split| SplitLevel { lumped: split.lumped, skew: split.skew });
+        AuxiliaryLevel { displacement: self.displacement, acceleration: self.acceleration, split }
     }
 
     /// Cuts before a node.
     fn split(self, node: usize) -> (Self, Self) {
-        let (displacement, force) = (cut(self.displacement, node), cut(self.force, node));
-        let lumping = self.lumping_difference.map(|field| cut(field, node));
-        let (first, last) = lumping.map_or((None, None), |(first, last)| (Some(first), Some(last)));
+        let (displacement, acceleration) = (cut(self.displacement, node), cut(self.acceleration, node));
+        let split = self.split.map(|split| {
+            let (lumped, skew) = (cut(split.lumped, node), cut(split.skew, node));
+            (SplitLevel { lumped: lumped.0, skew: skew.0 }, SplitLevel { lumped: lumped.1, skew: skew.1 })
+        });
+        let (first, last) = split.map_or((None, None), |(first, last)| (Some(first), Some(last)));
         (
-            Self { displacement: displacement.0, force: force.0, lumping_difference: first },
-            Self { displacement: displacement.1, force: force.1, lumping_difference: last },
+            Self { displacement: displacement.0, acceleration: acceleration.0, split: first },
+            Self { displacement: displacement.1, acceleration: acceleration.1, split: last },
         )
     }
 }
@@ -159,30 +180,44 @@ fn cut<T>(field: &mut [T], at: usize) -> (&mut [T], &mut [T]) {
 impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
     /// About how much memory it takes (bytes).
     pub(super) fn memory(nodes: usize, elements: usize) -> usize {
-        let node = 4 * size_of::<Nodal>() + 2 * size_of::<FirstPair>() + size_of::<[f64; D]>();
-        nodes.saturating_mul(node).saturating_add(elements.div_ceil(2).saturating_mul(size_of::<Pair>()))
+        let node = 4 * size_of::<Nodal>() + 3 * size_of::<FirstPair>() + size_of::<[f64; D]>() + size_of::<Gradient>();
+        let pair = size_of::<Pair>() + size_of::<Around>() + 2 * size_of::<Gradient>();
+        nodes.saturating_mul(node).saturating_add(elements.div_ceil(2).saturating_mul(pair))
     }
 
     /// Before the first level, with these shares of the corrections of the auxiliary solution.
-    pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, shares: Shares) -> Self {
+    pub(super) fn new(
+        problem: &'p Problem<D, N>,
+        times: &'p TimeGrid,
+        smoothing: Arc<Smoothing>,
+        shares: Shares,
+    ) -> Self {
         let blocks = Blocks::new(problem.mesh().cells(), problem.mesh().node_count());
-        Self::on_blocks(problem, times, shares, blocks)
+        Self::on_blocks(problem, times, smoothing, shares, blocks)
     }
 
     /// The same with blocks of another size.
-    fn on_blocks(problem: &'p Problem<D, N>, times: &'p TimeGrid, shares: Shares, blocks: Blocks) -> Self {
-        let pairs = Pairs::new(problem, &blocks);
+    fn on_blocks(
+        problem: &'p Problem<D, N>,
+        times: &'p TimeGrid,
+        smoothing: Arc<Smoothing>,
+        shares: Shares,
+        blocks: Blocks,
+    ) -> Self {
+        let pairs = Pairs::new(problem, &blocks, &smoothing, &weights::shares(shares));
+        let (plan, near) = (Plan::new(&blocks), NearElements::new(problem, &blocks, &pairs));
         Self {
             problem,
             times,
-            near: NearElements::new(problem, &blocks, &pairs),
-            plan: Plan::new(&blocks),
+            near,
+            plan,
+            fields: Fields::new(problem, &smoothing, pairs.places(0..blocks.count()).len()),
             blocks,
             pairs,
             surface: SurfaceForces::new(problem),
-            weights: Weights::new::<D>(shares),
+            weights: Weights::new(&smoothing, shares),
+            smoothing,
             energies: None,
-            fields: Fields::new(problem),
             external: if problem.is_loaded() { vec![[0.0; D]; problem.mesh().node_count()] } else { Vec::new() },
             due: 0.0,
             peak_energy: 0.0,
@@ -191,8 +226,9 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         }
     }
 
-    /// Prepares the energies of differences.
+    /// Prepares the energies of differences, and makes sure that the scheme is stable.
     pub(super) fn prepare(&mut self, elements: &[Element<D, N>]) {
+        self.stabilise();
         self.energies = Some(Energies::new(self.problem, elements));
     }
 
@@ -202,13 +238,19 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
             self.problem.external_forces(self.times.instants()[n], &mut self.external);
         }
         self.surface.hold(dynamics, n);
+        self.weights.begin(self.times, n);
+    }
+
+    /// Whether strains are smoothed at the level that has begun.
+    pub(super) fn smooths(&self, n: usize) -> bool {
+        self.weights.at(self.times, n).smooths
     }
 
     /// The motion of the auxiliary solution at all contact nodes until t_{n+1} without a contact force, corrections
     /// left out.
     pub(super) fn free_motions(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize) -> &[FreeMotion<D>] {
         let Self { times, pairs, surface, near, fields, external, due, .. } = self;
-        let before = BeforePass { laws: &pairs.laws, surface, fields, external, due: *due };
+        let before = BeforePass { laws: &pairs.laws.plain, surface, fields, external, due: *due };
         near.motions(dynamics, (times, n), &before)
     }
 
@@ -224,20 +266,18 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
     ) {
         self.surface.contact(pull, simulated.reaction);
         let pass = Pass {
-            pairs: &self.pairs,
-            blocks: &self.blocks,
-            surface: &self.surface,
             external: &self.external,
-            mass: self.problem.mass(),
             inverse_mass: dynamics.inverse_mass(),
             simulated: simulated.velocity,
             weights: self.weights.at(self.times, n),
             due: self.due,
             back: if n == 0 { 0.0 } else { 0.5 * self.times.step(n - 1) },
             forward: self.times.velocity_step(n),
+            ..self.free_pass()
         };
         let work = |part: &Part, view: View<'_, D>| run_task(PartPass { pass: &pass, part, view });
-        let kinetic = for_all(&self.plan, View::new(&mut self.fields, level), &work);
+        let start = |part: &Part| start_of(part, &self.pairs, &self.smoothing);
+        let kinetic = for_all((&self.plan, &start), View::new(&mut self.fields, level), &work);
         let sum = |of: fn(&Kinetic) -> f64| 0.5 * kinetic.iter().map(of).sum::<f64>();
         self.peak_energy = self.peak_energy.max(simulated.strain + sum(|k| k.simulated));
         self.kinetic = sum(|k| k.auxiliary);
@@ -245,11 +285,31 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         self.differences.resize(n + 1, Difference::default());
     }
 
+    /// A pass that makes nothing move.
+    fn free_pass(&self) -> Pass<'_, D> {
+        Pass {
+            pairs: &self.pairs,
+            smoothing: &self.smoothing,
+            blocks: &self.blocks,
+            surface: &self.surface,
+            external: &[],
+            mass: self.problem.mass(),
+            inverse_mass: &[],
+            simulated: &[],
+            weights: self.weights.of_steps([0.0; 2]),
+            due: 0.0,
+            back: 0.0,
+            forward: 0.0,
+        }
+    }
+
     /// Measures the difference of the simulation and the auxiliary solution at the last level taken in. Once for a
     /// level.
     pub(super) fn differ(&mut self, simulated: [&[[f64; D]]; 2], halvings: [f64; 2]) {
         if let (Some(energies), Some(last)) = (&self.energies, self.differences.last_mut()) {
-            let measured = energies.measure((&self.pairs, &self.blocks, &self.plan), &mut self.fields, simulated);
+            let start = |part: &Part| start_of(part, &self.pairs, &self.smoothing);
+            let of = (&self.pairs, &self.blocks, (&self.plan, &start as StartOf<'_>));
+            let measured = energies.measure(of, &mut self.fields, simulated);
             *last = Difference { halvings, ..measured };
         }
     }
@@ -267,16 +327,23 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
     }
 }
 
+/// Where the fields of a part begin.
+fn start_of(part: &Part, pairs: &Pairs, smoothing: &Smoothing) -> Start {
+    let (gradient, patch) = (pairs.places(part.blocks.clone()).start, smoothing.patches(&part.nodes).start);
+    Start { node: part.nodes.start, gradient, patch }
+}
+
 impl Fields {
-    fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
+    fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, smoothing: &Smoothing, places: usize) -> Self {
         let count = problem.mesh().node_count();
         Self {
             displacement: problem.initial_displacement().iter().map(Nodal::all_but_contact).collect(),
             half_step: problem.initial_velocity().iter().map(Nodal::all_but_contact).collect(),
             rate: vec![Nodal::ZERO; count],
             internal: vec![Nodal::ZERO; count],
-            once: vec![FirstPair::ZERO; count],
-            twice: vec![FirstPair::ZERO; count],
+            lumping: std::array::from_fn(|_| vec![FirstPair::ZERO; count]),
+            gradients: vec![Gradient::ZERO; places],
+            patches: vec![Gradient::ZERO; smoothing.patch_count()],
         }
     }
 }

@@ -2,8 +2,10 @@
 //! six.
 
 use super::blocks::Blocks;
-use super::lanes::place;
+use super::lanes::{MOTIONS, place};
+use super::weights::Shares;
 use crate::simd::Eight;
+use crate::smoothing::Smoothing;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::material::{Law, LinearLaw};
 use percute_core::problem::Problem;
@@ -33,19 +35,55 @@ pub(super) struct Moduli {
     pub(super) partner: [Eight; 2],
 }
 
+/// The elements and patches that the strains of a pair are smoothed with. The gradients of the elements of a pair have
+/// the places 2k and 2k + 1, k its number among all pairs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Around {
+    /// The places of the elements beyond the facets of A and of B; those of the elements themselves at the boundary of
+    /// a material.
+    pub(super) beyond: [[u32; 3]; 2],
+    /// (1 − β)/(3(V_E + V_F)) at these facets (1/m³).
+    pub(super) weights: [[f64; 3]; 2],
+    /// The patches at the nodes 0, 1, 2, 3, counted from the first one of the block.
+    pub(super) patches: [u32; 4],
+    /// √V of A and B.
+    pub(super) roots: [f64; 2],
+}
+
+/// The moduli of all laws.
+#[derive(Clone, Debug)]
+pub(super) struct Laws {
+    pub(super) plain: Vec<Moduli>,
+    /// Those for the part of each motion that is made of plain strains, where the others are smoothed.
+    pub(super) rest: Vec<Moduli>,
+    /// Those for smoothed strains; the first pair of motions has such.
+    pub(super) smoothed: Vec<Moduli>,
+    /// 1/(3t) with the thickness t (1/m).
+    pub(super) thirds: Vec<f64>,
+}
+
 /// All elements, block by block.
 #[derive(Clone, Debug)]
 pub(super) struct Pairs {
     pairs: Vec<Pair>,
+    /// Empty where strains stay.
+    around: Vec<Around>,
     /// Where those of each block begin.
     starts: Vec<u32>,
-    pub(super) laws: Vec<Moduli>,
+    pub(super) laws: Laws,
 }
 
 impl Pairs {
-    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, blocks: &Blocks) -> Self {
+    /// Those of motions with these shares of smoothed strains.
+    pub(super) fn new<const D: usize, const N: usize>(
+        problem: &Problem<D, N>,
+        blocks: &Blocks,
+        smoothing: &Smoothing,
+        shares: &[Shares; MOTIONS],
+    ) -> Self {
         let count = problem.mesh().element_count();
         let (mut pairs, mut starts) = (Vec::with_capacity(count / 2 + count / 16), vec![0]);
+        let mut elements: Vec<[Option<ElementId>; 2]> = Vec::new();
         let mut taken = vec![false; count];
         for block in 0..blocks.count() {
             let (range, first) = (blocks.elements(block), blocks.nodes(block).start as u32);
@@ -59,19 +97,109 @@ impl Pairs {
                     let mut pair = Pair::new(problem, ElementId::new(e), apart, partner);
                     pair.nodes = pair.nodes.map(|n| n - first);
                     pairs.push(pair);
+                    elements.push([Some(ElementId::new(e)), partner]);
                 }
             }
             starts.push(pairs.len() as u32);
         }
         pairs.shrink_to_fit();
-        let shape = problem.mesh().simplex().shape();
-        Self { pairs, starts, laws: problem.materials().iter().map(|law| Moduli::new::<D>(law, shape)).collect() }
+        let laws = Laws::new(problem, shares);
+        let mut made = Self { pairs, around: Vec::new(), starts, laws };
+        if smoothing.smooths() {
+            made.add_around(problem, blocks, smoothing, &elements);
+        }
+        made
+    }
+
+    fn add_around<const D: usize, const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        blocks: &Blocks,
+        smoothing: &Smoothing,
+        elements: &[[Option<ElementId>; 2]],
+    ) {
+        let mut places = vec![0; problem.mesh().element_count()];
+        for (place, element) in elements.as_flattened().iter().enumerate() {
+            element.iter().for_each(|element| places[element.index()] = place as u32);
+        }
+        for block in 0..blocks.count() {
+            let first = smoothing.patches(&blocks.nodes(block)).start;
+            let first_node = blocks.nodes(block).start;
+            for k in self.starts[block] as usize..self.starts[block + 1] as usize {
+                let nodes = self.pairs[k].nodes.map(|n| NodeId::new(n as usize + first_node));
+                let mut around = Around::new(problem, smoothing, elements[k], &places, [2 * k, 2 * k + 1]);
+                around.patches = nodes.map(|node| (smoothing.patch(node, self.pairs[k].law as u16) - first) as u32);
+                self.around.push(around);
+            }
+        }
     }
 
     /// Those of a block.
     #[inline(always)]
     pub(super) fn block(&self, block: usize) -> &[Pair] {
-        &self.pairs[self.starts[block] as usize..self.starts[block + 1] as usize]
+        &self.pairs[self.range(block)]
+    }
+
+    /// What is around them.
+    #[inline(always)]
+    pub(super) fn around(&self, block: usize) -> &[Around] {
+        &self.around[self.range(block)]
+    }
+
+    /// The numbers of those of a block among all.
+    #[inline(always)]
+    pub(super) fn range(&self, block: usize) -> Range<usize> {
+        self.starts[block] as usize..self.starts[block + 1] as usize
+    }
+
+    /// The places of the gradients of these blocks.
+    pub(super) fn places(&self, blocks: Range<usize>) -> Range<usize> {
+        if self.around.is_empty() {
+            return 0..0;
+        }
+        2 * self.starts[blocks.start] as usize..2 * self.starts[blocks.end] as usize
+    }
+}
+
+impl Around {
+    /// What is around a pair whose elements have these places, but for patches.
+    fn new<const D: usize, const N: usize>(
+        problem: &Problem<D, N>,
+        smoothing: &Smoothing,
+        pair: [Option<ElementId>; 2],
+        places: &[u32],
+        own: [usize; 2],
+    ) -> Self {
+        let mut made = Self {
+            beyond: own.map(|place| [place as u32; 3]),
+            weights: [[0.0; 3]; 2],
+            patches: [0; 4],
+            roots: pair.map(|element| element.map_or(0.0, |element| problem.volume(element).sqrt())),
+        };
+        for (which, element) in pair.into_iter().enumerate() {
+            let Some(element) = element else { continue };
+            for (k, facet) in problem.mesh().cell_facets()[element.index()].iter().enumerate() {
+                let other = Smoothing::beyond(problem, element, *facet);
+                let volume = problem.volume(element) + problem.volume(other);
+                made.beyond[which][k] = places[other.index()];
+                made.weights[which][k] = smoothing.edge_weight(problem.mesh().cells()[element.index()][0], volume);
+            }
+        }
+        made
+    }
+}
+
+impl Laws {
+    fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, shares: &[Shares; MOTIONS]) -> Self {
+        let shape = problem.mesh().simplex().shape();
+        let plain: Vec<Moduli> = problem.materials().iter().map(|law| Moduli::new::<D>(law, shape)).collect();
+        let smoothed = shares.map(|share| share.space);
+        Self {
+            rest: plain.iter().map(|moduli| moduli.scaled(&smoothed.map(|share| 1.0 - share))).collect(),
+            smoothed: plain.iter().map(|moduli| moduli.scaled(&smoothed)).collect(),
+            plain,
+            thirds: problem.materials().iter().map(|law| 1.0 / (3.0 * law.extent())).collect(),
+        }
     }
 }
 
@@ -153,12 +281,25 @@ impl Moduli {
         let by_place = |along: f64| {
             [0, 1].map(|column| {
                 let mut moduli = [0.0; 8];
-                for motion in 0..super::lanes::MOTIONS {
+                for motion in 0..MOTIONS {
                     (0..2).for_each(|c| moduli[place(motion, c)] = if c == column { along } else { shear });
                 }
                 moduli
             })
         };
         Self { own: by_place(normal), partner: by_place(lambda) }
+    }
+
+    /// The moduli of each motion times its factor.
+    fn scaled(&self, factors: &[f64; MOTIONS]) -> Self {
+        let scaled = |moduli: [Eight; 2]| {
+            moduli.map(|mut column| {
+                for (motion, factor) in factors.iter().enumerate() {
+                    (0..2).for_each(|c| column[place(motion, c)] *= factor);
+                }
+                column
+            })
+        };
+        Self { own: scaled(self.own), partner: scaled(self.partner) }
     }
 }

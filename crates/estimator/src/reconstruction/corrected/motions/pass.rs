@@ -1,22 +1,33 @@
 //! One pass over the mesh for a step: blocks of nodes and elements go through all sweeps while they are in a cache.
 //!
 //! A sweep over the blocks of a turn needs the nodes that the sweep before it has finished in this turn and the next
-//! one, so each of the three sweeps is a turn behind the one before.
+//! one, so each of the five sweeps is a turn behind the one before:
+//!
+//! 1. u_n, its strains and the forces that need no smoothed ones,
+//! 2. the forces of smoothed strains, and with them ã_n,
+//! 3. −Kã and the lumping difference of ã,
+//! 4. the lumping difference of that, and the skew part of the stress of lumping,
+//! 5. the lumping difference a third time, v_n and v_{n+½}.
 
 use super::blocks::Blocks;
-use super::lanes::{FirstPair, Nodal};
+use super::lanes::{FirstPair, Gradient, Nodal};
 use super::pairs::Pairs;
 use super::parts::{Part, View};
 use super::surface::SurfaceForces;
-use super::sweeps::{add_lumping, subtract_both, subtract_stiffness};
-use super::weights::LevelWeights;
+use super::sweeps::{
+    add_lumping, add_skew, subtract_both, subtract_plain_part, subtract_smoothed_part, subtract_stiffness,
+};
+use super::weights::{BodyWeights, LevelWeights};
 use crate::simd::{Registers, Task};
+use crate::smoothing::Smoothing;
+use percute_core::ids::NodeId;
 use std::ops::Range;
 
 /// The data of the pass at t_n.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pass<'a, const D: usize> {
     pub(super) pairs: &'a Pairs,
+    pub(super) smoothing: &'a Smoothing,
     pub(super) blocks: &'a Blocks,
     pub(super) surface: &'a SurfaceForces,
     /// F_n (N); empty without loads.
@@ -25,7 +36,7 @@ pub(super) struct Pass<'a, const D: usize> {
     pub(super) inverse_mass: &'a [f64],
     /// u̇_CA (m/s).
     pub(super) simulated: &'a [[f64; D]],
-    pub(super) weights: LevelWeights,
+    pub(super) weights: LevelWeights<'a>,
     /// Δt_{n−1} (s), 0 at the start.
     pub(super) due: f64,
     /// ½Δt_{n−1} (s), 0 at the start.
@@ -57,22 +68,42 @@ impl<const D: usize> Task for PartPass<'_, '_, D> {
     fn run<R: Registers>(self, r: R) -> Kinetic {
         let Self { pass, part, mut view } = self;
         let mut kinetic = Kinetic::default();
-        for k in part.even.start.min(part.third.start + 2)..part.third_done.end + 2 {
-            if part.even.contains(&k) {
+        for k in part.turns() {
+            if part.sweeps[0].contains(&k) {
                 pass.displace(r, k, &mut view);
             }
-            if part.odd.contains(&k) {
-                pass.accelerate(r, k, &mut view);
+            if part.done[0].contains(&k) {
+                pass.finish_strains(r, k, &mut view);
             }
-            pass.correct_once(r, k.wrapping_sub(1), part, &mut view);
-            pass.correct_twice(r, k.wrapping_sub(2), part, &mut view, &mut kinetic);
+            pass.accelerate(r, k.wrapping_sub(1), part, &mut view);
+            pass.correct_once(r, k.wrapping_sub(2), part, &mut view);
+            pass.correct_twice(r, k.wrapping_sub(3), part, &mut view);
+            pass.correct_thrice(r, k.wrapping_sub(4), part, &mut view, &mut kinetic);
         }
         kinetic
     }
 }
 
 impl<const D: usize> Pass<'_, D> {
-    /// u_n of the nodes of a turn, and the forces of its even block.
+    /// Whether strains are smoothed at this level.
+    #[inline(always)]
+    fn smooths(&self) -> bool {
+        self.weights.smooths && self.smoothing.smooths()
+    }
+
+    /// The blocks of a turn.
+    #[inline(always)]
+    fn blocks_of(&self, turn: usize) -> impl Iterator<Item = usize> {
+        self.blocks.even(turn).into_iter().chain(self.blocks.odd(turn))
+    }
+
+    /// The weights of a node.
+    #[inline(always)]
+    fn weights_of(&self, node: usize) -> &BodyWeights {
+        &self.weights.bodies[self.smoothing.body(NodeId::new(node))]
+    }
+
+    /// u_n of the nodes of a turn, and the strains and forces of its even block.
     #[inline(always)]
     fn displace<R: Registers>(&self, r: R, turn: usize, view: &mut View<'_, D>) {
         let nodes = self.blocks.begun(turn);
@@ -83,6 +114,8 @@ impl<const D: usize> Pass<'_, D> {
             u.0 = r.store(r.add(r.load(&u.0), r.mul(r.load(&v.0), due)));
             *out = u.of(0);
         }
+        let patches = self.local_patches(view, &nodes);
+        view.patches[patches].fill(Gradient::ZERO);
         let forces = &mut view.rate[range];
         if self.external.is_empty() {
             forces.fill(Nodal::ZERO);
@@ -90,63 +123,171 @@ impl<const D: usize> Pass<'_, D> {
             let loads = forces.iter_mut().zip(&self.external[nodes]);
             loads.for_each(|(force, external)| *force = Nodal::all_but_contact(external));
         }
-        self.subtract_forces(r, self.blocks.even(turn), view);
+        self.strain(r, self.blocks.even(turn), view);
+    }
+
+    /// Where the patches of these nodes are.
+    #[inline(always)]
+    fn local_patches(&self, view: &View<'_, D>, nodes: &Range<usize>) -> Range<usize> {
+        let Range { start, end } = self.smoothing.patches(nodes);
+        start.saturating_sub(view.start.patch)..end.saturating_sub(view.start.patch)
     }
 
     #[inline(always)]
-    fn subtract_forces<R: Registers>(&self, r: R, block: Option<usize>, view: &mut View<'_, D>) {
+    fn strain<R: Registers>(&self, r: R, block: Option<usize>, view: &mut View<'_, D>) {
         let Some(block) = block else { return };
-        let range = view.local(&self.blocks.nodes(block));
+        let nodes = self.blocks.nodes(block);
+        let range = view.local(&nodes);
+        let (laws, pairs) = (&self.pairs.laws, self.pairs.block(block));
+        if !self.smooths() {
+            let (x, forces) = (&view.displacement[range.clone()], &mut view.rate[range]);
+            return subtract_stiffness(r, &laws.plain, pairs, x, forces);
+        }
+        let (patches, places) = (self.local_patches(view, &nodes), self.local_places(view, block));
         let (x, forces) = (&view.displacement[range.clone()], &mut view.rate[range]);
-        subtract_stiffness(r, &self.pairs.laws, self.pairs.block(block), x, forces);
+        let kept = (&mut view.gradients[places], &mut view.patches[patches]);
+        subtract_plain_part(r, laws, (pairs, self.pairs.around(block)), x, forces, kept);
     }
 
-    /// The forces of the odd block of a turn, and ã_n.
+    /// Where the gradients of a block are.
     #[inline(always)]
-    fn accelerate<R: Registers>(&self, r: R, turn: usize, view: &mut View<'_, D>) {
-        self.subtract_forces(r, self.blocks.odd(turn), view);
+    fn local_places(&self, view: &View<'_, D>, block: usize) -> Range<usize> {
+        let Range { start, end } = self.pairs.places(block..block + 1);
+        start - view.start.gradient..end - view.start.gradient
+    }
+
+    /// The strains and forces of the odd block of a turn; the sums of patches become means with their weights.
+    #[inline(always)]
+    fn finish_strains<R: Registers>(&self, r: R, turn: usize, view: &mut View<'_, D>) {
+        self.strain(r, self.blocks.odd(turn), view);
+        let nodes = self.blocks.finished(turn);
+        if self.smooths() {
+            let (local, all) = (self.local_patches(view, &nodes), self.smoothing.patches(&nodes));
+            for (patch, weight) in view.patches[local].iter_mut().zip(&self.smoothing.weights()[all]) {
+                patch.0 = r.store(r.mul(r.load(&patch.0), r.splat(*weight)));
+            }
+        }
+    }
+
+    /// The forces of smoothed strains, and ã_n.
+    #[inline(always)]
+    fn accelerate<R: Registers>(&self, r: R, turn: usize, part: &Part, view: &mut View<'_, D>) {
+        if part.sweeps[1].contains(&turn) && self.smooths() {
+            for block in self.blocks_of(turn) {
+                let nodes = self.blocks.nodes(block);
+                let (range, patches) = (view.local(&nodes), self.local_patches(view, &nodes));
+                let own = &view.gradients[self.local_places(view, block)];
+                let (gradients, start) = (&view.gradients[..], view.start.gradient);
+                let pairs = (self.pairs.block(block), self.pairs.around(block));
+                let kept = (own, &view.patches[patches]);
+                subtract_smoothed_part(r, &self.pairs.laws, pairs, (gradients, start), kept, &mut view.rate[range]);
+            }
+        }
+        if !part.done[1].contains(&turn) {
+            return;
+        }
         let nodes = self.blocks.finished(turn);
         let range = view.local(&nodes);
-        self.surface.apply(&nodes, &mut view.rate[range.clone()], &mut view.level.force[range.clone()]);
+        self.surface.apply::<D>(&nodes, &mut view.rate[range.clone()]);
         for (rate, inverse) in view.rate[range.clone()].iter_mut().zip(&self.inverse_mass[nodes]) {
             rate.0 = r.store(r.mul(r.load(&rate.0), r.splat(*inverse)));
         }
         view.internal[range.clone()].fill(Nodal::ZERO);
-        view.once[range.clone()].fill(FirstPair::ZERO);
-        view.twice[range].fill(FirstPair::ZERO);
+        view.lumping.iter_mut().for_each(|field| field[range.clone()].fill(FirstPair::ZERO));
+        if let Some(split) = &mut view.level.split {
+            split.skew[range].fill([0.0; D]);
+        }
     }
 
     /// −Kã and M⁻¹(M − M_c)ã.
     #[inline(always)]
     fn correct_once<R: Registers>(&self, r: R, turn: usize, part: &Part, view: &mut View<'_, D>) {
-        if part.second.contains(&turn) {
-            for block in self.blocks.even(turn).into_iter().chain(self.blocks.odd(turn)) {
+        if part.sweeps[2].contains(&turn) {
+            for block in self.blocks_of(turn) {
                 let range = view.local(&self.blocks.nodes(block));
                 let (x, forces) = (&view.rate[range.clone()], &mut view.internal[range.clone()]);
-                subtract_both(r, &self.pairs.laws, self.pairs.block(block), x, forces, &mut view.once[range]);
+                let once = &mut view.lumping[0][range];
+                subtract_both(r, &self.pairs.laws.plain, self.pairs.block(block), x, forces, once);
             }
         }
-        if !part.second_done.contains(&turn) {
+        if !part.done[2].contains(&turn) {
             return;
         }
         let nodes = self.blocks.finished(turn);
+        self.finish_lumping(r, 0, &nodes, view);
         let range = view.local(&nodes);
-        for (once, inverse) in view.once[range.clone()].iter_mut().zip(&self.inverse_mass[nodes.clone()]) {
-            once.0 = r.store4(r.mul4(r.load4(&once.0), r.splat4(*inverse)));
-        }
         for (node, c) in self.surface.prescribed(&nodes) {
-            view.internal[node - view.start].set(c, 0.0);
-            view.once[node - view.start].set(c, 0.0);
+            view.internal[node - view.start.node].set(c, 0.0);
         }
-        if let Some(out) = &mut view.level.lumping_difference {
-            let sums = out[range.clone()].iter_mut().zip(&view.once[range]);
-            sums.for_each(|(out, once)| *out = once.auxiliary());
+        let fields = view.rate[range.clone()].iter().zip(&view.lumping[0][range.clone()]);
+        let out = view.level.acceleration[range.clone()].iter_mut();
+        match &mut view.level.split {
+            None => out.zip(fields).for_each(|(out, (rate, _))| *out = rate.of(0)),
+            Some(split) => {
+                for (((out, lumped), (rate, once)), node) in out.zip(&mut split.lumped[range]).zip(fields).zip(nodes) {
+                    let first = self.weights_of(node).first;
+                    let (plain, once): ([f64; D], [f64; D]) = (rate.of(0), once.auxiliary());
+                    *out = std::array::from_fn(|c| plain[c] + first * once[c]);
+                    *lumped = std::array::from_fn(|c| out[c] - first * plain[c]);
+                }
+            }
         }
     }
 
-    /// (M − M_c)M⁻¹(M − M_c)ã, v_n and v_{n+½}.
+    /// The last product with M⁻¹ of one of the lumping differences, which is 0 on prescribed components.
     #[inline(always)]
-    fn correct_twice<R: Registers>(
+    fn finish_lumping<R: Registers>(&self, r: R, which: usize, nodes: &Range<usize>, view: &mut View<'_, D>) {
+        let range = view.local(nodes);
+        for (field, inverse) in view.lumping[which][range].iter_mut().zip(&self.inverse_mass[nodes.clone()]) {
+            field.0 = r.store4(r.mul4(r.load4(&field.0), r.splat4(*inverse)));
+        }
+        for (node, c) in self.surface.prescribed(nodes) {
+            view.lumping[which][node - view.start.node].set(c, 0.0);
+        }
+    }
+
+    /// One more product of the lumping difference with M⁻¹(M − M_c), for the blocks of a turn.
+    #[inline(always)]
+    fn lump_again<R: Registers>(&self, r: R, which: usize, turn: usize, view: &mut View<'_, D>) {
+        for block in self.blocks_of(turn) {
+            let range = view.local(&self.blocks.nodes(block));
+            let (before, after) = view.lumping.split_at_mut(which);
+            let (x, to) = (&before[which - 1][range.clone()], &mut after[0][range]);
+            add_lumping(r, self.pairs.block(block), x, to);
+        }
+    }
+
+    /// The lumping difference once more, and the acceleration of the skew part of the stress of lumping.
+    #[inline(always)]
+    fn correct_twice<R: Registers>(&self, r: R, turn: usize, part: &Part, view: &mut View<'_, D>) {
+        if part.sweeps[3].contains(&turn) {
+            self.lump_again(r, 1, turn, view);
+            for block in self.blocks_of(turn) {
+                let range = view.local(&self.blocks.nodes(block));
+                if let Some(split) = view.level.split.as_mut().filter(|_| D == 2) {
+                    let (w, to) = (&split.lumped[range.clone()], &mut split.skew[range]);
+                    add_skew(&self.pairs.laws, self.pairs.block(block), w, to);
+                }
+            }
+        }
+        if !part.done[3].contains(&turn) {
+            return;
+        }
+        let nodes = self.blocks.finished(turn);
+        self.finish_lumping(r, 1, &nodes, view);
+        if let Some(split) = &mut view.level.split {
+            let start = view.start.node;
+            let local = nodes.start - start..nodes.end - start;
+            for (skew, inverse) in split.skew[local].iter_mut().zip(&self.inverse_mass[nodes.clone()]) {
+                skew.iter_mut().for_each(|value| *value *= inverse);
+            }
+            self.surface.prescribed(&nodes).for_each(|(node, c)| split.skew[node - start][c] = 0.0);
+        }
+    }
+
+    /// The lumping difference a third time, v_n and v_{n+½}.
+    #[inline(always)]
+    fn correct_thrice<R: Registers>(
         &self,
         r: R,
         turn: usize,
@@ -154,17 +295,12 @@ impl<const D: usize> Pass<'_, D> {
         view: &mut View<'_, D>,
         kinetic: &mut Kinetic,
     ) {
-        if part.third.contains(&turn) {
-            for block in self.blocks.even(turn).into_iter().chain(self.blocks.odd(turn)) {
-                let range = view.local(&self.blocks.nodes(block));
-                add_lumping(r, self.pairs.block(block), &view.once[range.clone()], &mut view.twice[range]);
-            }
+        if part.sweeps[4].contains(&turn) {
+            self.lump_again(r, 2, turn, view);
         }
-        if part.third_done.contains(&turn) {
+        if part.done[4].contains(&turn) {
             let nodes = self.blocks.finished(turn);
-            for (node, c) in self.surface.prescribed(&nodes) {
-                view.twice[node - view.start].set(c, 0.0);
-            }
+            self.finish_lumping(r, 2, &nodes, view);
             self.advance(r, nodes, view, kinetic);
         }
     }
@@ -172,23 +308,22 @@ impl<const D: usize> Pass<'_, D> {
     /// v_n and v_{n+½} under the corrected acceleration.
     #[inline(always)]
     fn advance<R: Registers>(&self, r: R, nodes: Range<usize>, view: &mut View<'_, D>, kinetic: &mut Kinetic) {
-        let LevelWeights { time, mass: [half, damping] } = &self.weights;
-        let (after, before) = (r.load(&time[0].0), r.load(&time[1].0));
-        let (half, damping) = (r.load4(&half.0), r.load4(&damping.0));
+        let (after, before) = (r.load(&self.weights.time[0].0), r.load(&self.weights.time[1].0));
         let (back, forward) = (r.splat(self.back), r.splat(self.forward));
         let [mut simulated, mut auxiliary] = [kinetic.simulated, kinetic.auxiliary];
         let square = |v: &[f64; D]| v.iter().map(|v| v * v).sum::<f64>();
         let range = view.local(&nodes);
         let given = self.simulated[nodes.clone()].iter().zip(&self.mass[nodes.clone()]);
-        let given = given.zip(&self.inverse_mass[nodes]);
-        let corrections = view.internal[range.clone()].iter().zip(&view.once[range.clone()]);
-        let corrections = corrections.zip(&view.twice[range.clone()]);
+        let given = given.zip(&self.inverse_mass[nodes.clone()]).zip(nodes);
+        let [once, twice, thrice] = view.lumping.each_ref().map(|field| &field[range.clone()]);
+        let corrections = view.internal[range.clone()].iter().zip(once.iter().zip(twice).zip(thrice));
         let motions = view.rate[range.clone()].iter_mut().zip(&mut view.half_step[range]);
-        for ((((velocity, mass), inverse), ((internal, once), twice)), (rate, half_step)) in
+        for (((((velocity, mass), inverse), node), (internal, ((once, twice), thrice))), (rate, half_step)) in
             given.zip(corrections).zip(motions)
         {
-            let twice = r.mul4(r.load4(&twice.0), r.splat4(*inverse));
-            let lumped = r.add4(r.mul4(half, r.load4(&once.0)), r.mul4(damping, twice));
+            let part = |weight: &FirstPair, field: &FirstPair| r.mul4(r.load4(&weight.0), r.load4(&field.0));
+            let [first, second, third] = &self.weights_of(node).mass;
+            let lumped = r.add4(r.add4(part(first, once), part(second, twice)), part(third, thrice));
             let plain = r.load(&rate.0);
             let plain = r.with_first(plain, r.add4(r.first(plain), lumped));
             let force = r.mul(r.load(&internal.0), r.splat(*inverse));

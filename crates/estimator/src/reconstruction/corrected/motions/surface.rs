@@ -52,16 +52,15 @@ impl SurfaceForces {
         }
     }
 
-    /// Sets the forces on prescribed components of these nodes, hands out the forces on the auxiliary solution and adds
-    /// those of contact. At supports the contact difference stays at rest.
+    /// Sets the forces on prescribed components of these nodes and adds those of contact on others. At supports the
+    /// contact difference stays at rest.
     #[inline(always)]
-    pub(super) fn apply<const D: usize>(&self, nodes: &Range<usize>, forces: &mut [Nodal], out: &mut [[f64; D]]) {
+    pub(super) fn apply<const D: usize>(&self, nodes: &Range<usize>, forces: &mut [Nodal]) {
         let local = |node: u32| node as usize - nodes.start;
         let supports = &self.supports[between(&self.supports, nodes, |support| support.node)];
         for support in supports {
             forces[local(support.node)].set(support.component as usize, support.force);
         }
-        out.iter_mut().zip(&*forces).for_each(|(out, force)| *out = force.of(0));
         let contacts = between(&self.nodes, nodes, |(node, _)| *node);
         for ((node, _), contact) in self.nodes[contacts.clone()].iter().zip(&self.forces[contacts]) {
             let force = &mut forces[local(*node)].0;

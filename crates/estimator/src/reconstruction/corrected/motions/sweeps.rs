@@ -1,7 +1,7 @@
 //! Sweeps over pairs of elements, for all motions together.
 
-use super::lanes::{FirstPair, Nodal};
-use super::pairs::{Moduli, Pair};
+use super::lanes::{FirstPair, Gradient, Nodal};
+use super::pairs::{Around, Laws, Moduli, Pair};
 use crate::simd::Registers;
 
 /// A gradient or a stress, column by column.
@@ -13,6 +13,67 @@ pub(super) fn subtract_stiffness<R: Registers>(r: R, laws: &[Moduli], pairs: &[P
     let to = &mut to[..x.len()];
     for pair in pairs {
         subtract(r, laws, pair, differences(r, pair, x), to);
+    }
+}
+
+/// Subtracts the part of K x that is made of plain strains from `to` (N), keeps V∇x of the first pair of motions in
+/// `gradients`, and adds it to the patches.
+#[inline(always)]
+pub(super) fn subtract_plain_part<R: Registers>(
+    r: R,
+    laws: &Laws,
+    (pairs, around): (&[Pair], &[Around]),
+    x: &[Nodal],
+    to: &mut [Nodal],
+    (gradients, patches): (&mut [Gradient], &mut [Gradient]),
+) {
+    let to = &mut to[..x.len()];
+    let (own, _) = gradients.as_chunks_mut::<2>();
+    for ((pair, around), own) in pairs.iter().zip(around).zip(own) {
+        let [a, b, c] = differences(r, pair, x);
+        let [g, h, i, k] = pair.gradients;
+        let (first, last) = (gradient(r, &[g, h], [a, b]), gradient(r, &[i, k], [b, c]));
+        let moduli = &laws.rest[pair.law as usize];
+        subtract_stresses(r, pair, [stress(r, moduli, &first), stress(r, moduli, &last)], to);
+        let kept =
+            |[along, across]: Columns<R>, root: f64| r.mul(r.join(r.first(along), r.first(across)), r.splat(root));
+        let (first, last) = (kept(first, around.roots[0]), kept(last, around.roots[1]));
+        (own[0].0, own[1].0) = (r.store(first), r.store(last));
+        let both = r.add(first, last);
+        for (patch, sum) in around.patches.iter().zip([both, first, both, last]) {
+            let patch = &mut patches[*patch as usize];
+            patch.0 = r.store(r.add(r.load(&patch.0), sum));
+        }
+    }
+}
+
+/// Subtracts the part of K x of the first pair of motions that is made of smoothed strains from `to` (N): means of the
+/// gradients of elements, by their places less `start`, and of the patches, times their weights.
+#[inline(always)]
+pub(super) fn subtract_smoothed_part<R: Registers>(
+    r: R,
+    laws: &Laws,
+    (pairs, around): (&[Pair], &[Around]),
+    (gradients, start): (&[Gradient], usize),
+    (own, patches): (&[Gradient], &[Gradient]),
+    to: &mut [Nodal],
+) {
+    let (own, _) = own.as_chunks::<2>();
+    for ((pair, around), own) in pairs.iter().zip(around).zip(own) {
+        let patch = |k: usize| r.load(&patches[around.patches[k] as usize].0);
+        let [p, q, s, t] = [patch(0), patch(1), patch(2), patch(3)];
+        let shared = r.add(p, s);
+        let moduli = &laws.smoothed[pair.law as usize];
+        let smoothed = |which: usize, nodes: R::Eight| {
+            let ([a, b, c], beyond) = (around.weights[which], around.beyond[which]);
+            let mut sum = r.add(nodes, r.mul(r.load(&own[which].0), r.splat(a + b + c)));
+            for (weight, place) in [a, b, c].into_iter().zip(beyond) {
+                sum = r.add(sum, r.mul(r.load(&gradients[place as usize - start].0), r.splat(weight)));
+            }
+            stress_of_first(r, moduli, r.mul(sum, r.splat(around.roots[which])))
+        };
+        let (first, last) = (smoothed(0, r.add(shared, q)), smoothed(1, r.add(shared, t)));
+        subtract_first_stresses(r, pair, [first, last], to);
     }
 }
 
@@ -80,12 +141,20 @@ pub(super) fn stress<R: Registers>(r: R, moduli: &Moduli, [along, across]: &Colu
     ]
 }
 
-/// Forces K x of A or B at two nodes (N), from the differences there.
+/// The same of the first pair of motions, at derivatives along x, then along y.
 #[inline(always)]
-fn forces<R: Registers>(r: R, moduli: &Moduli, gradients: &[[f64; 2]; 2], values: [R::Eight; 2]) -> [R::Eight; 2] {
-    // The same as a product with the gradient at one node, of a stress.
-    let [along, across] = stress(r, moduli, &gradient(r, gradients, values));
-    let [first, last] = gradients;
+fn stress_of_first<R: Registers>(r: R, moduli: &Moduli, gradient: R::Eight) -> [R::Four; 2] {
+    let other = r.swap(gradient);
+    let column = |k: usize, own: R::Four, other: R::Four| {
+        let [direct, cross] = [&moduli.own[k], &moduli.partner[k]].map(|moduli| r.first(r.load(moduli)));
+        r.add4(r.mul4(own, direct), r.mul4(other, cross))
+    };
+    [column(0, r.first(gradient), r.last(other)), column(1, r.last(gradient), r.first(other))]
+}
+
+/// Forces of a stress of A or B at two nodes (N): its product with the gradients there.
+#[inline(always)]
+fn forces<R: Registers>(r: R, [first, last]: [[f64; 2]; 2], [along, across]: Columns<R>) -> [R::Eight; 2] {
     [
         r.add(r.mul(along, r.splat(first[0])), r.mul(across, r.splat(first[1]))),
         r.add(r.mul(along, r.splat(last[0])), r.mul(across, r.splat(last[1]))),
@@ -94,10 +163,17 @@ fn forces<R: Registers>(r: R, moduli: &Moduli, gradients: &[[f64; 2]; 2], values
 
 #[inline(always)]
 fn subtract<R: Registers>(r: R, laws: &[Moduli], pair: &Pair, [a, b, c]: [R::Eight; 3], to: &mut [Nodal]) {
-    let moduli = &laws[pair.law as usize];
-    let [[g, h], [i, k]] = [[pair.gradients[0], pair.gradients[1]], [pair.gradients[2], pair.gradients[3]]];
-    let [first, mine] = forces(r, moduli, &[g, h], [a, b]);
-    let [other, last] = forces(r, moduli, &[i, k], [b, c]);
+    let (moduli, [g, h, i, k]) = (&laws[pair.law as usize], pair.gradients);
+    let (first, last) = (gradient(r, &[g, h], [a, b]), gradient(r, &[i, k], [b, c]));
+    subtract_stresses(r, pair, [stress(r, moduli, &first), stress(r, moduli, &last)], to);
+}
+
+/// Subtracts the forces of stresses of A and B.
+#[inline(always)]
+fn subtract_stresses<R: Registers>(r: R, pair: &Pair, [a, b]: [Columns<R>; 2], to: &mut [Nodal]) {
+    let [g, h, i, k] = pair.gradients;
+    let [first, mine] = forces(r, [g, h], a);
+    let [other, last] = forces(r, [i, k], b);
     let shared = r.add(mine, other);
     let sum = r.add(r.add(first, last), shared);
     let [n0, n1, n2, n3] = places(pair);
@@ -106,6 +182,64 @@ fn subtract<R: Registers>(r: R, laws: &[Moduli], pair: &Pair, [a, b, c]: [R::Eig
     to[n1].0 = r.store(r.sub(r.load(&to[n1].0), first));
     to[n2].0 = r.store(r.sub(r.load(&to[n2].0), shared));
     to[n3].0 = r.store(r.sub(r.load(&to[n3].0), last));
+}
+
+/// The same for the first pair of motions.
+#[inline(always)]
+fn subtract_first_stresses<R: Registers>(r: R, pair: &Pair, stresses: [[R::Four; 2]; 2], to: &mut [Nodal]) {
+    let [g, h, i, k] = pair.gradients;
+    let force = |[along, across]: [R::Four; 2], gradient: [f64; 2]| {
+        r.add4(r.mul4(along, r.splat4(gradient[0])), r.mul4(across, r.splat4(gradient[1])))
+    };
+    let [a, b] = stresses;
+    let (first, shared, last) = (force(a, g), r.add4(force(a, h), force(b, i)), force(b, k));
+    let sum = r.add4(r.add4(first, last), shared);
+    let [n0, n1, n2, n3] = places(pair);
+    let add = |to: &mut Nodal, change: R::Four| {
+        let whole = r.load(&to.0);
+        to.0 = r.store(r.with_first(whole, r.add4(r.first(whole), change)));
+    };
+    let minus = |change: R::Four| r.sub4(r.splat4(0.0), change);
+    add(&mut to[n0], sum);
+    add(&mut to[n1], minus(first));
+    add(&mut to[n2], minus(shared));
+    add(&mut to[n3], minus(last));
+}
+
+/// Adds the nodal forces of the skew part of the stress that lumping the mass is for a motion w of elements of a plane
+/// body: τ = ρ/4 Σ w_i ⊗ d_i, d_i from the centroid, gives |E|(τ − τᵀ)/2 ∇φ_i. Both d_i and ∇φ_i are edges turned.
+#[inline(always)]
+pub(super) fn add_skew<const D: usize>(laws: &Laws, pairs: &[Pair], w: &[[f64; D]], to: &mut [[f64; D]]) {
+    let to = &mut to[..w.len()];
+    let y = D - 1;
+    for pair in pairs {
+        let nodes = places(pair);
+        let base = w[nodes[0]];
+        let from = |k: usize| [w[nodes[k]][0] - base[0], w[nodes[k]][y] - base[y]];
+        let [g, h, i, k] = pair.gradients;
+        let third = laws.thirds[pair.law as usize];
+        let turning = |[p, q]: [[f64; 2]; 2], [u, v]: [[f64; 2]; 2], share: f64| {
+            let along = u[0] * (p[0] + 2.0 * q[0]) + u[1] * (p[1] + 2.0 * q[1]);
+            (along - (v[0] * (2.0 * p[0] + q[0]) + v[1] * (2.0 * p[1] + q[1]))) * (share * third)
+        };
+        let (a, b, c) = (from(1), from(2), from(3));
+        let (first, last) = (turning([g, h], [a, b], pair.shares[0]), turning([i, k], [b, c], pair.shares[1]));
+        let mut add = |node: usize, x: f64, z: f64| {
+            to[node][0] -= z;
+            to[node][y] += x;
+        };
+        let (one, mine, other, end) = (
+            [g[0] * first, g[1] * first],
+            [h[0] * first, h[1] * first],
+            [i[0] * last, i[1] * last],
+            [k[0] * last, k[1] * last],
+        );
+        let sum = |c: usize| one[c] + mine[c] + other[c] + end[c];
+        add(nodes[0], -sum(0), -sum(1));
+        add(nodes[1], one[0], one[1]);
+        add(nodes[2], mine[0] + other[0], mine[1] + other[1]);
+        add(nodes[3], end[0], end[1]);
+    }
 }
 
 /// A triangle gives m/(D+2) times the distance to the mean of its nodes, here less the value at node 0.

@@ -1,22 +1,23 @@
 //! The corrections of the acceleration, and the steps after which they are left out.
 
 use super::lanes::{FirstPair, MOTIONS, Nodal};
+use crate::smoothing::{Coefficients, Smoothing};
 use percute_core::time::TimeGrid;
 
 /// Which part of each correction a motion has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::reconstruction::corrected) struct Shares {
-    /// That of the lumped mass.
-    pub(in crate::reconstruction::corrected) mass: f64,
+    /// That of the mesh: of smoothed strains and of the lumped mass.
+    pub(in crate::reconstruction::corrected) space: f64,
     /// That of the central differences.
     pub(in crate::reconstruction::corrected) time: f64,
 }
 
 impl Shares {
     /// Both corrections.
-    pub(in crate::reconstruction::corrected) const ALL: Self = Self { mass: 1.0, time: 1.0 };
+    pub(in crate::reconstruction::corrected) const ALL: Self = Self { space: 1.0, time: 1.0 };
     /// None: the scheme of the simulation.
-    pub(in crate::reconstruction::corrected) const NONE: Self = Self { mass: 0.0, time: 0.0 };
+    pub(in crate::reconstruction::corrected) const NONE: Self = Self { space: 0.0, time: 0.0 };
 }
 
 /// The corrections that elements and steps, or steps alone, half as long need no more: errors are of second order.
@@ -24,7 +25,7 @@ const QUARTERS: f64 = 0.75;
 
 /// Those of the half-size solution, the half-step solution and the contact difference.
 const BESIDE: [Shares; 3] =
-    [Shares { mass: QUARTERS, time: QUARTERS }, Shares { mass: 0.0, time: QUARTERS }, Shares::NONE];
+    [Shares { space: QUARTERS, time: QUARTERS }, Shares { space: 0.0, time: QUARTERS }, Shares::NONE];
 
 /// Reversals after which corrections are no longer made. Steps that are long and short in turn drive waves that need
 /// four of them for a period; the corrected scheme has such waves from shorter steps on than the plain one, and can be
@@ -37,51 +38,79 @@ const LONGER: f64 = 1e-3;
 #[derive(Clone, Debug)]
 pub(super) struct Weights {
     shares: [Shares; MOTIONS],
-    /// β.
-    damping: f64,
+    /// Those of the lumping difference in each body.
+    bodies: Vec<BodyWeights>,
+    /// The same without corrections.
+    plain: Vec<BodyWeights>,
     /// How often so far a step has been longer than both its neighbours, or shorter.
     reversals: usize,
 }
 
+/// Factors of the lumping difference in a body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BodyWeights {
+    /// Of M⁻¹(M − M_c)ã once, twice and three times.
+    pub(super) mass: [FirstPair; 3],
+    /// c₁ of the auxiliary solution.
+    pub(super) first: f64,
+}
+
 /// Factors of the parts of a correction at one level.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LevelWeights {
+pub(super) struct LevelWeights<'a> {
     /// Of −M⁻¹Kã (s²) for the acceleration from t_n on, and up to t_n.
     pub(super) time: [Nodal; 2],
-    /// Of M⁻¹(M − M_c)ã once and twice.
-    pub(super) mass: [FirstPair; 2],
+    pub(super) bodies: &'a [BodyWeights],
+    /// Whether strains are smoothed.
+    pub(super) smooths: bool,
+}
+
+impl BodyWeights {
+    fn new(body: &Coefficients, [first, second]: [f64; 2]) -> Self {
+        let pair = |factor: f64| FirstPair([factor * first, factor * second, factor * first, factor * second]);
+        Self { mass: body.mass.map(pair), first: first * body.mass[0] }
+    }
+}
+
+/// The shares of all motions, with these of the auxiliary solution.
+pub(super) fn shares(auxiliary: Shares) -> [Shares; MOTIONS] {
+    let [half_size, half_step, contact] = BESIDE;
+    [auxiliary, half_size, half_step, contact]
 }
 
 impl Weights {
-    /// Those in `D` dimensions, with these shares of the auxiliary solution.
-    pub(super) fn new<const D: usize>(auxiliary: Shares) -> Self {
-        let [half_size, half_step, contact] = BESIDE;
-        Self { shares: [auxiliary, half_size, half_step, contact], damping: damping::<D>(), reversals: 0 }
+    /// Those with these shares of the auxiliary solution.
+    pub(super) fn new(smoothing: &Smoothing, auxiliary: Shares) -> Self {
+        let shares = shares(auxiliary);
+        let of = |pair: [f64; 2]| smoothing.bodies().iter().map(|body| BodyWeights::new(body, pair)).collect();
+        Self { shares, bodies: of([shares[0].space, shares[1].space]), plain: of([0.0; 2]), reversals: 0 }
     }
 
-    /// Those at t_n. Levels come in order.
-    pub(super) fn at(&mut self, times: &TimeGrid, n: usize) -> LevelWeights {
+    /// Takes in the step from t_n on. Levels come in order.
+    pub(super) fn begin(&mut self, times: &TimeGrid, n: usize) {
         self.reversals += usize::from(n < times.step_count() && reverses(times, n));
-        let shares = if self.reversals <= FEW { self.shares } else { [Shares::NONE; MOTIONS] };
-        let (next, last) = (times.step(n.min(times.step_count() - 1)), times.step(n.saturating_sub(1)));
-        let [first, second] = [shares[0].mass, shares[1].mass];
-        let mass = |factor: f64| FirstPair([factor * first, factor * second, factor * first, factor * second]);
-        let time = |square: f64| Nodal::new(shares.map(|share| [share.time * square / 12.0; 2]));
-        LevelWeights { time: [time(next * last), time(last * last)], mass: [mass(0.5), mass(-self.damping)] }
     }
-}
 
-/// β of p(μ) = μ/2 − βμ².
-///
-/// The eigenvalues μ of an element are 0 and (D+1)/(D+2). In 2D, without β the shortest waves would be unstable from
-/// 0.97 of the critical step on. With the β that makes p ≤ ⅓, x(1 + p − x/12) ≤ 4 for all x = Δt²ω² ≤ 4: the auxiliary
-/// solution is stable wherever the simulation is. In 1D this β is 0. But there the simulation takes the critical step
-/// exactly, its shortest wave grows with time once it is excited, and an auxiliary solution with the same growth does
-/// not show it. With β ≥ 1/36 the auxiliary solution does not grow, at the price of a larger estimate at that step.
-/// This changes errors of the order that is left anyway.
-pub(super) fn damping<const D: usize>() -> f64 {
-    let largest = (D + 1) as f64 / (D + 2) as f64;
-    ((0.5 * largest - 1.0 / 3.0) / (largest * largest)).max(1.0 / 36.0)
+    /// Weakens the corrections of the mass to this part.
+    pub(super) fn weaken(&mut self, smoothing: &Smoothing, part: f64) {
+        let pair = [self.shares[0].space, self.shares[1].space].map(|share| part * share);
+        self.bodies = smoothing.bodies().iter().map(|body| BodyWeights::new(body, pair)).collect();
+    }
+
+    /// Those at t_n.
+    pub(super) fn at(&self, times: &TimeGrid, n: usize) -> LevelWeights<'_> {
+        let (next, last) = (times.step(n.min(times.step_count() - 1)), times.step(n.saturating_sub(1)));
+        self.of_steps([next * last, last * last])
+    }
+
+    /// Those with these products of step lengths (s²), from t_n on and up to t_n.
+    pub(super) fn of_steps(&self, squares: [f64; 2]) -> LevelWeights<'_> {
+        let corrects = self.reversals <= FEW;
+        let shares = if corrects { self.shares } else { [Shares::NONE; MOTIONS] };
+        let time = |square: f64| Nodal::new(shares.map(|share| [share.time * square / 12.0; 2]));
+        let bodies = if corrects { &self.bodies } else { &self.plain };
+        LevelWeights { time: squares.map(time), bodies, smooths: corrects }
+    }
 }
 
 /// Whether the step before t_n is longer than those beside it, or shorter.

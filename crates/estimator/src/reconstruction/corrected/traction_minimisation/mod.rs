@@ -27,7 +27,7 @@ use crate::pool::Pool;
 use crate::simd::{Registers, Task, run_task};
 use crate::stress::{EnergyForms, hooke};
 use crate::time_level::ForcesKnown;
-use crate::traction::{EquilibratedLevels, Equilibration, Then};
+use crate::traction::{EquilibratedLevels, Equilibration, Smoothed, Then};
 use crate::wide::Wide;
 use chebyshev::{Arrays, Steps};
 use energy::{moment_slope, product_slope};
@@ -123,12 +123,12 @@ impl TractionMinimisation {
         self.wavefront.run(work, &mut arrays);
     }
 
-    /// Solves the star problems of levels with these forces and improves their moments; `then` is given each part of
+    /// Solves the star problems of levels with these forces, and strains if they are smoothed, and improves their moments; `then` is given each part of
     /// the mesh with the final ones. Returns the largest relative miss of the star problems.
     pub(in crate::reconstruction) fn equilibrate<const D: usize, const N: usize>(
         &self,
         of @ (problem, equilibration, _): (&Problem<D, N>, &Equilibration<'_, D, N>, Acceleration),
-        forces: Vec<ForcesKnown<D>>,
+        forces: (Vec<ForcesKnown<D>>, Option<Smoothed<'_>>),
         levels: &mut EquilibratedLevels<D>,
         concentration: Option<&Concentration<D>>,
         then: Then<'_, D>,
@@ -150,14 +150,14 @@ impl TractionMinimisation {
     fn add_slopes<const D: usize, const N: usize>(
         &self,
         (problem, equilibration, choice): (&Problem<D, N>, &Equilibration<'_, D, N>, Acceleration),
-        forces: Vec<ForcesKnown<D>>,
+        (forces, strains): (Vec<ForcesKnown<D>>, Option<Smoothed<'_>>),
         levels: &mut EquilibratedLevels<D>,
         concentration: Option<&Concentration<D>>,
         all: &mut Modes,
     ) -> f64 {
         all.clear();
         let room = Pool::new();
-        let miss = equilibration.solve(forces, levels, |levels, part| {
+        let miss = equilibration.solve(forces, levels, strains, |levels, part| {
             let slopes = Slopes { problem, equilibration, choice, levels, numbers: &self.numbers };
             for parity in 0..2 {
                 let strips = part.strips.clone().filter(|strip| strip % 2 == parity);

@@ -118,7 +118,7 @@ fn slopes_are_differences_of_the_energy() {
         let fields = NodalBalance {
             moments: [(); 3].map(|()| [vector(), vector()]),
             acceleration: [(); 3].map(|()| vector()),
-            lumping_difference: None,
+            skew: None,
             body_force: [0.0; 2],
         };
         let motion = ElementMotion::any([(); 3].map(|()| vector().map(|u| 1e-12 * u)), [[0.0; 2]; 3]);

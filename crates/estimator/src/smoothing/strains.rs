@@ -1,0 +1,176 @@
+//! Smoothed strains at some levels side by side.
+
+use super::Smoothing;
+use crate::blocks::{BLOCK, ElementBlocks};
+use crate::element::Element;
+use crate::field_lanes::FieldLanes;
+use crate::lanes::{Lanes, Value};
+use crate::pool::Pool;
+use crate::simd::{Registers, Task, run_task};
+use crate::wide::Wide;
+use percute_core::ids::{ElementId, NodeId};
+use percute_core::problem::Problem;
+use rayon::prelude::*;
+
+/// Components of a strain: ε_xx, ε_yy, ε_xy.
+const COMPONENTS: usize = 3;
+
+/// The strains of which smoothed ones are made, of all elements at some levels.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SmoothedStrains {
+    /// Of each element.
+    strains: Vec<[Lanes; COMPONENTS]>,
+    /// β/(3V) Σ|E|ε_E of each patch.
+    patches: Vec<[Lanes; COMPONENTS]>,
+    /// 1 at the levels whose strains are smoothed, 0 at others.
+    share: Lanes,
+}
+
+/// Displacements of some levels, and whether the strains of each are smoothed.
+pub(crate) type Displacements<'a, const D: usize> = [(&'a [[f64; D]], bool)];
+
+/// The data of the elements.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Strained<'a, const D: usize, const N: usize> {
+    pub(crate) problem: &'a Problem<D, N>,
+    pub(crate) smoothing: &'a Smoothing,
+    pub(crate) elements: &'a [Element<D, N>],
+    pub(crate) blocks: &'a ElementBlocks<N>,
+}
+
+impl SmoothedStrains {
+    /// Takes in displacements (m). Each element and each patch is summed up by itself.
+    pub(crate) fn fill<const D: usize, const N: usize>(
+        &mut self,
+        of: Strained<'_, D, N>,
+        displacements: &Displacements<'_, D>,
+    ) {
+        self.share = Lanes::at_levels(|k| if displacements.get(k).is_some_and(|level| level.1) { 1.0 } else { 0.0 });
+        self.strains.resize(of.elements.len(), [Lanes::ZERO; COMPONENTS]);
+        self.patches.resize(of.smoothing.patch_count(), [Lanes::ZERO; COMPONENTS]);
+        let room = Pool::new();
+        self.strains.par_chunks_mut(BLOCK).enumerate().for_each(|(block, strains)| {
+            room.lend(FieldLanes::default, |fields| {
+                run_task(StrainsOfBlock { of, displacements, block, fields, strains });
+            });
+        });
+        let strains = &self.strains;
+        patches_of_nodes(of.smoothing, &mut self.patches).into_par_iter().for_each(|(first, nodes, patches)| {
+            run_task(PatchesOfNodes { of, strains, first, nodes, patches });
+        });
+    }
+
+    /// The strain of an element of which σ̄ is made: smoothed where it is, the plain one at other levels.
+    #[inline(always)]
+    pub(crate) fn of<T: Value<Stored = Lanes>, const D: usize, const N: usize>(
+        &self,
+        like: T,
+        Strained { problem, smoothing, elements, .. }: Strained<'_, D, N>,
+        element: ElementId,
+    ) -> [[T; D]; D] {
+        let (mesh, volume) = (problem.mesh(), elements[element.index()].volume);
+        let own = self.strains[element.index()].map(
+            #[inline(always)]
+            |x| like.load(&x),
+        );
+        let mut smooth = [like.zero(); COMPONENTS];
+        for facet in mesh.cell_facets()[element.index()] {
+            let other = Smoothing::beyond(problem, element, facet);
+            let beyond = elements[other.index()].volume;
+            let weight = smoothing.edge_weight(mesh.cells()[element.index()][0], volume + beyond);
+            let (mine, beyond) = (weight * volume, weight * beyond);
+            for c in 0..COMPONENTS {
+                smooth[c] += own[c] * mine + like.load(&self.strains[other.index()][c]) * beyond;
+            }
+        }
+        let material = problem.element_material()[element.index()];
+        for node in &mesh.cells()[element.index()] {
+            let patch = &self.patches[smoothing.patch(*node, material)];
+            for c in 0..COMPONENTS {
+                smooth[c] += like.load(&patch[c]);
+            }
+        }
+        let share = like.load(&self.share);
+        let blend = |c: usize| own[c] + share * (smooth[c] - own[c]);
+        let mut strain = [[blend(2); D]; D];
+        (strain[0][0], strain[D - 1][D - 1]) = (blend(0), blend(1));
+        strain
+    }
+}
+
+/// The strains of a block of elements.
+struct StrainsOfBlock<'b, 'a, const D: usize, const N: usize> {
+    of: Strained<'a, D, N>,
+    displacements: &'b Displacements<'b, D>,
+    block: usize,
+    fields: &'b mut FieldLanes<D>,
+    strains: &'b mut [[Lanes; COMPONENTS]],
+}
+
+impl<const D: usize, const N: usize> Task for StrainsOfBlock<'_, '_, D, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Registers>(self, r: R) {
+        let Self { of, displacements, block, fields, strains } = self;
+        let (like, own) = (Wide::zeros(r), of.blocks.block(block));
+        fields.gather(like, own.nodes, displacements.iter().map(|level| Some(level.0)));
+        let elements = &of.elements[of.blocks.elements(block)];
+        for ((element, local), strain) in elements.iter().zip(own.local).zip(strains) {
+            let gradient = element.gradient(&fields.of(like, local));
+            let shear = (gradient[0][D - 1] + gradient[D - 1][0]) * 0.5;
+            *strain = [gradient[0][0].store(), gradient[D - 1][D - 1].store(), shear.store()];
+        }
+    }
+}
+
+/// The patches of some nodes, of which the first has this number.
+type OfNodes<'a> = (usize, usize, &'a mut [[Lanes; COMPONENTS]]);
+
+/// All patches, some nodes at a time: their first node, their number and their patches.
+fn patches_of_nodes<'a>(smoothing: &Smoothing, patches: &'a mut [[Lanes; COMPONENTS]]) -> Vec<OfNodes<'a>> {
+    let (count, mut rest, mut parts) = (smoothing.node_count(), patches, Vec::new());
+    for first in (0..count).step_by(BLOCK) {
+        let nodes = first..(first + BLOCK).min(count);
+        let (own, others) = rest.split_at_mut(smoothing.patches(&nodes).len());
+        parts.push((first, nodes.len(), own));
+        rest = others;
+    }
+    parts
+}
+
+struct PatchesOfNodes<'b, 'a, const D: usize, const N: usize> {
+    of: Strained<'a, D, N>,
+    strains: &'b [[Lanes; COMPONENTS]],
+    first: usize,
+    nodes: usize,
+    patches: &'b mut [[Lanes; COMPONENTS]],
+}
+
+impl<const D: usize, const N: usize> Task for PatchesOfNodes<'_, '_, D, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Registers>(self, r: R) {
+        let Self { of: Strained { problem, smoothing, elements, .. }, strains, first, nodes, patches } = self;
+        let (like, laws) = (Wide::zeros(r), problem.element_material());
+        let start = smoothing.patches(&(first..first + nodes)).start;
+        for node in (first..first + nodes).map(NodeId::new) {
+            let own = smoothing.patches(&(node.index()..node.index() + 1));
+            for patch in own {
+                let mut sum = [like; COMPONENTS];
+                for &element in problem.mesh().stars().star(node).elements {
+                    if laws[element.index()] == smoothing.material(patch) {
+                        let volume = elements[element.index()].volume * smoothing.weights()[patch];
+                        for c in 0..COMPONENTS {
+                            sum[c] += like.load(&strains[element.index()][c]) * volume;
+                        }
+                    }
+                }
+                for c in 0..COMPONENTS {
+                    patches[patch - start][c] = sum[c].store();
+                }
+            }
+        }
+    }
+}
