@@ -29,7 +29,7 @@ pub(crate) use concentration::Concentration;
 use concentration::{Faced, Known, OwnForces};
 use impulse_smoothing::{ImpulseSmoothing, Stopped};
 use moment_correction::MomentCorrection;
-use motions::{Approach, AuxiliaryLevel, FreeMotion, Motions, Shares, SimulatedLevel, SplitLevel};
+use motions::{AuxiliaryLevel, Motions, Shares, SimulatedLevel, SplitLevel};
 use percute_core::contact::{ContactNode, Coupling};
 use percute_core::dynamics::Dynamics;
 use percute_core::history::{State, Step};
@@ -102,23 +102,24 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         }
     }
 
-    /// Replaces the forces (N) at nodes that touch alone, from the motions of all contact nodes over the step n.
+    /// Replaces the forces (N) at nodes that touch alone, from the foreseen motions of all contact nodes in the step n.
     fn replace_own(
         &mut self,
-        (n, free): (usize, &[FreeMotion<D>]),
+        (n, motions): (usize, &mut Motions<'p, D, N>),
         stopped: &[Option<Stopped>],
         around: &Around<'_>,
         [contact, arresting]: [&mut [[f64; D]]; 2],
     ) {
         let (problem, surface, length) = (self.problem, self.problem.surface(), self.times.step(n));
         let Some(concentration) = &self.concentration else { return };
+        let foreseen = motions.foresee(n);
         let time = |at: usize| {
             let own = || self.impulse_smoothing.as_ref().map_or(length, |smoothing| smoothing.time(at));
             stopped.get(at).copied().flatten().map_or_else(own, |stopped| stopped.time)
         };
         let steps = |at: usize| length / time(at);
         let mut known = Known { problem, concentration, gap: around.gap, steps: &steps, contact, arresting };
-        self.own_forces.replace(&mut known, |at| Approach::new(problem, at, free));
+        self.own_forces.replace(&mut known, |at| foreseen.free_gap(at), |at, forces| foreseen.approach(at, forces));
         for (sliding, coupling) in surface.sliding().iter().zip(around.couplings) {
             let mut nodes = Vec::new();
             for at in sliding.positions().filter(|&at| surface.nodes()[at].free) {
@@ -127,7 +128,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
                     None => self.own_forces.release(at),
                 }
             }
-            let mut motion = SlidingMotion::new((sliding, coupling), free, known.contact);
+            let mut motion = SlidingMotion::new((sliding, coupling), foreseen.free(), known.contact);
             self.own_forces.replace_in_turn(nodes, &mut known, |at, forces| motion.approach(at, forces));
         }
     }
@@ -294,8 +295,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
             return self.balance_simulation(dynamics, state, [contact, arresting], &around, pool);
         };
         motions.begin(dynamics, step.index);
-        let free = motions.free_motions(dynamics, step.index);
-        self.replace_own((step.index, free), &stopped, &around, [&mut contact, &mut arresting]);
+        self.replace_own((step.index, &mut motions), &stopped, &around, [&mut contact, &mut arresting]);
         let densities = self.level([&contact, &arresting], &around);
         self.halvings = halvings(&contact, &densities.acting);
         let pull = driving_forces(problem, &densities.acting);

@@ -1,10 +1,11 @@
 //! The motion of the nodes of a slave to their master over a step, under the forces of all of them.
 
-use super::motions::{Approach, FreeMotion};
+use super::motions::{Approach, FreeMotion, Mobility};
 use super::sliding::mobility;
 use percute_core::contact::{Coupling, Side, SlidingSurfaces};
 
-/// The motion of the auxiliary solution on two surfaces that slide, over the next step.
+/// The motion of the auxiliary solution on two surfaces that slide, over the next step. Forces move nodes as lumped
+/// masses: those of a slave are on many nodes at once, and the corrections under them are left out.
 #[derive(Debug)]
 pub(super) struct SlidingMotion<'a, const D: usize> {
     sliding: &'a SlidingSurfaces<D>,
@@ -56,7 +57,8 @@ impl<'a, const D: usize> SlidingMotion<'a, D> {
         let undeformed = coupling.difference(k, |node| slave.eta()[node], |node| master.eta()[node]) / weight;
         let parts = [now, next].map(|place| sliding.frame().split(&place));
         let [gap_now, gap] = parts.map(|(normal, _)| undeformed + normal);
-        Approach { gap_now, gap, along: parts.map(|(_, along)| along), mobility }
+        let along = parts.map(|(_, along)| along);
+        Approach { gap_now, gap, along, mobility: Mobility::of_mass(mobility) }
     }
 
     /// Puts a force (N) in the place of that of a node of the slave: D_ki R_k/w_k on the slave, −M_kj R_k/w_k on the
@@ -144,7 +146,7 @@ mod tests {
         for &k in &active {
             let at = slave.position(k);
             let approach = sliding_motion.approach(at, &forces);
-            let under_all = approach.gap + approach.mobility * push[k];
+            let under_all = approach.gap + approach.mobility.between(&normal, &normal) * push[k];
             // Rounding of some ten terms of 1e-3.
             assert!((under_all - gaps[at]).abs() < 1e-15, "{k}: {under_all} {}", gaps[at]);
             assert!(approach.along.as_flattened().iter().all(|along| along.abs() < 1e-18));

@@ -36,46 +36,54 @@ impl<const D: usize> Own<D> {
         [normal[0], normal[D - 1]]
     }
 
+    /// The displacement across the plane that a unit normal force adds until the next instant (m/N).
+    fn mobility(&self) -> f64 {
+        let normal = self.frame.normal();
+        self.approach.mobility.between(normal, normal)
+    }
+
+    /// The normal force (N) that brings the node to its plane without a local compliance.
+    pub(super) fn largest(&self) -> f64 {
+        (-(self.approach.gap + self.depth) / self.mobility()).max(0.0)
+    }
+
     /// The normal force (N) under which the node comes to its plane with the local compliance of its traction;
     /// `largest` brings it there without.
     pub(super) fn normal(&self, costs: &NodeCosts<'_>, largest: f64) -> f64 {
-        let across = self.across();
+        let (across, mobility) = (self.across(), self.mobility());
         let (mut low, mut high) = (0.0, largest);
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (low + high);
             let local = costs.approach(&costs.shape(middle), across, middle);
-            let remaining = self.approach.gap + self.depth + middle * self.approach.mobility + local;
+            let remaining = self.approach.gap + self.depth + middle * mobility + local;
             if remaining < 0.0 { low = middle } else { high = middle }
         }
         0.5 * (low + high)
     }
 
-    /// The contact under a normal force (N): the traction sticks where it first touched, or slides at Coulomb's limit;
-    /// `None` without a force.
-    pub(super) fn contact(
-        &self,
-        costs: &NodeCosts<'_>,
-        force: f64,
-        last: Option<OwnContact<D>>,
-    ) -> Option<OwnContact<D>> {
+    /// The contact under a normal force (N): the traction sticks where it first touched, or slides at Coulomb's limit.
+    pub(super) fn contact(&self, costs: &NodeCosts<'_>, force: f64, last: Option<OwnContact<D>>) -> OwnContact<D> {
+        let (normal, [now, next], depth) = (self.frame.normal(), self.approach.along, self.depth);
         if force == 0.0 {
-            return None;
+            return OwnContact { force: [0.0; D], direction: *normal, anchor: now, depth };
         }
-        let (shape, normal, [now, next]) = (costs.shape(force), self.frame.normal(), self.approach.along);
+        let shape = costs.shape(force);
         let (across, along) = (self.across(), [-self.across()[1], self.across()[0]]);
         let anchor = last.map_or(now, |last| last.anchor);
-        let tangent = [-normal[D - 1], normal[0]];
-        let mobility = self.approach.mobility + costs.local(&shape, along, along);
+        let tangent = std::array::from_fn(|c| if c == 0 { -normal[D - 1] } else { normal[0] });
+        let body = &self.approach.mobility;
+        let mobility = body.between(&tangent, &tangent) + costs.local(&shape, along, along);
         let away = (0..D).map(|c| (next[c] - anchor[c]) * tangent[c]).sum::<f64>()
-            + force * costs.local(&shape, along, across);
-        let (stick, limit) = (-away / mobility, self.law.map_or(0.0, |law| law.limit(force)));
-        let friction = stick.clamp(-limit, limit);
-        let slip = (friction - stick) * mobility;
-        Some(OwnContact {
+            + force * (body.between(&tangent, normal) + costs.local(&shape, along, across));
+        let limit = self.law.map_or(0.0, |law| law.limit(force));
+        // Along a support there is no mobility.
+        let friction = if limit > 0.0 { (-away / mobility).clamp(-limit, limit) } else { 0.0 };
+        let slip = friction * mobility + away;
+        OwnContact {
             force: std::array::from_fn(|c| force * normal[c] + friction * tangent[c]),
             direction: std::array::from_fn(|c| normal[c] + friction / force * tangent[c]),
             anchor: std::array::from_fn(|c| anchor[c] + slip * tangent[c]),
-            depth: self.depth,
-        })
+            depth,
+        }
     }
 }

@@ -65,33 +65,18 @@ impl<const D: usize> OwnForces<D> {
     pub(in crate::reconstruction::corrected) fn replace<const N: usize>(
         &mut self,
         known: &mut Known<'_, D, N>,
-        approach: impl Fn(usize) -> Approach<D>,
+        free_gap: impl Fn(usize) -> f64,
+        approach: impl FnMut(usize, &[[f64; D]]) -> Approach<D>,
     ) {
-        let (problem, surface) = (known.problem, known.problem.surface());
-        let stands = |at: usize| surface.leads(at) && surface.sliding_of(at).is_none();
-        for (at, node) in surface.nodes().iter().enumerate().filter(|&(at, node)| node.free && stands(at)) {
-            match node.beside {
-                None => {
-                    let last = self.contacts[at].take();
-                    self.contacts[at] = self.replace_one((at, &Faced::WHOLE), last, approach(at), known);
-                }
-                // Both planes of a node, each under the force of the other one.
-                Some(beside) if at < beside => {
-                    let both = [at, beside];
-                    let free = both.into_iter().filter(|&at| surface.nodes()[at].free);
-                    self.replace_in_turn(free.map(|at| (at, Faced::WHOLE)).collect(), known, |at, forces| {
-                        let other = both[usize::from(at == both[0])];
-                        let frame = problem.obstacles()[surface.nodes()[at].obstacle].flat_frame();
-                        approach(at).under(&frame, &forces[other])
-                    });
-                }
-                Some(_) => {}
-            }
-        }
+        let surface = known.problem.surface();
+        let stands = |at: usize| surface.nodes()[at].free && surface.leads(at) && surface.sliding_of(at).is_none();
+        let touches = |at: usize| self.contacts[at].is_some() || known.contact[at] != [0.0; D] || free_gap(at) < 0.0;
+        let nodes = (0..surface.nodes().len()).filter(|&at| stands(at) && touches(at));
+        self.replace_in_turn(nodes.map(|at| (at, Faced::WHOLE)).collect(), known, approach);
     }
 
     /// The same at nodes that move each other, with all that they face, in turn. `approach` is the motion of one under
-    /// the forces of the others.
+    /// the forces of the others and its own friction.
     pub(in crate::reconstruction::corrected) fn replace_in_turn<const N: usize>(
         &mut self,
         nodes: Vec<(usize, Faced)>,
@@ -99,45 +84,62 @@ impl<const D: usize> OwnForces<D> {
         mut approach: impl FnMut(usize, &[[f64; D]]) -> Approach<D>,
     ) {
         let first: Vec<_> = nodes.iter().map(|&(at, _)| (self.contacts[at].take(), known.contact[at])).collect();
+        let mut made: Vec<Option<(Approach<D>, Option<OwnContact<D>>)>> = vec![None; nodes.len()];
         for _ in 0..TURNS {
             let (mut size, mut change) = (0.0_f64, 0.0_f64);
-            for ((at, faced), (last, simulated)) in nodes.iter().zip(&first) {
-                let before = known.contact[*at];
-                let under = approach(*at, known.contact);
-                known.contact[*at] = *simulated;
-                self.contacts[*at] = self.replace_one((*at, faced), *last, under, known);
+            for (((at, faced), (last, simulated)), made) in nodes.iter().zip(&first).zip(&mut made) {
+                let (before, under) = (known.contact[*at], approach(*at, known.contact));
+                if made.is_none_or(|(known, _)| known != under) {
+                    let own = known.own_contact((*at, faced), *last, simulated, under);
+                    known.act(*at, own.map_or(*simulated, |own| own.force));
+                    *made = Some((under, own));
+                }
                 for (after, before) in known.contact[*at].iter().zip(before) {
                     size = size.max(after.abs());
                     change = change.max((after - before).abs());
                 }
             }
             if change <= SETTLED * size {
-                return;
+                break;
+            }
+        }
+        for (&(at, _), own) in nodes.iter().zip(made) {
+            if let Some((_, Some(own))) = own {
+                self.contacts[at] = Some(own).filter(|own| own.force != [0.0; D]);
+                for at in [Some(at), known.problem.surface().nodes()[at].opposite].into_iter().flatten() {
+                    known.arresting[at] = [0.0; D];
+                    self.replaced[at] = true;
+                }
             }
         }
     }
+}
 
-    /// Replaces the force of a node, if it touches alone or did at the step before, by that of its own contact, which
-    /// is returned.
-    fn replace_one<const N: usize>(
-        &mut self,
+impl<const D: usize, const N: usize> Known<'_, D, N> {
+    /// Puts a force (N) on a node, and the opposite one on the node that it faces.
+    fn act(&mut self, at: usize, force: [f64; D]) {
+        self.contact[at] = force;
+        if let Some(opposite) = self.problem.surface().nodes()[at].opposite {
+            self.contact[opposite] = force.map(|f| -f);
+        }
+    }
+
+    /// The contact of its own of a node that touches alone or did at the step before, in place of the force of the
+    /// simulation (N).
+    fn own_contact(
+        &self,
         (at, faced): (usize, &Faced),
         last: Option<OwnContact<D>>,
+        simulated: &[f64; D],
         approach: Approach<D>,
-        known: &mut Known<'_, D, N>,
     ) -> Option<OwnContact<D>> {
-        let Known { problem, concentration, gap, steps, contact, arresting } = known;
+        let Self { problem, concentration, gap, steps, .. } = self;
         let node = &problem.surface().nodes()[at];
         let obstacle = &problem.obstacles()[node.obstacle];
         // Reactions of a foreign history need not be in the cone.
-        let simulated = obstacle.flat_frame().split(&obstacle.project_into_cone(&contact[at])).0;
+        let simulated = obstacle.flat_frame().split(&obstacle.project_into_cone(simulated)).0;
         let depth = last.map_or((-approach.gap_now).max(0.0), |last| last.depth);
         let depth = depth * (1.0 - steps(at).min(1.0).powi(2));
-        let largest = (-(approach.gap + depth) / approach.mobility).max(0.0);
-        if last.is_none() && simulated == 0.0 && largest == 0.0 {
-            return None;
-        }
-        let gaps = concentration.gaps(at, faced, gap)?;
         let own = Own {
             frame: obstacle.flat_frame(),
             // Along a support the reaction is the support's.
@@ -145,19 +147,16 @@ impl<const D: usize> OwnForces<D> {
             approach,
             depth,
         };
+        let largest = own.largest();
+        if last.is_none() && simulated == 0.0 && largest == 0.0 {
+            return None;
+        }
+        let gaps = concentration.gaps(at, faced, gap)?;
         let direction = last.map_or(*own.frame.normal(), |last| last.direction);
         let costs = concentration.costs(problem, at, faced, &direction, &gaps)?;
         if last.is_none() && !costs.is_alone(&costs.shape(if simulated > 0.0 { simulated } else { largest })) {
             return None;
         }
-        let made = own.contact(&costs, own.normal(&costs, largest), last);
-        contact[at] = made.map_or([0.0; D], |own| own.force);
-        arresting[at] = [0.0; D];
-        self.replaced[at] = true;
-        if let Some(opposite) = node.opposite {
-            (contact[opposite], arresting[opposite]) = (contact[at].map(|f| -f), [0.0; D]);
-            self.replaced[opposite] = true;
-        }
-        made
+        Some(own.contact(&costs, own.normal(&costs, largest), last))
     }
 }

@@ -4,7 +4,7 @@ use super::own_forces::{Known, OwnForces};
 use super::star::CandidateEdge;
 use super::*;
 use crate::contact_density::{Densities, nodal_forces};
-use crate::reconstruction::corrected::motions::Approach;
+use crate::reconstruction::corrected::motions::{Approach, Mobility};
 use crate::reconstruction::{StepDensities, SurfaceSteps, check};
 use crate::time_level::SurfaceStep;
 use percute_core::contact::Obstacle;
@@ -142,7 +142,7 @@ fn turned_stars_share_their_stress() {
 
 /// A node that is on its plane now, and without a force at this gap (m) at the next instant.
 fn onto(gap: f64) -> Approach<2> {
-    Approach { gap_now: 0.0, gap, along: [[0.0; 2]; 2], mobility: 1e-12 }
+    Approach { gap_now: 0.0, gap, along: [[0.0; 2]; 2], mobility: Mobility::of_mass(1e-12) }
 }
 
 /// The force of a node after a step of `OwnForces` of τ, from the reaction of the simulation and the motion of the
@@ -166,7 +166,7 @@ fn replace(
     [contact, arresting]: [&mut [[f64; 2]]; 2],
 ) {
     let mut known = Known { problem, concentration, gap, steps: &|_| steps, contact, arresting };
-    own.replace(&mut known, approach);
+    own.replace(&mut known, |at| approach(at).gap, |at, _| approach(at));
 }
 
 /// The same after a step of another length, over τ.

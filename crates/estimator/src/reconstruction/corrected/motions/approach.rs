@@ -3,157 +3,207 @@
 use super::Fields;
 use super::blocks::Blocks;
 use super::lanes::Nodal;
-use super::pairs::{Moduli, Pair, Pairs};
+use super::pairs::{Around, Pair, Pairs};
+use super::patch::{Factors, Near, Operator, Patch};
+use super::response::{Neighbours, Response};
 use super::surface::SurfaceForces;
-use super::sweeps::subtract_stiffness;
-use crate::simd::{Registers, Task, run_task};
-use percute_core::contact::{ContactNode, Frame};
-use percute_core::dynamics::Dynamics;
+use crate::smoothing::Smoothing;
 use percute_core::problem::Problem;
-use percute_core::time::TimeGrid;
+use std::array::from_fn;
+use std::sync::OnceLock;
 
 /// The motion of a contact node against its obstacle over the next step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::reconstruction::corrected) struct Approach<const D: usize> {
     /// Gap now (m).
     pub(in crate::reconstruction::corrected) gap_now: f64,
-    /// Gap at the next instant without a contact force (m).
+    /// Gap at the next instant without a normal force (m).
     pub(in crate::reconstruction::corrected) gap: f64,
     /// Displacement along the plane now, and at the next instant without a contact force (m).
     pub(in crate::reconstruction::corrected) along: [[f64; D]; 2],
-    /// Displacement that a unit force adds until then (m/N).
-    pub(in crate::reconstruction::corrected) mobility: f64,
+    pub(in crate::reconstruction::corrected) mobility: Mobility<D>,
 }
+
+/// Displacement that unit forces add until the next instant, by its component and that of the force (m/N).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::reconstruction::corrected) struct Mobility<const D: usize>(pub(super) [[f64; D]; D]);
 
 /// The motion of a contact node over the next step without a contact force.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::reconstruction::corrected) struct FreeMotion<const D: usize> {
     /// Displacement now and at the next instant (m).
     pub(in crate::reconstruction::corrected) displacements: [[f64; D]; 2],
-    /// Displacement that a unit force adds until then (m/N).
+    /// Displacement that a unit force adds until then at the lumped mass (m/N).
     pub(in crate::reconstruction::corrected) mobility: f64,
 }
 
-impl<const D: usize> Approach<D> {
-    /// That of a node to its obstacle or to the node that it faces, from the motions of all contact nodes.
-    pub(in crate::reconstruction::corrected) fn new<const N: usize>(
-        problem: &Problem<D, N>,
-        at: usize,
-        free: &[FreeMotion<D>],
-    ) -> Self {
-        let contact = &problem.surface().nodes()[at];
-        let FreeMotion { mut displacements, mut mobility } = free[at];
-        if let Some(opposite) = contact.opposite {
-            let other = &free[opposite];
-            let both = displacements.as_flattened_mut().iter_mut().zip(other.displacements.as_flattened());
-            both.for_each(|(own, other)| *own -= other);
-            mobility += other.mobility;
-        }
-        let frame = problem.obstacles()[contact.obstacle].flat_frame();
-        let [gap_now, gap] = displacements.map(|place| problem.surface().gap(at, &place));
-        Self { gap_now, gap, along: displacements.map(|place| frame.split(&place).1), mobility }
+impl<const D: usize> Mobility<D> {
+    /// That of a mass: the same in all directions.
+    pub(in crate::reconstruction::corrected) fn of_mass(mobility: f64) -> Self {
+        Self(from_fn(|c| from_fn(|d| if c == d { mobility } else { 0.0 })))
     }
 
-    /// The same under a force (N) beside that of the obstacle.
-    pub(in crate::reconstruction::corrected) fn under(mut self, frame: &Frame<D>, force: &[f64; D]) -> Self {
-        let (normal, along) = frame.split(force);
-        self.gap += self.mobility * normal;
-        (0..D).for_each(|c| self.along[1][c] += self.mobility * along[c]);
-        self
+    /// The displacement under a force (N).
+    pub(super) fn under(&self, force: &[f64; D]) -> [f64; D] {
+        self.0.map(|row| dot(&row, force))
+    }
+
+    /// The displacement in a direction under a unit force in another one (m/N).
+    pub(in crate::reconstruction::corrected) fn between(&self, to: &[f64; D], force: &[f64; D]) -> f64 {
+        dot(to, &self.under(force))
+    }
+}
+
+/// The foreseen motion of all contact nodes over the next step.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::reconstruction::corrected) struct Foreseen<'a, const D: usize, const N: usize> {
+    pub(super) problem: &'a Problem<D, N>,
+    pub(super) near: &'a NearElements<D>,
+    pub(super) operator: Operator<'a>,
+    pub(super) factors: Factors,
+    /// Δt_n h_n (s²).
+    pub(super) square: f64,
+}
+
+impl<const D: usize, const N: usize> Foreseen<'_, D, N> {
+    /// That without a contact force.
+    pub(in crate::reconstruction::corrected) fn free(&self) -> &[FreeMotion<D>] {
+        &self.near.free
+    }
+
+    /// The gap of a node to its obstacle, or to the node that it faces, without a contact force (m).
+    pub(in crate::reconstruction::corrected) fn free_gap(&self, at: usize) -> f64 {
+        self.problem.surface().gap(at, &self.displacements(at)[1])
+    }
+
+    /// Displacements against the obstacle, now and at the next instant (m).
+    fn displacements(&self, at: usize) -> [[f64; D]; 2] {
+        let FreeMotion { mut displacements, .. } = self.free()[at];
+        if let Some(opposite) = self.problem.surface().nodes()[at].opposite {
+            let other = &self.free()[opposite].displacements;
+            let both = displacements.as_flattened_mut().iter_mut().zip(other.as_flattened());
+            both.for_each(|(own, other)| *own -= other);
+        }
+        displacements
+    }
+
+    /// That of a node to its obstacle or to the node that it faces, with the forces of these (N) that are those of
+    /// other nodes or its own friction.
+    pub(in crate::reconstruction::corrected) fn approach(&self, at: usize, forces: &[[f64; D]]) -> Approach<D> {
+        let (problem, Self { near, operator, factors, square, .. }) = (self.problem, self);
+        let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
+        let response = near.response(problem, *operator, at);
+        let mobility = Mobility(response.own(factors).map(|row| row.map(|g| square * g)));
+        let (moved, friction) = (response.under(factors, forces), frame.split(&forces[at]).1);
+        let [now, next] = self.displacements(at);
+        let next: [f64; D] = from_fn(|c| next[c] + square * moved[c]);
+        let rubbed = mobility.under(&friction);
+        Approach {
+            gap_now: problem.surface().gap(at, &now),
+            gap: problem.surface().gap(at, &from_fn(|c| next[c] + rubbed[c])),
+            along: [now, next].map(|place| frame.split(&place).1),
+            mobility,
+        }
     }
 }
 
 /// The data of the level before its pass.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BeforePass<'a, const D: usize> {
-    pub(super) laws: &'a [Moduli],
+    pub(super) operator: Operator<'a>,
     pub(super) surface: &'a SurfaceForces,
     pub(super) fields: &'a Fields,
     /// F_n (N); empty without loads.
     pub(super) external: &'a [[f64; D]],
     /// The step that the displacement of the fields has still to make (s).
     pub(super) due: f64,
+    pub(super) factors: Factors,
+    /// Δt_n and h_n (s).
+    pub(super) steps: [f64; 2],
 }
 
-/// The elements with a contact node. They go through the first sweep twice: here and in the pass.
+/// The elements around the contact nodes. They go through the sweeps twice: here and in the pass.
 #[derive(Debug)]
 pub(super) struct NearElements<const D: usize> {
-    /// Pairs of elements, their nodes numbered as in `nodes`.
-    pairs: Vec<Pair>,
-    /// Their nodes in the mesh, ascending.
-    nodes: Vec<u32>,
-    displacement: Vec<Nodal>,
-    forces: Vec<Nodal>,
+    patch: Patch,
+    neighbours: Neighbours,
+    /// The place of each contact node in the patch.
+    places: Vec<u32>,
+    /// Places and positions of the contact nodes whose forces are on nodes, ascending: not those of surfaces that slide.
+    loaded: Vec<(u32, u32)>,
+    /// Made at first use.
+    responses: Vec<OnceLock<Response<D>>>,
     free: Vec<FreeMotion<D>>,
 }
 
 impl<const D: usize> NearElements<D> {
-    pub(super) fn new<const N: usize>(problem: &Problem<D, N>, blocks: &Blocks, all: &Pairs) -> Self {
-        let mut touches = vec![false; problem.mesh().node_count()];
-        problem.surface().nodes().iter().for_each(|contact| touches[contact.node.index()] = true);
-        let mut pairs = Vec::new();
-        for block in 0..blocks.count() {
-            let first = blocks.nodes(block).start as u32;
-            let global = all.block(block).iter().map(|pair| Pair { nodes: pair.nodes.map(|n| n + first), ..*pair });
-            pairs.extend(global.filter(|pair| pair.nodes.iter().any(|n| touches[*n as usize])));
+    pub(super) fn new<const N: usize>(
+        problem: &Problem<D, N>,
+        blocks: &Blocks,
+        all: &Pairs,
+        smoothing: &Smoothing,
+    ) -> Self {
+        let (surface, contacts) = (problem.surface(), problem.surface().nodes());
+        let pairs = (0..blocks.count()).flat_map(|block| {
+            let nodes = blocks.nodes(block);
+            let (first, first_patch) = (nodes.start as u32, smoothing.patches(&nodes).start as u32);
+            all.block(block).iter().zip(all.range(block)).map(move |(pair, k)| Near {
+                pair: Pair { nodes: pair.nodes.map(|n| n + first), ..*pair },
+                around: all.around_pair(k).map(|a| Around { patches: a.patches.map(|p| p + first_patch), ..*a }),
+                number: k as u32,
+            })
+        });
+        let patch = Patch::new(problem, smoothing, contacts.iter().map(|contact| contact.node.index()), pairs);
+        let places: Vec<u32> = contacts.iter().map(|contact| patch.place(contact.node.index() as u32) as u32).collect();
+        let mut loaded: Vec<(u32, u32)> = places.iter().copied().zip(0..).collect();
+        loaded.retain(|(_, at)| surface.sliding_of(*at as usize).is_none());
+        loaded.sort_unstable();
+        Self {
+            neighbours: Neighbours::new(&patch),
+            patch,
+            responses: places.iter().map(|_| OnceLock::new()).collect(),
+            free: Vec::with_capacity(places.len()),
+            places,
+            loaded,
         }
-        let mut nodes: Vec<u32> = pairs.iter().flat_map(|pair| pair.nodes).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        for pair in &mut pairs {
-            pair.nodes = pair.nodes.map(|n| nodes.partition_point(|known| *known < n) as u32);
-        }
-        let count = nodes.len();
-        let (displacement, forces) = (vec![Nodal::ZERO; count], vec![Nodal::ZERO; count]);
-        Self { pairs, nodes, displacement, forces, free: Vec::with_capacity(problem.surface().nodes().len()) }
     }
 
-    /// The motions of all contact nodes until t_{n+1}, corrections left out.
-    pub(super) fn motions<const N: usize>(
-        &mut self,
-        dynamics: &Dynamics<'_, D, N>,
-        (times, n): (&TimeGrid, usize),
-        before: &BeforePass<'_, D>,
-    ) -> &[FreeMotion<D>] {
-        let (problem, BeforePass { laws, surface, fields, external, due }) = (dynamics.problem(), *before);
-        let each = self.nodes.iter().zip(&mut self.displacement).zip(&mut self.forces);
+    fn response<const N: usize>(&self, problem: &Problem<D, N>, operator: Operator<'_>, at: usize) -> &Response<D> {
+        self.responses[at].get_or_init(|| {
+            let facing = [Some(at), problem.surface().nodes()[at].opposite].into_iter().flatten();
+            let facing: Vec<(u32, u32)> = facing.map(|at| (self.places[at], at as u32)).collect();
+            Response::new((&self.patch, &self.neighbours), operator, &facing, &self.loaded)
+        })
+    }
+
+    /// Foresees the motions of all contact nodes until t_{n+1} without a contact force.
+    pub(super) fn foresee<const N: usize>(&mut self, problem: &Problem<D, N>, before: &BeforePass<'_, D>) {
+        let Self { patch, places, free, .. } = self;
+        let BeforePass { operator, surface, fields, external, due, factors, steps: [step, length] } = *before;
+        let Operator { laws, weights } = operator;
+        let each = patch.nodes.iter().zip(&mut patch.displacement).zip(&mut patch.rate);
         for ((node, displacement), force) in each {
             let i = *node as usize;
             let (u, v) = (&fields.displacement[i].0, &fields.half_step[i].0);
-            displacement.0 = std::array::from_fn(|k| u[k] + v[k] * due);
+            displacement.0 = from_fn(|k| u[k] + v[k] * due);
             *force = external.get(i).map_or(Nodal::ZERO, Nodal::all_but_contact);
         }
-        run_task(Sweep { laws, pairs: &self.pairs, displacement: &self.displacement, forces: &mut self.forces });
-        let (step, length) = (times.step(n), times.velocity_step(n));
-        let moving = |contact: &ContactNode| {
-            let node = contact.node.index();
-            let own = self.nodes.partition_point(|known| (*known as usize) < node);
-            let (now, velocity) = (self.displacement[own].of::<D>(0), fields.half_step[node].of::<D>(0));
-            let mut force: [f64; D] = self.forces[own].of(0);
-            surface.supports_of(node as u32).for_each(|(c, needed)| force[c] = needed);
-            let mobility = step * length * dynamics.inverse_mass()[node];
-            let next: [f64; D] = std::array::from_fn(|c| now[c] + step * velocity[c] + mobility * force[c]);
-            FreeMotion { displacements: [now, next], mobility }
-        };
-        self.free.clear();
-        self.free.extend(problem.surface().nodes().iter().map(moving));
-        &self.free
+        patch.subtract_forces(laws, weights.corrects());
+        for (node, force) in patch.nodes.iter().zip(&mut patch.rate) {
+            surface.supports_of(*node).for_each(|(c, needed)| force.set(c, needed));
+        }
+        patch.accelerate(laws);
+        free.clear();
+        free.extend(problem.surface().nodes().iter().zip(&*places).map(|(contact, &place)| {
+            let (node, place) = (contact.node.index(), place as usize);
+            let (now, velocity) = (patch.displacement[place].of::<D>(0), fields.half_step[node].of::<D>(0));
+            let acceleration: [f64; D] = factors.sum(&patch.acceleration(weights, place));
+            let next = from_fn(|c| now[c] + step * (velocity[c] + length * acceleration[c]));
+            FreeMotion { displacements: [now, next], mobility: step * length / problem.mass()[node] }
+        }));
     }
 }
 
-/// The sweep over the near elements.
-struct Sweep<'a> {
-    laws: &'a [Moduli],
-    pairs: &'a [Pair],
-    displacement: &'a [Nodal],
-    forces: &'a mut [Nodal],
-}
-
-impl Task for Sweep<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<R: Registers>(self, r: R) {
-        subtract_stiffness(r, self.laws, self.pairs, self.displacement, self.forces);
-    }
+pub(super) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

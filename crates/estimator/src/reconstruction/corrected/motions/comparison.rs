@@ -16,6 +16,7 @@ use percute_core::simplex::{Element as Simplices, Simplex};
 use percute_testkit::{Random, random_rectangle};
 
 /// One motion.
+#[derive(Clone)]
 struct Plain<const D: usize> {
     displacement: Vec<[f64; D]>,
     half_step: Vec<[f64; D]>,
@@ -215,10 +216,21 @@ fn compare<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Time
     let mut plain = plain(problem);
     let (mut random, contacts) = (Random::new(5), problem.surface().nodes().len());
     for n in 0..=times.step_count() {
-        let [pull, reaction] = [0, 1].map(|_| random_field::<D>(contacts, 0.1, &mut random));
+        let [mut pull, reaction] = [0, 1].map(|_| random_field::<D>(contacts, 0.1, &mut random));
+        for (at, contact) in problem.surface().nodes().iter().enumerate() {
+            if let Some(first) = contact.opposite.filter(|&first| first < at) {
+                pull[at] = pull[first].map(|f| -f);
+            }
+            // Supports bear the forces along them.
+            let held = problem.prescribed().iter().filter(|held| held.node == contact.node);
+            held.for_each(|held| pull[at][held.component] = 0.0);
+        }
         let simulated = [1.0, 1.0].map(|scale| random_field::<D>(count, scale, &mut random));
         let [mut displacement, mut acceleration, mut lumped, mut skew] = [0; 4].map(|_| vec![[0.0; D]; count]);
         motions.begin(&dynamics, n);
+        let foreseen = motions.foresee(n);
+        let none = vec![[0.0; D]; contacts];
+        let approaches: Vec<_> = (0..contacts).map(|at| [&none, &pull].map(|f| foreseen.approach(at, f))).collect();
         let level = AuxiliaryLevel {
             displacement: &mut displacement,
             acceleration: &mut acceleration,
@@ -228,6 +240,8 @@ fn compare<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Time
         motions.advance(&dynamics, n, &given, &pull, level);
         motions.differ([&simulated[0], &simulated[1]], [0.0; 2]);
 
+        let mut released = plain[0].clone();
+        released.advance(&dynamics, times, n, &none);
         let contact: Vec<[f64; D]> =
             reaction.iter().zip(&pull).map(|(r, p)| std::array::from_fn(|c| r[c] - p[c])).collect();
         let forces = [&pull, &pull, &reaction, &contact];
@@ -243,9 +257,31 @@ fn compare<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Time
             let miss = miss(found, expected);
             assert!(miss < 1e-11, "{n}, {k}: {miss}");
         }
+        compare_approaches(problem, &approaches, [&released.displacement, &plain[0].displacement], &pull);
         compare_energies(problem, motions.differences().last().unwrap(), simulated, levels);
     }
     assert_eq!(motions.differences().len(), times.step_count() + 1);
+}
+
+/// Checks the gaps at t_{n+1} without and with these contact forces (N), from the displacements then (m).
+fn compare_approaches<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    approaches: &[[Approach<D>; 2]],
+    next: [&[[f64; D]]; 2],
+    pull: &[[f64; D]],
+) {
+    let surface = problem.surface();
+    for (at, both) in approaches.iter().enumerate() {
+        let frame = problem.obstacles()[surface.nodes()[at].obstacle].flat_frame();
+        let (normal, (own, _)) = (frame.normal(), frame.split(&pull[at]));
+        for ((approach, displacement), force) in both.iter().zip(next).zip([0.0, own]) {
+            let found = approach.gap + force * approach.mobility.between(normal, normal);
+            let place = surface.against_obstacle(at, displacement);
+            // Rounding of the displacements.
+            let miss = (found - surface.gap(at, &place)).abs() / place.iter().fold(0.1, |m: f64, u| m.max(u.abs()));
+            assert!(miss < 1e-12, "{at}: {miss}");
+        }
+    }
 }
 
 fn compare_energies<const D: usize, const N: usize>(
@@ -339,6 +375,38 @@ fn triangles() {
         let problem = loaded(&mesh, laws, ["left", "top", "right"]);
         compare(&problem, &uneven(&problem, 30), fewest);
     }
+}
+
+/// A normal force on one contact node moves another one as far as a force there moves this one, and none moves a node
+/// along a support.
+#[test]
+fn responses_are_symmetric() {
+    let laws =
+        [[70.0, 0.3, 2.0], [20.0, 0.45, 3.0]].map(|[e, nu, rho]| Elastic::plane_strain(e, nu, rho, 0.5).unwrap());
+    let problem = loaded(&random_rectangle(1.0, 0.8, 6, 3).unwrap(), laws, ["left", "top", "right"]);
+    let (times, nodes) = (uneven(&problem, 5), problem.surface().nodes());
+    let mut motions = Motions::new(&problem, &times, Arc::new(Smoothing::new(&problem)), Shares::ALL);
+    motions.begin(&Dynamics::new(&problem, &times), 0);
+    let foreseen = motions.foresee(0);
+    let none = vec![[0.0; 2]; nodes.len()];
+    let moved = |at: usize, by: usize| {
+        let mut forces = none.clone();
+        forces[by] = [0.0, 1.0];
+        let approach = foreseen.approach(at, &none);
+        let own = approach.mobility.between(&[0.0, 1.0], &[0.0, 1.0]);
+        if at == by { own } else { foreseen.approach(at, &forces).gap - approach.gap }
+    };
+    let held = |at: usize| problem.prescribed().iter().any(|p| p.node == nodes[at].node && p.component == 1);
+    let largest = (0..nodes.len()).map(|at| moved(at, at)).fold(0.0, f64::max);
+    let mut coupled = 0;
+    for (at, by) in (0..nodes.len()).flat_map(|at| (0..nodes.len()).map(move |by| (at, by))) {
+        let (there, back) = (moved(at, by), moved(by, at));
+        // Rounding of gaps of 10.
+        assert!((there - back).abs() < 1e-14 + 1e-12 * largest, "{at}, {by}: {there} {back}");
+        assert!(!(held(at) || held(by)) || there.abs() < 1e-14, "{at}, {by}: {there}");
+        coupled += usize::from(at != by && there.abs() > 1e-3 * largest);
+    }
+    assert!(coupled > nodes.len() / 2 && (0..nodes.len()).any(held), "{coupled} of {largest}");
 }
 
 #[test]

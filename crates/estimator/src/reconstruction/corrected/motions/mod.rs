@@ -39,6 +39,8 @@ mod lanes;
 mod pairs;
 mod parts;
 mod pass;
+mod patch;
+mod response;
 mod stability;
 mod surface;
 mod sweeps;
@@ -50,7 +52,7 @@ use crate::difference::Difference;
 use crate::element::Element;
 use crate::simd::run_task;
 use crate::smoothing::Smoothing;
-pub(super) use approach::{Approach, FreeMotion};
+pub(super) use approach::{Approach, Foreseen, FreeMotion, Mobility};
 use approach::{BeforePass, NearElements};
 use blocks::Blocks;
 use energies::Energies;
@@ -58,6 +60,7 @@ use lanes::{FirstPair, Gradient, Nodal};
 use pairs::{Around, Pair, Pairs};
 use parts::{Part, Plan, Start, StartOf, View, for_all};
 use pass::{Kinetic, PartPass, Pass};
+use patch::{Factors, Operator};
 use percute_core::dynamics::Dynamics;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -96,7 +99,7 @@ pub(super) struct Motions<'p, const D: usize, const N: usize> {
 }
 
 /// Fields of all motions.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Fields {
     /// u_n (m), from the pass of level n to that of the next.
     displacement: Vec<Nodal>,
@@ -205,7 +208,7 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         blocks: Blocks,
     ) -> Self {
         let pairs = Pairs::new(problem, &blocks, &smoothing, &weights::shares(shares));
-        let (plan, near) = (Plan::new(&blocks), NearElements::new(problem, &blocks, &pairs));
+        let (plan, near) = (Plan::new(&blocks), NearElements::new(problem, &blocks, &pairs, &smoothing));
         Self {
             problem,
             times,
@@ -246,12 +249,13 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         self.weights.at(self.times, n).smooths
     }
 
-    /// The motion of the auxiliary solution at all contact nodes until t_{n+1} without a contact force, corrections
-    /// left out.
-    pub(super) fn free_motions(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize) -> &[FreeMotion<D>] {
-        let Self { times, pairs, surface, near, fields, external, due, .. } = self;
-        let before = BeforePass { laws: &pairs.laws.plain, surface, fields, external, due: *due };
-        near.motions(dynamics, (times, n), &before)
+    /// Foresees the motion of the auxiliary solution at all contact nodes until t_{n+1}, after `begin`.
+    pub(super) fn foresee(&mut self, n: usize) -> Foreseen<'_, D, N> {
+        let Self { problem, times, pairs, surface, near, fields, external, due, weights, .. } = self;
+        let operator = Operator { laws: &pairs.laws, weights };
+        let (factors, steps) = (Factors::new(&weights.at(times, n)), [times.step(n), times.velocity_step(n)]);
+        near.foresee(problem, &BeforePass { operator, surface, fields, external, due: *due, factors, steps });
+        Foreseen { problem, near, operator, factors, square: steps[0] * steps[1] }
     }
 
     /// Takes in a level: forces of the density on the nodes of the contact surface (N). Goes on to the next half step
@@ -265,6 +269,7 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         level: AuxiliaryLevel<'_, D>,
     ) {
         self.surface.contact(pull, simulated.reaction);
+        let mut fields = std::mem::take(&mut self.fields);
         let pass = Pass {
             external: &self.external,
             inverse_mass: dynamics.inverse_mass(),
@@ -277,7 +282,8 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         };
         let work = |part: &Part, view: View<'_, D>| run_task(PartPass { pass: &pass, part, view });
         let start = |part: &Part| start_of(part, &self.pairs, &self.smoothing);
-        let kinetic = for_all((&self.plan, &start), View::new(&mut self.fields, level), &work);
+        let kinetic = for_all((&self.plan, &start), View::new(&mut fields, level), &work);
+        self.fields = fields;
         let sum = |of: fn(&Kinetic) -> f64| 0.5 * kinetic.iter().map(of).sum::<f64>();
         self.peak_energy = self.peak_energy.max(simulated.strain + sum(|k| k.simulated));
         self.kinetic = sum(|k| k.auxiliary);

@@ -146,6 +146,11 @@ impl Pairs {
         &self.around[self.range(block)]
     }
 
+    /// What is around a pair; none where strains stay.
+    pub(super) fn around_pair(&self, number: usize) -> Option<&Around> {
+        self.around.get(number)
+    }
+
     /// The numbers of those of a block among all.
     #[inline(always)]
     pub(super) fn range(&self, block: usize) -> Range<usize> {

@@ -97,6 +97,16 @@ impl Weights {
         self.bodies = smoothing.bodies().iter().map(|body| BodyWeights::new(body, pair)).collect();
     }
 
+    /// Whether corrections are made at the level that has begun.
+    pub(super) fn corrects(&self) -> bool {
+        self.reversals <= FEW
+    }
+
+    /// c₁, c₂ and −c₃ of the auxiliary solution in a body, where corrections are made.
+    pub(super) fn auxiliary(&self, body: usize) -> [f64; 3] {
+        self.bodies[body].mass.map(|pair| pair.0[0])
+    }
+
     /// Those at t_n.
     pub(super) fn at(&self, times: &TimeGrid, n: usize) -> LevelWeights<'_> {
         let (next, last) = (times.step(n.min(times.step_count() - 1)), times.step(n.saturating_sub(1)));
@@ -105,7 +115,7 @@ impl Weights {
 
     /// Those with these products of step lengths (s²), from t_n on and up to t_n.
     pub(super) fn of_steps(&self, squares: [f64; 2]) -> LevelWeights<'_> {
-        let corrects = self.reversals <= FEW;
+        let corrects = self.corrects();
         let shares = if corrects { self.shares } else { [Shares::NONE; MOTIONS] };
         let time = |square: f64| Nodal::new(shares.map(|share| [share.time * square / 12.0; 2]));
         let bodies = if corrects { &self.bodies } else { &self.plain };
