@@ -21,7 +21,7 @@ def estimate(
     history: History,
     *,
     reconstruction: Literal["corrected", "consistent", "published"] | None = None,
-    acceleration: Literal["closest", "rigid", "weak", "mixed"] | None = None,
+    acceleration: Literal["closest", "rigid", "weak", "split"] | None = None,
     every: int | Literal["auto"] | None = None,
     threads: int | None = None,
     window: int | None = None,
@@ -41,10 +41,10 @@ def estimate(
         How reactions become admissible contact forces: all of them, those before contact included; on the edges that touch
         throughout a step, statically equivalent; or by the paper's construction, eq. [45] to [50]. By default what the
         history's file or case states, else "corrected".
-    acceleration : {"closest", "rigid", "weak", "mixed"}, optional
+    acceleration : {"closest", "rigid", "weak", "split"}, optional
         The field that balances the tractions of an element: the one closest to the finite-element one, a rigid motion,
         the linear one that does the lumped work, or the closest one for tractions that balance less of the lumped mass,
-        which needs the reconstruction "corrected". By default as stated, else "mixed" for plane bodies with "corrected"
+        which needs the reconstruction "corrected". By default as stated, else "split" for plane bodies with "corrected"
         and "closest" for all others.
     every : int or "auto", optional
         The error is sampled at every so many steps, and at the end; or, with "auto", around onset, release and peaks of the contact

@@ -137,7 +137,7 @@ def verify(
     after: float | None = None,
     levels: int = 2,
     reconstruction: Literal["corrected", "consistent", "published"] = "corrected",
-    acceleration: Literal["closest", "rigid", "weak", "mixed"] | None = None,
+    acceleration: Literal["closest", "rigid", "weak", "split"] | None = None,
     every: int | Literal["auto"] = "auto",
     threads: int | None = None,
     long: bool = False,
@@ -158,7 +158,7 @@ def verify(
         Number of refinements, 1 to 5.
     reconstruction : {"corrected", "consistent", "published"}, default: "corrected"
         As for `estimate`.
-    acceleration : {"closest", "rigid", "weak", "mixed"}, optional
+    acceleration : {"closest", "rigid", "weak", "split"}, optional
         As for `estimate`, on all meshes.
     every : int or "auto", default: "auto"
         As for `estimate`: the error of each mesh is sampled at every so many of its own steps, or at those that "auto" chooses.

@@ -114,7 +114,7 @@ def test_all_readings_are_named_in_the_signature(block_history: pc.History) -> N
 
 @pytest.mark.parametrize("reconstruction", RECONSTRUCTIONS)
 def test_the_options_of_the_case_go_with_its_history(reconstruction: str, tmp_path: Path) -> None:
-    text = (EXAMPLES / "block.toml").read_text().replace('# acceleration = "mixed"', 'acceleration = "weak"').replace("every = 1", "every = 3")
+    text = (EXAMPLES / "block.toml").read_text().replace('# acceleration = "split"', 'acceleration = "weak"').replace("every = 1", "every = 3")
     text = text.replace('reconstruction = "corrected"', f'reconstruction = "{reconstruction}"')
     text += f'\n[output]\nestimate = "{tmp_path / "error.vtkhdf"}"\ninstants = 4\n'
     estimate = pc.run(text, store=tmp_path / "history.vtkhdf")

@@ -88,7 +88,7 @@ def test_the_mode_of_a_square_has_the_known_effectivities() -> None:
     # All verdicts hold.
     assert all(held for run in runs for _, held in run.values())
     lame, spinning, _ = ({name: index for name, (index, _) in run.items()} for run in runs)
-    for name, known in {"mixed": (1.20, 1.18), "closest": (1.79, 1.92)}.items():
+    for name, known in {"split": (1.20, 1.18), "closest": (1.79, 1.92)}.items():
         # The reference has 8 times as many cells along a side: the true error against it is 0.8 % smaller, of order 1 in h.
         assert (lame[name].sup, lame[name].mean) == pytest.approx(known, rel=0.015)
         # Rounding of the rotation.

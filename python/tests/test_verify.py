@@ -167,8 +167,8 @@ def test_the_options_of_the_estimate() -> None:
     estimate = pc.estimate(pc.simulate(problem, **plain), acceleration="weak", every=3)
     assert (found.estimate_sup[0], found.estimate_mean[0]) == (estimate.sup, estimate.mean)
     assert found.estimate_mean[0] not in (pc.verify(problem, **plain, levels=1, **other).estimate_mean[0] for other in ({"acceleration": "weak"}, {"every": 3}))
-    with pytest.raises(pc.InputError, match="`acceleration`.*mixed"):
-        pc.verify(problem, **plain, reconstruction="published", acceleration="mixed")
+    with pytest.raises(pc.InputError, match="`acceleration`.*split"):
+        pc.verify(problem, **plain, reconstruction="published", acceleration="split")
     with pytest.raises(pc.InputError, match="every"):
         pc.verify(problem, **plain, every=0)
 

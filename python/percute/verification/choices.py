@@ -11,9 +11,9 @@ CHOICES: list[dict[str, Any]] = [{"reconstruction": r, "acceleration": a} for r 
 """Their pairs, as arguments of `percute.estimate`."""
 DEFAULT = ACCELERATIONS[0]
 """The default Γ_DA of bars."""
-DEFAULTS = {"corrected": "mixed", "consistent": DEFAULT, "published": DEFAULT}
+DEFAULTS = {"corrected": "split", "consistent": DEFAULT, "published": DEFAULT}
 """The default Γ_DA of plane bodies."""
-PLANE_CHOICES = [{"reconstruction": "corrected", "acceleration": "mixed"}, *CHOICES]
+PLANE_CHOICES = [{"reconstruction": "corrected", "acceleration": "split"}, *CHOICES]
 """All pairs of plane bodies."""
 
 

@@ -16,7 +16,7 @@ from percute.verification.page import Column, Section, Table
 from percute.verification.parallel import Resolution, Stop
 
 Floats = NDArray[np.float64]
-ACCELERATIONS: tuple[Literal["mixed", "closest"], ...] = ("mixed", "closest")
+ACCELERATIONS: tuple[Literal["split", "closest"], ...] = ("split", "closest")
 """Γ_DA of the estimates, all with `corrected`."""
 MESHES, FEW, REFERENCE = 4, 2, 3
 """Meshes, those of a small study, and refinements from a mesh to its reference."""
@@ -113,7 +113,7 @@ def add(section: Section, resolution: Resolution) -> None:
         "### Motion that turns the elements",
         "With `closest` the tractions of an element balance its lumped mass, which has D + 2 times the moment of the linear field ρã, and "
         "Γ_DA contains a rotation that ã does not contain. Where the motion turns the elements, this is a kinetic error of the order of the "
-        "true error. The mass term of `mixed` leaves only the rotation of the lumping difference (see the page on reconstructions). A rigid spin "
+        "true error. The mass term of `split` leaves the skew part of a stress alone (see the page on reconstructions). A rigid spin "
         f"has no acceleration in a linear theory, and adds nothing. {inside(kept for each in found for _, kept in each)}",
         table,
     )

@@ -249,7 +249,7 @@ impl Bar {
                 Acceleration::Rigid => [0.5 * (a + b); 2],
                 // (2Γ_0 + Γ_1)/6 = ã_0/2.
                 Acceleration::Weak => [2.0 * a - b, 2.0 * b - a],
-                Acceleration::Mixed => {
+                Acceleration::Split => {
                     let mean = 0.5 * (self.lumping_difference(nodal, e) + self.lumping_difference(nodal, e + 1));
                     [a + mean, b + mean]
                 }
@@ -260,7 +260,7 @@ impl Bar {
         let left = match (e, choice) {
             (0, _) => -state.push,
             // N + (M_c ã + M o of the element before at its end).
-            (_, Acceleration::Mixed) => {
+            (_, Acceleration::Split) => {
                 let (before, here) = (state.acceleration[e - 1], state.acceleration[e]);
                 let difference = self.lumping_difference(state.acceleration, e);
                 force[e - 1] + self.share() * ((2.0 * here + before) / 3.0 + difference)

@@ -84,7 +84,7 @@ fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, ti
             .unwrap();
     assert!(told == simulation && simulation.balance.kinetic > 0.0, "{what}");
     let closest = Reconstruction::ALL.iter().map(|&reconstruction| (reconstruction, Acceleration::Closest));
-    for (reconstruction, acceleration) in closest.chain([(Reconstruction::Corrected, Acceleration::Mixed)]) {
+    for (reconstruction, acceleration) in closest.chain([(Reconstruction::Corrected, Acceleration::Split)]) {
         // At every 16th step, levels of one window have the stress of the same elements checked.
         for every in [1, 3, 16] {
             let (window, threads) = (Some(1_000_000), Some(1));

@@ -152,9 +152,9 @@ fn too_few_steps_and_impossible_options() {
     let refused = Estimator::new(&problem, &times, options).err();
     assert_eq!(refused, Some(EstimateError::TooManyThreads { threads: 1025 }));
     for reconstruction in [Reconstruction::Consistent, Reconstruction::Published] {
-        let options = Options { reconstruction, acceleration: Some(Acceleration::Mixed), ..Options::default() };
+        let options = Options { reconstruction, acceleration: Some(Acceleration::Split), ..Options::default() };
         let refused = Estimator::new(&problem, &times, options).err();
-        let expected = UnsuitableAcceleration { acceleration: Acceleration::Mixed, reconstruction };
+        let expected = UnsuitableAcceleration { acceleration: Acceleration::Split, reconstruction };
         assert_eq!(refused, Some(EstimateError::Acceleration(expected)));
     }
 }

@@ -54,7 +54,7 @@ fn run(problem: &TriangleProblem, times: &TimeGrid) -> (Motion<2>, [Estimate<2>;
     let estimator = |acceleration| {
         Estimator::new(problem, times, Options { acceleration: Some(acceleration), ..Options::default() }).unwrap()
     };
-    let pair = (estimator(Acceleration::Closest), estimator(Acceleration::Mixed));
+    let pair = (estimator(Acceleration::Closest), estimator(Acceleration::Split));
     let mut sink = (Motion::default(), pair);
     simulate(problem, times, &mut sink, &mut Unobserved).unwrap();
     let (motion, (closest, mixed)) = sink;
