@@ -307,7 +307,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let (velocity, strain, reaction) = (simulated.velocity, state.strain(), step.reaction);
         let simulated = SimulatedLevel { velocity, strain, reaction };
         motions.advance(dynamics, step.index, &simulated, &pull, level);
-        let smoothed = motions.smooths(step.index);
+        let smoothed = motions.smooths();
         self.motions = Some(motions);
         let (inertia, densities) = (Inertia::Acceleration(acceleration), Some(densities));
         BalancedFields { displacement, inertia, contact, densities, split, smoothed }

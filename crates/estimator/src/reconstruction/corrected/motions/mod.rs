@@ -245,8 +245,8 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
     }
 
     /// Whether strains are smoothed at the level that has begun.
-    pub(super) fn smooths(&self, n: usize) -> bool {
-        self.weights.at(self.times, n).smooths
+    pub(super) fn smooths(&self) -> bool {
+        self.weights.corrects() && self.smoothing.smooths()
     }
 
     /// Foresees the motion of the auxiliary solution at all contact nodes until t_{n+1}, after `begin`.
