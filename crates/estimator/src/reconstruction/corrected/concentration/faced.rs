@@ -56,7 +56,12 @@ impl NodeCosts<'_> {
 
     /// Whether the mesh lacks the local compliance: no hat is as wide as it may be.
     pub(super) fn is_alone(&self, shape: &TractionShape) -> bool {
-        shape.iter().zip(self.widest).all(|(hat, widest)| hat.share <= SHARE || hat.halvings > widest)
+        !self.wide(shape).any(|wide| wide)
+    }
+
+    /// On each edge, whether its hat is as wide as it may be.
+    pub(super) fn wide(&self, shape: &TractionShape) -> impl Iterator<Item = bool> {
+        shape.iter().zip(self.widest).map(|(hat, widest)| hat.share > SHARE && hat.halvings <= widest)
     }
 
     /// As [`ShapeCosts::approach`].

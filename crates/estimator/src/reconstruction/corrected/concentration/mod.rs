@@ -124,6 +124,11 @@ impl<const D: usize> Concentration<D> {
         Some(NodeCosts { shapes, compliance: faced.compliance, widest })
     }
 
+    /// Whether a node at the other end of a wide edge has a force, by edge and by node.
+    fn touches_beside(&self, at: usize, wide: impl Iterator<Item = bool>, forces: &[[f64; D]]) -> bool {
+        self.nodes[at].edges.iter().zip(wide).any(|(edge, wide)| wide && forces[edge.far] != [0.0; D])
+    }
+
     /// The position of the edge of another node that faces each edge of a node.
     fn facing_edges<const N: usize>(&self, problem: &Problem<D, N>, at: usize, other: usize) -> [usize; 2] {
         let nodes = problem.surface().nodes();

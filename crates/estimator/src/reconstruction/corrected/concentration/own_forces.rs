@@ -9,6 +9,9 @@
 //! take a force that grows with the inverse square of the step. So the depth that a node has at the beginning falls in
 //! a step by (Δt/τ)² of it, τ the time of the impulse smoothing. Steps as long as τ bring the node to its plane at
 //! once.
+//!
+//! A node goes back to the force of the simulation where it touches with a neighbour that has one: beside it, an own
+//! force would take back the work of a force that the own contact does not know.
 
 use super::own_contact::{Own, OwnContact};
 use super::{Concentration, Faced};
@@ -83,15 +86,16 @@ impl<const D: usize> OwnForces<D> {
         known: &mut Known<'_, D, N>,
         mut approach: impl FnMut(usize, &[[f64; D]]) -> Approach<D>,
     ) {
-        let first: Vec<_> = nodes.iter().map(|&(at, _)| (self.contacts[at].take(), known.contact[at])).collect();
+        let simulated = known.contact.to_vec();
+        let last: Vec<_> = nodes.iter().map(|&(at, _)| self.contacts[at].take()).collect();
         let mut made: Vec<Option<(Approach<D>, Option<OwnContact<D>>)>> = vec![None; nodes.len()];
         for _ in 0..TURNS {
             let (mut size, mut change) = (0.0_f64, 0.0_f64);
-            for (((at, faced), (last, simulated)), made) in nodes.iter().zip(&first).zip(&mut made) {
+            for (((at, faced), last), made) in nodes.iter().zip(&last).zip(&mut made) {
                 let (before, under) = (known.contact[*at], approach(*at, known.contact));
                 if made.is_none_or(|(known, _)| known != under) {
-                    let own = known.own_contact((*at, faced), *last, simulated, under);
-                    known.act(*at, own.map_or(*simulated, |own| own.force));
+                    let own = known.own_contact((*at, faced), *last, &simulated, under);
+                    known.act(*at, own.map_or(simulated[*at], |own| own.force));
                     *made = Some((under, own));
                 }
                 for (after, before) in known.contact[*at].iter().zip(before) {
@@ -124,20 +128,20 @@ impl<const D: usize, const N: usize> Known<'_, D, N> {
         }
     }
 
-    /// The contact of its own of a node that touches alone or did at the step before, in place of the force of the
-    /// simulation (N).
+    /// The contact of its own of a node that touches alone or did at the step before, in place of its force among
+    /// those of the simulation (N).
     fn own_contact(
         &self,
         (at, faced): (usize, &Faced),
         last: Option<OwnContact<D>>,
-        simulated: &[f64; D],
+        simulated: &[[f64; D]],
         approach: Approach<D>,
     ) -> Option<OwnContact<D>> {
         let Self { problem, concentration, gap, steps, .. } = self;
         let node = &problem.surface().nodes()[at];
         let obstacle = &problem.obstacles()[node.obstacle];
         // Reactions of a foreign history need not be in the cone.
-        let simulated = obstacle.flat_frame().split(&obstacle.project_into_cone(simulated)).0;
+        let pushed = obstacle.flat_frame().split(&obstacle.project_into_cone(&simulated[at])).0;
         let depth = last.map_or((-approach.gap_now).max(0.0), |last| last.depth);
         let depth = depth * (1.0 - steps(at).min(1.0).powi(2));
         let own = Own {
@@ -148,13 +152,18 @@ impl<const D: usize, const N: usize> Known<'_, D, N> {
             depth,
         };
         let largest = own.largest();
-        if last.is_none() && simulated == 0.0 && largest == 0.0 {
+        if last.is_none() && pushed == 0.0 && largest == 0.0 {
             return None;
         }
         let gaps = concentration.gaps(at, faced, gap)?;
         let direction = last.map_or(*own.frame.normal(), |last| last.direction);
         let costs = concentration.costs(problem, at, faced, &direction, &gaps)?;
-        if last.is_none() && !costs.is_alone(&costs.shape(if simulated > 0.0 { simulated } else { largest })) {
+        let shape = costs.shape(if pushed > 0.0 { pushed } else { largest });
+        let keeps = match last {
+            None => costs.is_alone(&shape),
+            Some(_) => pushed == 0.0 || !concentration.touches_beside(at, costs.wide(&shape), simulated),
+        };
+        if !keeps {
             return None;
         }
         Some(own.contact(&costs, own.normal(&costs, largest), last))
