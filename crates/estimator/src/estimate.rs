@@ -123,6 +123,9 @@ pub struct Estimate<const D: usize> {
     /// Nodes at which the auxiliary solution has had a contact of its own. With any, the kept impulse need not be near
     /// 1.
     pub own_contacts: usize,
+    /// The largest energy that contact has given to the auxiliary solution, over the largest kinetic and strain energy
+    /// of the simulation: no contact gives any.
+    pub auxiliary_contact_energy: f64,
     /// That at surfaces that slide along each other, in the order of [`ContactSurface::sliding`].
     ///
     /// [`ContactSurface::sliding`]: percute_core::contact::ContactSurface::sliding

@@ -67,6 +67,7 @@ pub(super) fn estimate<const D: usize, const N: usize>(
         residuals,
         kept_impulse: (!problem.obstacles().is_empty() && simulated > 0.0).then(|| kept / simulated),
         own_contacts: preparation.reconstruction().own_contacts(),
+        auxiliary_contact_energy: preparation.reconstruction().auxiliary_contact_energy(),
         surfaces,
         given: preparation.given(),
         steps: last,

@@ -126,6 +126,11 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         0
     }
 
+    /// The largest energy that contact forces have given to the balanced fields, over the largest of the simulation.
+    fn auxiliary_contact_energy(&self) -> f64 {
+        0.0
+    }
+
     /// The part of the contact law that such densities miss, for the motion in the tracks.
     fn normal_misfit(&self, _pressures: &FacetPressures<D>, _tracks: &[ContactTrack]) -> NormalMisfit {
         NormalMisfit::default()

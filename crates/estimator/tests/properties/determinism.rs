@@ -32,6 +32,7 @@ fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
         residuals,
         kept_impulse,
         own_contacts,
+        auxiliary_contact_energy,
         surfaces,
         given,
         steps,
@@ -51,6 +52,7 @@ fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
         parts.contact,
         kept_impulse.unwrap_or(-1.0),
         *own_contacts as f64,
+        *auxiliary_contact_energy,
         *steps as f64,
         *end,
     ];

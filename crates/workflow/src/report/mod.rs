@@ -104,6 +104,7 @@ pub struct Report {
     pub balance_over_time: EnergiesOverTime,
     pub kept_impulse: Option<f64>,
     pub own_contacts: usize,
+    pub auxiliary_contact_energy: f64,
     pub contact: Option<ContactReport>,
     pub rebound: Option<Rebound>,
     pub impacts: Option<Impacts>,

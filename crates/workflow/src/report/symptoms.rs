@@ -10,6 +10,8 @@ pub(crate) const DRIFT: f64 = 0.1;
 /// Contact that gives more than this part of the energy is a warning. In the examples, from bars to blocks that slide,
 /// contact takes 0.07 to 13 % of the energy, friction apart.
 pub(crate) const CONTACT_ENERGY: f64 = 0.01;
+/// Contact that gives the auxiliary solution more than this part of the energy is a warning.
+pub(crate) const AUXILIARY_CONTACT_ENERGY: f64 = 0.1;
 /// A relative error above this is a warning. η is half the squared norm of the difference of two fields, and d the sum
 /// of their squared norms: e/D is 1/√2 where they are orthogonal.
 const NEAR_CEILING: f64 = 0.6;
@@ -64,6 +66,7 @@ pub(super) fn symptoms(facts: &Facts<'_>) -> impl Iterator<Item = Symptom> {
     let all = [
         drift(facts.drift, facts.steps_vary),
         given(facts.contact_energy),
+        given_to_auxiliary(facts.auxiliary_contact_energy),
         relative_error(facts.relative),
         flat_elements(facts),
         kept_impulse(facts),
@@ -106,6 +109,25 @@ fn given(part: f64) -> Option<Symptom> {
     let remedy = "refine the surfaces where they touch, where they are curved and where one ends on the other, or name \
                   groups of edges that face each other, each in a contact of its own";
     symptom("contact_energy", format!("contact gives {shown} of the energy"), figure, remedy)
+}
+
+/// Contact forces that give energy to the auxiliary solution alone.
+fn given_to_auxiliary(part: f64) -> Option<Symptom> {
+    if part <= AUXILIARY_CONTACT_ENERGY {
+        return None;
+    }
+    let shown = percent(part);
+    let figure = format!(
+        "contact gives the auxiliary solution {shown} of the energy, which no contact can do: the estimate has failed \
+         and is too large"
+    );
+    let remedy = "halve the time step, or make elements at the contact more alike in size";
+    symptom(
+        "auxiliary_contact_energy",
+        format!("contact gives the auxiliary solution {shown} of the energy"),
+        figure,
+        remedy,
+    )
 }
 
 /// A relative error that says no more than that it is large.

@@ -42,6 +42,8 @@ pub(super) struct Facts<'a> {
     /// Whether a contact force acts at any instant.
     pub(super) touches: bool,
     pub(super) own_contacts: usize,
+    /// Energy that contact gives to the auxiliary solution, over that of the simulation.
+    pub(super) auxiliary_contact_energy: f64,
     /// The farthest that pairs of nodes slip, over their shortest edge.
     pub(super) slip: f64,
     /// The deepest that a node of surfaces that slide was inside the other body, over its shortest edge.
@@ -65,6 +67,7 @@ impl Warning {
             "shifted_forces",
             "energy_drift",
             "contact_energy",
+            "auxiliary_contact_energy",
             "relative_error",
             "flat_elements",
             "kept_impulse",

@@ -352,6 +352,10 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         self.own_forces.count()
     }
 
+    fn auxiliary_contact_energy(&self) -> f64 {
+        self.motions.as_ref().map_or(0.0, Motions::contact_energy)
+    }
+
     fn differences(&self) -> Option<&[Difference]> {
         self.motions.as_ref().map(Motions::differences)
     }

@@ -63,6 +63,8 @@ pub(in crate::report) struct Facts {
     pub(super) energy_drift: f64,
     /// Work of contact without friction, over the energy.
     pub(super) contact_energy: f64,
+    /// Energy that contact gives to the auxiliary solution, over that of the simulation.
+    pub(super) auxiliary_contact_energy: f64,
     pub(super) admissible: bool,
     pub(super) kept_impulse: Option<f64>,
     pub(super) expected: Option<Expected>,
@@ -145,6 +147,7 @@ impl Facts {
             error: estimate.error,
             energy_drift: beside.drift,
             contact_energy: beside.contact_energy,
+            auxiliary_contact_energy: estimate.auxiliary_contact_energy,
             admissible: beside.admissible,
             // A node with a contact of its own touches at other instants in the admissible fields.
             kept_impulse: estimate.kept_impulse.filter(|_| estimate.own_contacts == 0),

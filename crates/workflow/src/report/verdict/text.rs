@@ -6,7 +6,7 @@ use super::rules::{self, Rule};
 use super::touches::Touches;
 use crate::foreign::Contradiction;
 use crate::message::{change, short, whole_percent};
-use crate::report::symptoms::{CONTACT_ENERGY, DRIFT, KEPT};
+use crate::report::symptoms::{AUXILIARY_CONTACT_ENERGY, CONTACT_ENERGY, DRIFT, KEPT};
 
 /// A relative error above this is as large as the solution: it cannot exceed 1/√2 by much.
 const AS_LARGE: f64 = 0.5;
@@ -35,6 +35,12 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
     }
     if facts.contact_energy > CONTACT_ENERGY {
         doubts.push(format!("contact forces give the bodies {} of their energy", whole_percent(facts.contact_energy)));
+    }
+    let given = facts.auxiliary_contact_energy;
+    if given > AUXILIARY_CONTACT_ENERGY {
+        let given = whole_percent(given);
+        doubts
+            .push(format!("contact gives the auxiliary solution {given} of the energy, and the estimate is too large"));
     }
     if facts.error.relative_mean > AS_LARGE {
         doubts.push("the error is as large as the solution".to_string());

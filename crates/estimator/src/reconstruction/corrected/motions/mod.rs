@@ -34,6 +34,7 @@ mod approach;
 mod blocks;
 #[cfg(test)]
 mod comparison;
+mod contact_work;
 mod energies;
 mod lanes;
 mod pairs;
@@ -55,6 +56,7 @@ use crate::smoothing::Smoothing;
 pub(super) use approach::{Approach, Foreseen, FreeMotion, Mobility};
 use approach::{BeforePass, NearElements};
 use blocks::Blocks;
+use contact_work::{ContactWork, half_work};
 use energies::Energies;
 use lanes::{FirstPair, Gradient, Nodal};
 use pairs::{Around, Pair, Pairs};
@@ -63,6 +65,7 @@ use pass::{Kinetic, PartPass, Pass};
 use patch::{Factors, Operator};
 use percute_core::dynamics::Dynamics;
 use percute_core::problem::Problem;
+use percute_core::ratio;
 use percute_core::time::TimeGrid;
 use std::sync::Arc;
 use surface::SurfaceForces;
@@ -95,6 +98,7 @@ pub(super) struct Motions<'p, const D: usize, const N: usize> {
     peak_energy: f64,
     /// ½ v·M v of the auxiliary solution half a step after the last level (J).
     kinetic: f64,
+    contact_work: ContactWork,
     differences: Vec<Difference>,
 }
 
@@ -225,6 +229,7 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
             due: 0.0,
             peak_energy: 0.0,
             kinetic: 0.0,
+            contact_work: ContactWork::default(),
             differences: Vec::new(),
         }
     }
@@ -269,6 +274,7 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         level: AuxiliaryLevel<'_, D>,
     ) {
         self.surface.contact(pull, simulated.reaction);
+        let before = half_work(self.problem, &self.surface, &self.fields, pull, self.due);
         let mut fields = std::mem::take(&mut self.fields);
         let pass = Pass {
             external: &self.external,
@@ -288,6 +294,7 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         self.peak_energy = self.peak_energy.max(simulated.strain + sum(|k| k.simulated));
         self.kinetic = sum(|k| k.auxiliary);
         self.due = self.times.step(n);
+        self.contact_work.add(before + half_work(self.problem, &self.surface, &self.fields, pull, self.due));
         self.differences.resize(n + 1, Difference::default());
     }
 
@@ -323,6 +330,11 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
     /// The differences at all levels so far: those that were measured.
     pub(super) fn differences(&self) -> &[Difference] {
         &self.differences
+    }
+
+    /// The largest energy that contact has given the auxiliary solution so far, over that of the simulation.
+    pub(super) fn contact_energy(&self) -> f64 {
+        ratio(self.contact_work.most(), self.peak_energy)
     }
 
     /// Whether the auxiliary solution has become unstable, as it does where a history of another scheme takes steps

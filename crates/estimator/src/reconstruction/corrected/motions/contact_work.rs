@@ -1,0 +1,116 @@
+//! The energy that contact gives to the auxiliary solution.
+
+use super::Fields;
+use super::surface::SurfaceForces;
+use percute_core::problem::Problem;
+
+/// The work of the nodal forces of F_DA, Σf_n·(u_{n+1} − u_{n−1})/2. With equal steps, this is what contact adds to an
+/// energy that the corrected scheme keeps. Planes have none to give, and bodies that strike each other only their own:
+/// a sum that becomes large is that of forces that do not fit the motion.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ContactWork {
+    sum: f64,
+    most: f64,
+}
+
+impl ContactWork {
+    /// Takes in the work of a level (J).
+    pub(super) fn add(&mut self, work: f64) {
+        self.sum += work;
+        self.most = self.most.max(self.sum);
+    }
+
+    /// The largest sum so far (J).
+    pub(super) fn most(&self) -> f64 {
+        self.most
+    }
+}
+
+/// The work (J) of forces (N) on the contact nodes over half of this time (s), at the velocities of the half step.
+/// Forces along supports act on these.
+pub(super) fn half_work<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    surface: &SurfaceForces,
+    fields: &Fields,
+    forces: &[[f64; D]],
+    time: f64,
+) -> f64 {
+    let of = |node: usize, force: &[f64; D]| {
+        let mut velocity: [f64; D] = fields.half_step[node].of(0);
+        surface.prescribed(&(node..node + 1)).for_each(|(_, c)| velocity[c] = 0.0);
+        velocity.iter().zip(force).map(|(v, f)| v * f).sum::<f64>()
+    };
+    let nodes = problem.surface().nodes().iter().zip(forces).filter(|(_, force)| **force != [0.0; D]);
+    0.5 * time * nodes.map(|(contact, force)| of(contact.node.index(), force)).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::*;
+    use percute_core::contact::Obstacle;
+    use percute_core::dynamics::critical_time_step;
+    use percute_core::load::Support;
+    use percute_core::material::Elastic;
+    use percute_core::problem::TriangleProblem;
+    use percute_testkit::{Random, random_rectangle};
+
+    /// A body with a support, and with a plane that all its boundary may touch.
+    fn held() -> TriangleProblem {
+        TriangleProblem::builder(random_rectangle(1.0, 0.8, 5, 3).unwrap())
+            .material(Elastic::plane_strain(70.0, 0.3, 2.0, 0.5).unwrap())
+            .obstacle(Obstacle::plane([0.0, -10.0], [0.0, 1.0], 0.0, None).unwrap())
+            .support(Support { group: "left".into(), components: [true, false], velocity: None })
+            .build()
+            .unwrap()
+    }
+
+    /// Without corrections, the work of any contact forces is what they add to ½v·Mv + ½u_n·Ku_{n+1}, which the scheme
+    /// keeps without forces. Those along the support add nothing.
+    #[test]
+    fn work_is_what_the_energy_gains() {
+        let (problem, steps) = (held(), 40);
+        let dt = 0.7 * critical_time_step(&problem);
+        let times = TimeGrid::uniform(dt * steps as f64, steps).unwrap();
+        let dynamics = Dynamics::new(&problem, &times);
+        let mut motions = Motions::new(&problem, &times, Arc::new(Smoothing::new(&problem)), Shares::NONE);
+        let (count, mut random) = (problem.mesh().node_count(), Random::new(4));
+        let (mut displacements, mut sums) = (Vec::new(), Vec::new());
+        for n in 0..=steps {
+            let mut pull: Vec<[f64; 2]> =
+                problem.surface().nodes().iter().map(|_| [0; 2].map(|_| random.between(-1.0, 1.0))).collect();
+            for (contact, pull) in problem.surface().nodes().iter().zip(&mut pull) {
+                let held = problem.prescribed().iter().any(|held| held.node == contact.node);
+                pull[0] *= if held { 0.0 } else { 1.0 };
+            }
+            let (mut displacement, mut acceleration) = (vec![[0.0; 2]; count], vec![[0.0; 2]; count]);
+            let level =
+                AuxiliaryLevel { displacement: &mut displacement, acceleration: &mut acceleration, split: None };
+            motions.begin(&dynamics, n);
+            let still = vec![[0.0; 2]; count];
+            let simulated = SimulatedLevel { velocity: &still, strain: 0.0, reaction: &pull };
+            motions.advance(&dynamics, n, &simulated, &pull, level);
+            displacements.push(displacement);
+            sums.push(motions.contact_work.sum);
+        }
+        let product = |a: &[[f64; 2]], b: &[[f64; 2]]| -> f64 {
+            a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| a * b).sum()
+        };
+        let energy = |now: &[[f64; 2]], next: &[[f64; 2]]| {
+            let mut internal = vec![[0.0; 2]; count];
+            dynamics.stiffness().subtract_internal_forces(now, &mut internal);
+            let moved = next.iter().zip(now).zip(problem.mass());
+            let kinetic: f64 =
+                moved.map(|((next, now), m)| (0..2).map(|c| m * (next[c] - now[c]).powi(2)).sum::<f64>()).sum();
+            0.5 * kinetic / (dt * dt) - 0.5 * product(next, &internal)
+        };
+        let energies: Vec<f64> = displacements.windows(2).map(|pair| energy(&pair[0], &pair[1])).collect();
+        let largest = energies.iter().fold(0.0_f64, |m, e| m.max(*e));
+        for (n, found) in energies.iter().enumerate() {
+            let gained = sums[n] - sums[0];
+            // Rounding of some hundred terms.
+            assert!((found - energies[0] - gained).abs() < 1e-11 * largest, "{n}: {found} for {gained}");
+        }
+        let most = sums.iter().fold(0.0_f64, |most, sum| most.max(*sum));
+        assert!(most > 0.1 * largest && motions.contact_work.most() == most, "{most} of {largest}");
+    }
+}
