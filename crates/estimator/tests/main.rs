@@ -8,6 +8,7 @@ mod block_on_two;
 mod common;
 mod corner;
 mod effectivity;
+mod graded;
 mod properties;
 mod sliding_blocks;
 mod table1;

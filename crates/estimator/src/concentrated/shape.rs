@@ -176,8 +176,13 @@ impl<'a> ShapeCosts<'a> {
     /// By how much the node is closer to its plane, of this normal, than the mean of its traction, with the local
     /// compliance (m): from 0 on, which is at the narrowest traction.
     pub(crate) fn approach(&self, shape: &TractionShape, plane: [f64; 2], normal: f64) -> f64 {
+        self.gap(shape) + self.beyond_edges(shape, plane, normal)
+    }
+
+    /// The same without the mean gap of the edges, where this is that of the motion.
+    pub(crate) fn beyond_edges(&self, shape: &TractionShape, plane: [f64; 2], normal: f64) -> f64 {
         let least = self.gaps.iter().fold(f64::INFINITY, |least, gap| least.min(gap.max(0.0)));
-        self.gap(shape) - least * far(HATS) + normal * self.local(shape, plane, self.direction)
+        normal * self.local(shape, plane, self.direction) - least * far(HATS)
     }
 
     /// Local compliance (m/N): displacement of a traction along a direction under a unit force along another one,

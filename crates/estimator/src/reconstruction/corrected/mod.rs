@@ -119,7 +119,11 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         };
         let steps = |at: usize| length / time(at);
         let mut known = Known { problem, concentration, gap: around.gap, steps: &steps, contact, arresting };
-        self.own_forces.replace(&mut known, |at| foreseen.free_gap(at), |at, forces| foreseen.approach(at, forces));
+        self.own_forces.replace(
+            &mut known,
+            |at| foreseen.free_gap(at),
+            |at, forces| foreseen.approach(at, concentration.far_nodes(at), forces),
+        );
         for (sliding, coupling) in surface.sliding().iter().zip(around.couplings) {
             let mut nodes = Vec::new();
             for at in sliding.positions().filter(|&at| surface.nodes()[at].free) {

@@ -58,7 +58,7 @@ impl<'a, const D: usize> SlidingMotion<'a, D> {
         let parts = [now, next].map(|place| sliding.frame().split(&place));
         let [gap_now, gap] = parts.map(|(normal, _)| undeformed + normal);
         let along = parts.map(|(_, along)| along);
-        Approach { gap_now, gap, along, mobility: Mobility::of_mass(mobility) }
+        Approach { gap_now, gap, along, mobility: Mobility::of_mass(mobility), far: [None; 2] }
     }
 
     /// Puts a force (N) in the place of that of a node of the slave: D_ki R_k/w_k on the slave, −M_kj R_k/w_k on the

@@ -69,6 +69,11 @@ impl NodeCosts<'_> {
         self.shapes.approach(shape, plane, self.compliance * normal)
     }
 
+    /// As [`ShapeCosts::beyond_edges`].
+    pub(super) fn beyond_edges(&self, shape: &TractionShape, plane: [f64; 2], normal: f64) -> f64 {
+        self.shapes.beyond_edges(shape, plane, self.compliance * normal)
+    }
+
     /// As [`ShapeCosts::local`].
     pub(super) fn local(&self, shape: &TractionShape, along: [f64; 2], force: [f64; 2]) -> f64 {
         self.compliance * self.shapes.local(shape, along, force)

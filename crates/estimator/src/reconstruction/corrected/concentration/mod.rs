@@ -124,6 +124,11 @@ impl<const D: usize> Concentration<D> {
         Some(NodeCosts { shapes, compliance: faced.compliance, widest })
     }
 
+    /// The nodes at the far ends of the edges of a node.
+    pub(super) fn far_nodes(&self, at: usize) -> [Option<usize>; 2] {
+        std::array::from_fn(|edge| self.nodes[at].edges.get(edge).map(|edge| edge.far))
+    }
+
     /// Whether a node at the other end of a wide edge has a force, by edge and by node.
     fn touches_beside(&self, at: usize, wide: impl Iterator<Item = bool>, forces: &[[f64; D]]) -> bool {
         self.nodes[at].edges.iter().zip(wide).any(|(edge, wide)| wide && forces[edge.far] != [0.0; D])

@@ -1,6 +1,7 @@
 //! The contact of one node of the auxiliary solution that touches alone.
 
 use super::NodeCosts;
+use crate::concentrated::TractionShape;
 use crate::reconstruction::corrected::motions::Approach;
 use percute_core::contact::{Coulomb, Frame};
 
@@ -36,42 +37,49 @@ impl<const D: usize> Own<D> {
         [normal[0], normal[D - 1]]
     }
 
-    /// The displacement across the plane that a unit normal force adds until the next instant (m/N).
-    fn mobility(&self) -> f64 {
-        let normal = self.frame.normal();
-        self.approach.mobility.between(normal, normal)
-    }
-
     /// The normal force (N) that brings the node to its plane without a local compliance.
     pub(super) fn largest(&self) -> f64 {
-        (-(self.approach.gap + self.depth) / self.mobility()).max(0.0)
+        let normal = self.frame.normal();
+        (-(self.approach.gap + self.depth) / self.approach.mobility.between(normal, normal)).max(0.0)
     }
 
-    /// The normal force (N) under which the node comes to its plane with the local compliance of its traction;
-    /// `largest` brings it there without.
+    /// The gap that is left under a normal force (N), that of its traction and of its local compliance (m).
+    fn remaining(&self, costs: &NodeCosts<'_>, force: f64) -> f64 {
+        let (shape, normal) = (costs.shape(force), self.frame.normal());
+        let mean = self.approach.of_traction(far_parts(&shape));
+        let body = mean.gap + force * mean.mobility.between(normal, normal);
+        // Where the motion of far nodes is not foreseen, edges have the gaps of the simulation.
+        let local = match self.approach.far[0] {
+            Some(_) => costs.beyond_edges(&shape, self.across(), force),
+            None => costs.approach(&shape, self.across(), force),
+        };
+        body + self.depth + local
+    }
+
+    /// The normal force (N) under which the traction comes to its plane with its local compliance; `largest` brings
+    /// the node there without.
     pub(super) fn normal(&self, costs: &NodeCosts<'_>, largest: f64) -> f64 {
-        let (across, mobility) = (self.across(), self.mobility());
         let (mut low, mut high) = (0.0, largest);
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (low + high);
-            let local = costs.approach(&costs.shape(middle), across, middle);
-            let remaining = self.approach.gap + self.depth + middle * mobility + local;
-            if remaining < 0.0 { low = middle } else { high = middle }
+            if self.remaining(costs, middle) < 0.0 { low = middle } else { high = middle }
         }
         0.5 * (low + high)
     }
 
     /// The contact under a normal force (N): the traction sticks where it first touched, or slides at Coulomb's limit.
     pub(super) fn contact(&self, costs: &NodeCosts<'_>, force: f64, last: Option<OwnContact<D>>) -> OwnContact<D> {
-        let (normal, [now, next], depth) = (self.frame.normal(), self.approach.along, self.depth);
+        let (normal, depth) = (self.frame.normal(), self.depth);
         if force == 0.0 {
-            return OwnContact { force: [0.0; D], direction: *normal, anchor: now, depth };
+            return OwnContact { force: [0.0; D], direction: *normal, anchor: self.approach.along[0], depth };
         }
         let shape = costs.shape(force);
+        let approach = self.approach.of_traction(far_parts(&shape));
+        let [now, next] = approach.along;
         let (across, along) = (self.across(), [-self.across()[1], self.across()[0]]);
         let anchor = last.map_or(now, |last| last.anchor);
         let tangent = std::array::from_fn(|c| if c == 0 { -normal[D - 1] } else { normal[0] });
-        let body = &self.approach.mobility;
+        let body = &approach.mobility;
         let mobility = body.between(&tangent, &tangent) + costs.local(&shape, along, along);
         let away = (0..D).map(|c| (next[c] - anchor[c]) * tangent[c]).sum::<f64>()
             + force * (body.between(&tangent, normal) + costs.local(&shape, along, across));
@@ -86,4 +94,9 @@ impl<const D: usize> Own<D> {
             depth,
         }
     }
+}
+
+/// The parts of the force of a traction on the far nodes of its edges.
+fn far_parts(shape: &TractionShape) -> [f64; 2] {
+    std::array::from_fn(|edge| shape.get(edge).map_or(0.0, |hat| hat.share * hat.far()))
 }

@@ -142,7 +142,7 @@ fn turned_stars_share_their_stress() {
 
 /// A node that is on its plane now, and without a force at this gap (m) at the next instant.
 fn onto(gap: f64) -> Approach<2> {
-    Approach { gap_now: 0.0, gap, along: [[0.0; 2]; 2], mobility: Mobility::of_mass(1e-12) }
+    Approach { gap_now: 0.0, gap, along: [[0.0; 2]; 2], mobility: Mobility::of_mass(1e-12), far: [None; 2] }
 }
 
 /// The force of a node after a step of `OwnForces` of τ, from the reaction of the simulation and the motion of the

@@ -22,6 +22,20 @@ pub(in crate::reconstruction::corrected) struct Approach<const D: usize> {
     /// Displacement along the plane now, and at the next instant without a contact force (m).
     pub(in crate::reconstruction::corrected) along: [[f64; D]; 2],
     pub(in crate::reconstruction::corrected) mobility: Mobility<D>,
+    /// The nodes at the far ends of its edges, on which its traction acts in part.
+    pub(in crate::reconstruction::corrected) far: [Option<Far<D>>; 2],
+}
+
+/// The motion of a node at the far end of an edge of another one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::reconstruction::corrected) struct Far<const D: usize> {
+    /// Gap at the next instant without a normal force of the other (m).
+    gap: f64,
+    along: [[f64; D]; 2],
+    /// Displacement here under unit forces at each of both far ends (m/N).
+    of: [Mobility<D>; 2],
+    /// The same of the other one under forces here, or here under forces there.
+    other: Mobility<D>,
 }
 
 /// Displacement that unit forces add until the next instant, by its component and that of the force (m/N).
@@ -37,10 +51,53 @@ pub(in crate::reconstruction::corrected) struct FreeMotion<const D: usize> {
     pub(in crate::reconstruction::corrected) mobility: f64,
 }
 
+impl<const D: usize> Approach<D> {
+    /// The motion of the traction whose parts on the far nodes are these: its mean gap and displacement, and what a unit
+    /// force adds to them. A force that is the answer to the mean over its own density takes energy, whatever the scheme
+    /// is.
+    pub(in crate::reconstruction::corrected) fn of_traction(&self, far: [f64; 2]) -> Self {
+        let mut mean = *self;
+        // Parts on nodes that are not known stay with the node.
+        let ends = [0, 1].map(|e| self.far[e].filter(|_| far[e] != 0.0).map(|end| (far[e], end)));
+        let own = 1.0 - ends.iter().flatten().map(|(part, _)| part).sum::<f64>();
+        mean.gap *= own;
+        mean.along = mean.along.map(|along| along.map(|x| own * x));
+        mean.mobility = mean.mobility.times(own * own);
+        for (part, end) in ends.iter().flatten() {
+            mean.gap += part * end.gap;
+            for (sum, along) in mean.along.iter_mut().zip(end.along) {
+                (0..D).for_each(|c| sum[c] += part * along[c]);
+            }
+            mean.mobility.add(2.0 * own * part, &end.other);
+            for (of, other) in end.of.iter().zip(ends) {
+                let both = other.map_or(0.0, |(other, _)| part * other);
+                mean.mobility.add(both, of);
+            }
+        }
+        mean.far = [None; 2];
+        mean
+    }
+}
+
 impl<const D: usize> Mobility<D> {
     /// That of a mass: the same in all directions.
     pub(in crate::reconstruction::corrected) fn of_mass(mobility: f64) -> Self {
         Self(from_fn(|c| from_fn(|d| if c == d { mobility } else { 0.0 })))
+    }
+
+    /// The symmetric part: both ways count.
+    fn symmetric(&self) -> Self {
+        Self(from_fn(|c| from_fn(|d| 0.5 * (self.0[c][d] + self.0[d][c]))))
+    }
+
+    fn times(&self, factor: f64) -> Self {
+        Self(self.0.map(|row| row.map(|x| factor * x)))
+    }
+
+    fn add(&mut self, factor: f64, other: &Self) {
+        for (row, other) in self.0.iter_mut().zip(other.0) {
+            (0..D).for_each(|c| row[c] += factor * other[c]);
+        }
     }
 
     /// The displacement under a force (N).
@@ -88,22 +145,49 @@ impl<const D: usize, const N: usize> Foreseen<'_, D, N> {
     }
 
     /// That of a node to its obstacle or to the node that it faces, with the forces of these (N) that are those of
-    /// other nodes or its own friction.
-    pub(in crate::reconstruction::corrected) fn approach(&self, at: usize, forces: &[[f64; D]]) -> Approach<D> {
-        let (problem, Self { near, operator, factors, square, .. }) = (self.problem, self);
-        let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
-        let response = near.response(problem, *operator, at);
-        let mobility = Mobility(response.own(factors).map(|row| row.map(|g| square * g)));
-        let (moved, friction) = (response.under(factors, forces), frame.split(&forces[at]).1);
+    /// other nodes or its own friction; `far` are the nodes at the far ends of its edges.
+    pub(in crate::reconstruction::corrected) fn approach(
+        &self,
+        at: usize,
+        far: [Option<usize>; 2],
+        forces: &[[f64; D]],
+    ) -> Approach<D> {
+        let frame = self.problem.obstacles()[self.problem.surface().nodes()[at].obstacle].flat_frame();
+        let normal = frame.split(&forces[at]).0;
+        let own: [f64; D] = from_fn(|c| normal * frame.normal()[c]);
+        let [now, next] = self.places(at, forces, (at, &own));
+        let gap = |place: &[f64; D]| self.problem.surface().gap(at, place);
+        let far = far.map(|end| {
+            let end = end?;
+            let [now, next] = self.places(end, forces, (at, &own));
+            Some(Far {
+                gap: self.problem.surface().gap(end, &next),
+                along: [now, next].map(|place| frame.split(&place).1),
+                of: far.map(|other| other.map_or(Mobility([[0.0; D]; D]), |other| self.mobility(end, other))),
+                other: self.mobility(at, end).symmetric(),
+            })
+        });
+        let along = [now, next].map(|place| frame.split(&place).1);
+        Approach { gap_now: gap(&now), gap: gap(&next), along, mobility: self.mobility(at, at), far }
+    }
+
+    /// The displacement of a node under unit forces on another one, each against its obstacle (m/N).
+    fn mobility(&self, at: usize, by: usize) -> Mobility<D> {
+        let response = self.near.response(self.problem, self.operator, at);
+        let opposite = self.problem.surface().nodes()[by].opposite;
+        let compliance = if at == by { response.own(&self.factors) } else { response.of(&self.factors, by, opposite) };
+        Mobility(compliance.map(|row| row.map(|g| self.square * g)))
+    }
+
+    /// Displacements of a node against its obstacle (m), now and at the next instant under these forces (N) but this
+    /// one on a node.
+    fn places(&self, at: usize, forces: &[[f64; D]], (by, without): (usize, &[f64; D])) -> [[f64; D]; 2] {
+        let response = self.near.response(self.problem, self.operator, at);
         let [now, next] = self.displacements(at);
-        let next: [f64; D] = from_fn(|c| next[c] + square * moved[c]);
-        let rubbed = mobility.under(&friction);
-        Approach {
-            gap_now: problem.surface().gap(at, &now),
-            gap: problem.surface().gap(at, &from_fn(|c| next[c] + rubbed[c])),
-            along: [now, next].map(|place| frame.split(&place).1),
-            mobility,
-        }
+        let moved = response.under(&self.factors, forces);
+        let own = self.mobility(at, at).under(&forces[at]);
+        let less = self.mobility(at, by).under(without);
+        [now, from_fn(|c| next[c] + self.square * moved[c] + own[c] - less[c])]
     }
 }
 

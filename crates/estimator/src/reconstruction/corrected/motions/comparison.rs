@@ -230,7 +230,8 @@ fn compare<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Time
         motions.begin(&dynamics, n);
         let foreseen = motions.foresee(n);
         let none = vec![[0.0; D]; contacts];
-        let approaches: Vec<_> = (0..contacts).map(|at| [&none, &pull].map(|f| foreseen.approach(at, f))).collect();
+        let approaches: Vec<_> =
+            (0..contacts).map(|at| [&none, &pull].map(|f| foreseen.approach(at, [None; 2], f))).collect();
         let level = AuxiliaryLevel {
             displacement: &mut displacement,
             acceleration: &mut acceleration,
@@ -392,9 +393,9 @@ fn responses_are_symmetric() {
     let moved = |at: usize, by: usize| {
         let mut forces = none.clone();
         forces[by] = [0.0, 1.0];
-        let approach = foreseen.approach(at, &none);
+        let approach = foreseen.approach(at, [None; 2], &none);
         let own = approach.mobility.between(&[0.0, 1.0], &[0.0, 1.0]);
-        if at == by { own } else { foreseen.approach(at, &forces).gap - approach.gap }
+        if at == by { own } else { foreseen.approach(at, [None; 2], &forces).gap - approach.gap }
     };
     let held = |at: usize| problem.prescribed().iter().any(|p| p.node == nodes[at].node && p.component == 0);
     let largest = (0..nodes.len()).map(|at| moved(at, at)).fold(0.0, f64::max);
@@ -407,7 +408,7 @@ fn responses_are_symmetric() {
         if held(at) {
             let mut forces = none.clone();
             forces[by] = [1.0, 1.0];
-            let [under, free] = [&forces, &none].map(|forces| foreseen.approach(at, forces).along[1][0]);
+            let [under, free] = [&forces, &none].map(|forces| foreseen.approach(at, [None; 2], forces).along[1][0]);
             assert_eq!(under, free, "{at}, {by}");
             along += 1;
         }

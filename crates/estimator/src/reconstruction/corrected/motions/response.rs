@@ -93,6 +93,16 @@ impl<const D: usize> Response<D> {
         self.own.map(|parts| factors.sum(&parts))
     }
 
+    /// The acceleration under unit forces on another contact node, with the opposite ones on the node that it faces.
+    pub(super) fn of(&self, factors: &Factors, by: usize, opposite: Option<usize>) -> [[f64; D]; D] {
+        let find = |at: usize| {
+            let found = self.others.binary_search_by_key(&(at as u32), |(other, _)| *other);
+            found.map_or([[0.0; D]; D], |k| self.others[k].1.map(|parts| factors.sum(&parts)))
+        };
+        let (direct, facing) = (find(by), opposite.map_or([[0.0; D]; D], find));
+        std::array::from_fn(|c| std::array::from_fn(|d| direct[c][d] - facing[c][d]))
+    }
+
     /// The acceleration under these forces (N) of all other contact nodes.
     pub(super) fn under(&self, factors: &Factors, forces: &[[f64; D]]) -> [f64; D] {
         let mut moved = [0.0; D];
