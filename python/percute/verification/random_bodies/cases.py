@@ -1,0 +1,239 @@
+"""Random bodies that strike a plane or vibrate, each made from its seed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import percute as pc
+from percute.verification.random_bodies import meshes
+from percute.verification.random_bodies.draws import Draws
+from percute.verification.random_bodies.meshes import NoMesh
+from percute.verification.random_bodies.shapes import SHAPES, Floats, Shape
+
+KINDS = ("impact", "vibration", "graded")
+"""Impacts of any kind; free bodies that vibrate; impacts on meshes that are graded towards the contact."""
+MATERIALS: dict[str, tuple[float, float, float]] = {
+    "steel": (210e9, 0.3, 7800.0),
+    "aluminium": (70e9, 0.33, 2700.0),
+    "titanium": (114e9, 0.34, 4430.0),
+    "copper": (120e9, 0.35, 8900.0),
+    "glass": (70e9, 0.22, 2500.0),
+    "concrete": (30e9, 0.18, 2400.0),
+    "polymer": (3e9, 0.38, 1200.0),
+    "soft polymer": (0.3e9, 0.45, 950.0),
+    "rubber": (20e6, 0.485, 1100.0),
+}
+"""Young's modulus (Pa), Poisson's ratio and density (kg/m³)."""
+OF_CELLS = ("rectangle", "beam", "L", "bracket", "frame", "disc")
+"""Shapes that may have a mesh of equal cells, the disc one in rings."""
+ATTEMPTS = 200
+"""How often a body is drawn again whose mesh is not good."""
+FASTEST = 0.1
+"""Largest speed over that of waves in a bar of the material: a little more than in any evidence."""
+WORK = 1e6
+"""Most elements times steps times Courant number: runs, estimate and reference take 10 s."""
+SHORTEST = 0.3
+"""Fewest wave passages; a body that takes more work for them is drawn again."""
+Velocity = Callable[[Floats], Floats]
+
+
+@dataclass(frozen=True, eq=False)
+class RandomBody:
+    """A body and its run."""
+
+    kind: str
+    seed: int
+    shape: str
+    mesh_kind: str
+    mesh: pc.Mesh
+    """In its place at the start."""
+    material: str
+    law: pc.Elastic
+    courant: float
+    end: float
+    """s"""
+    passages: float
+    """Times of a wave along the diagonal: from the first touch to the end, or of the whole run."""
+    tilt: float = 0.0
+    """°"""
+    speed: float = 0.0
+    """Across the plane (m/s)."""
+    along: float = 0.0
+    """Velocity along the plane over the speed."""
+    friction: float = 0.0
+    gap: float = 0.0
+    """m"""
+    velocity: Velocity | None = None
+    """That of a body that vibrates, over places (m)."""
+
+    def problem(self, refinements: int = 0) -> pc.Problem:
+        """Give the problem on the mesh or on a refined one."""
+        mesh = self.mesh.refine(refinements)
+        if self.velocity is not None:
+            return pc.Problem(mesh, material=self.law, initial_velocity=self.velocity(mesh.points))
+        plane = pc.Plane(point=(0.0, float(self.mesh.points[:, 1].min()) - self.gap), normal=(0.0, 1.0), friction=self.friction)
+        return pc.Problem(mesh, material=self.law, obstacles=[plane], initial_velocity=(self.along * self.speed, -self.speed))
+
+    @property
+    def grading(self) -> float:
+        """The longest edge of the mesh over the shortest."""
+        nodes = self.mesh.points[self.mesh.cells]
+        sides = np.linalg.norm(nodes - np.roll(nodes, 1, axis=1), axis=2)
+        return float(sides.max() / sides.min())
+
+
+def body(kind: str, seed: int) -> RandomBody:
+    """Make the body of a kind with this seed, always the same (meshes of Gmsh: by the same version of Gmsh)."""
+    for attempt in range(ATTEMPTS):
+        draws = Draws(KINDS.index(kind), seed, attempt)
+        try:
+            return _vibrating(draws, seed) if kind == "vibration" else _striking(draws, seed, kind)
+        except NoMesh:
+            continue
+    raise AssertionError(f"no mesh of {kind} {seed} in {ATTEMPTS} attempts")
+
+
+def _law(draws: Draws) -> tuple[str, pc.Elastic, float]:
+    """Draw a material; give the speed of waves in a bar of it, too (m/s)."""
+    name = draws.one(list(MATERIALS))
+    young, poisson, density = MATERIALS[name]
+    if name == "rubber":
+        poisson = draws.uniform(0.45, 0.49)
+    plane: Literal["stress", "strain"] = "strain" if draws.chance(0.5) else "stress"
+    return name, pc.Elastic(young=young, poisson=poisson, density=density, plane=plane), math.sqrt(young / density)
+
+
+def _mesh(draws: Draws, shape: Shape, kind: str, place: Floats, grading: float) -> pc.Mesh:
+    elements, slope, mirrored = round(draws.log_uniform(150.0, 1000.0)), draws.uniform(0.2, 0.6), draws.chance(0.5)
+    algorithm = draws.one([5, 6])
+    if kind == "cells":
+        return meshes.checked(meshes.of_cells(shape, round(elements / (1.0 + 0.3 * math.log(grading))), place, grading, slope, mirrored))
+    sizes = meshes.sized(shape, place, elements, grading, slope)
+    return meshes.checked(meshes.delaunay(shape, sizes, draws) if kind == "Delaunay" else meshes.by_gmsh(shape, sizes, algorithm))
+
+
+def _shape(draws: Draws, names: Sequence[str]) -> Shape:
+    """Draw a shape of one of these names, of 5 to 300 mm."""
+    return SHAPES[draws.one(names)](draws, draws.log_uniform(5e-3, 0.3))
+
+
+def _mesh_kind(draws: Draws, shape: Shape) -> str:
+    """Draw a kind of mesh that the shape can have."""
+    return draws.one([*(["cells"] if shape.name in OF_CELLS else []), "Delaunay", "Gmsh"])
+
+
+def _tilt(draws: Draws) -> float:
+    """Draw a tilt (°): often none, sometimes 45°, sometimes small."""
+    part = draws.uniform(0.0, 1.0)
+    if part < 0.25:
+        return draws.one([0.0, 0.0, 90.0, 180.0])
+    if part < 0.35:
+        return draws.one([45.0, -45.0, 135.0])
+    return draws.uniform(-8.0, 8.0) if part < 0.5 else draws.uniform(-180.0, 180.0)
+
+
+def _turned(mesh: pc.Mesh, tilt: float) -> pc.Mesh:
+    """Turn a mesh counterclockwise by an angle (°)."""
+    if tilt == 0.0:
+        return mesh
+    cosine, sine = math.cos(math.radians(tilt)), math.sin(math.radians(tilt))
+    return pc.Mesh(mesh.points @ np.array([[cosine, sine], [-sine, cosine]]), mesh.cells)
+
+
+def _striking(draws: Draws, seed: int, kind: str) -> RandomBody:
+    """Draw a body that strikes a plane."""
+    graded = kind == "graded"
+    cells = graded and draws.chance(0.5)
+    shape = _shape(draws, OF_CELLS if cells else list(SHAPES))
+    name, law, wave = _law(draws)
+    tilt = draws.one([45.0, draws.uniform(1.0, 20.0), draws.uniform(-180.0, 180.0)]) if graded else _tilt(draws)
+    place = shape.lowest(math.radians(tilt))
+    if draws.chance(0.5):
+        # One end of an edge.
+        place = place[[0, 0]]
+    if graded:
+        grading = draws.one([4.0, 16.0, 64.0, 256.0])
+    else:
+        grading = draws.log_uniform(1.5, 100.0) if draws.chance(1.0 / 3.0) else 1.0
+    mesh_kind = ("cells" if cells else "Gmsh") if graded else _mesh_kind(draws, shape)
+    mesh = _turned(_mesh(draws, shape, mesh_kind, place, grading), tilt)
+    free = pc.Problem(mesh, material=law)
+    speed = min(draws.log_uniform(0.3, 200.0), FASTEST * wave)
+    along = 0.0 if draws.chance(0.6) else draws.uniform(-1.0, 1.0)
+    friction = 0.0 if draws.chance(0.4) else draws.uniform(0.0, 0.5)
+    courant = draws.uniform(0.3, 0.95)
+    step = courant * free.critical_time_step
+    gap = draws.log_uniform(1.2, 20.0) * step * speed
+    passage = mesh.size / free.wave_speed
+    passages = draws.log_uniform(SHORTEST, 3.0 if graded else 30.0)
+    passages = min(passages, (WORK / (len(mesh.cells) * courant) * step - gap / speed) / passage)
+    if passages < SHORTEST:
+        raise NoMesh("too much work")
+    end = gap / speed + passages * passage
+    return RandomBody(kind, seed, shape.name, mesh_kind, mesh, name, law, courant, end, passages, tilt, speed, along, friction, gap)
+
+
+def _vibrating(draws: Draws, seed: int) -> RandomBody:
+    """Draw a free body with a smooth initial velocity."""
+    shape = _shape(draws, list(SHAPES))
+    name, law, wave = _law(draws)
+    place = shape.lowest(draws.uniform(-math.pi, math.pi))
+    grading = draws.log_uniform(1.5, 10.0) if draws.chance(1.0 / 3.0) else 1.0
+    mesh_kind = _mesh_kind(draws, shape)
+    mesh = _mesh(draws, shape, mesh_kind, place, grading)
+    free = pc.Problem(mesh, material=law)
+    velocity = _smooth(draws, mesh, draws.log_uniform(1e-5, 1e-3) * wave)
+    courant = draws.uniform(0.3, 0.95)
+    passage = mesh.size / free.wave_speed
+    end = draws.log_uniform(1.0, 30.0) * period(shape, passage)
+    end = min(end, WORK / (len(mesh.cells) * courant) * courant * free.critical_time_step)
+    if end < period(shape, passage):
+        raise NoMesh("too much work")
+    return RandomBody("vibration", seed, shape.name, mesh_kind, mesh, name, law, courant, end, end / passage, velocity=velocity)
+
+
+def period(shape: Shape, passage: float) -> float:
+    """Give about the period of the lowest mode (s): 1.06 times that of Lamé's mode of a square, 0.9 times that of a slender beam.
+
+    Both follow from passages and the mean thickness 2 A/P, for ν = 0.3.
+    """
+    return 0.7 * passage * shape.diagonal * shape.perimeter / (2.0 * shape.area)
+
+
+def _smooth(draws: Draws, mesh: pc.Mesh, speed: float) -> Velocity:
+    """Draw a field of velocity: a polynomial, or waves, without the motion of a rigid body; of this speed at most on the mesh (m/s)."""
+    middle, half = mesh.points.mean(axis=0), 0.5 * mesh.size
+    if draws.chance(0.5):
+        powers = [(i, j) for i in range(4) for j in range(4 - i) if i + j > 0]
+        highest = draws.whole(1, 3)
+        factors = 2.0 * draws.array(len(powers), 2) - 1.0
+
+        def shape_of(x: Floats) -> Floats:
+            return sum((f * (x[:, :1] ** i * x[:, 1:] ** j) for f, (i, j) in zip(factors, powers, strict=True) if i + j <= highest), np.zeros_like(x))
+    else:
+        waves = (2.0 * draws.array(2, 2) - 1.0) * draws.uniform(1.0, 5.0)
+        phases, factors = 2.0 * math.pi * draws.array(2), 2.0 * draws.array(2, 2) - 1.0
+
+        def shape_of(x: Floats) -> Floats:
+            found: Floats = np.sin(x @ waves.T + phases) @ factors
+            return found
+
+    def raw(points: Floats) -> Floats:
+        return shape_of((points - middle) / half)
+
+    apart = mesh.points - middle
+    found = raw(mesh.points)
+    shift = found.mean(axis=0)
+    spin = float(np.sum(apart[:, 0] * found[:, 1] - apart[:, 1] * found[:, 0]) / np.sum(apart**2))
+
+    def free(points: Floats) -> Floats:
+        x, y = (points - middle).T
+        rest: Floats = raw(points) - shift - spin * np.stack([-y, x], axis=1)
+        return rest
+
+    factor = speed / float(np.linalg.norm(free(mesh.points), axis=1).max())
+    return lambda points: factor * free(points)
