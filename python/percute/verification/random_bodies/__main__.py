@@ -17,7 +17,7 @@ from pathlib import Path
 from percute import Progress
 from percute.progress import shown
 from percute.verification.random_bodies.cases import KINDS
-from percute.verification.random_bodies.judge import COLUMNS, HEADER, REFINEMENTS, Row, judged, line, summary
+from percute.verification.random_bodies.judge import COLUMNS, HEADER, Row, judged, line, summary
 
 DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -31,8 +31,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--jobs", type=_count, default=1, metavar="J", help="processes side by side [default: %(default)s]; no number depends on it")
     parser.add_argument("--csv", type=Path, metavar="FILE", help="a table to which each body is added once it is done; bodies in it are not run again")
     parser.add_argument("--again", action="store_true", help="run bodies again that are in the table")
-    refinements = "refinements from a mesh to its reference [default: %(default)s]; one more takes eight times as long"
-    parser.add_argument("--refinements", type=_count, default=REFINEMENTS, metavar="R", help=refinements)
+    further = "refine the reference so many further times [default: %(default)s]: with 1, a body takes four to eight times as long"
+    parser.add_argument("--further", type=_count, default=0, metavar="R", help=further)
     return parser
 
 
@@ -61,7 +61,7 @@ class Table:
 
     def __init__(self, file: Path | None, rows: Sequence[Row]) -> None:
         self.file = file
-        self.rows = {(row.kind, row.refinements, row.seed): row for row in rows}
+        self.rows = {(row.kind, row.further, row.seed): row for row in rows}
         if file is not None:
             # Anew, without what was cut off or is to be run again.
             draft = file.with_name(f"{file.name}.new")
@@ -71,15 +71,15 @@ class Table:
 
     def add(self, row: Row) -> None:
         """Add a row; it is in the file at once."""
-        self.rows[row.kind, row.refinements, row.seed] = row
+        self.rows[row.kind, row.further, row.seed] = row
         if self.file is not None:
             with self.file.open("a", newline="", encoding="utf-8") as lines:
                 csv.writer(lines, lineterminator="\n").writerow(row.cells)
 
 
-def rows_of(kind: str, seeds: Sequence[int], refinements: int, jobs: int) -> Iterator[Row]:
+def rows_of(kind: str, seeds: Sequence[int], further: int, jobs: int) -> Iterator[Row]:
     """Run bodies in so many processes; give their rows in the order of the seeds."""
-    work = partial(judged, kind, refinements=refinements)
+    work = partial(judged, kind, further=further)
     if jobs <= 1 or len(seeds) <= 1:
         yield from map(work, seeds)
         return
@@ -117,20 +117,20 @@ def main(arguments: Sequence[str]) -> int:
     """Run the command with these arguments, without its name, and return its exit code."""
     given = _parser().parse_args(arguments)
     wanted = range(given.seed, given.seed + given.count)
-    keys = [(given.kind, given.refinements, seed) for seed in wanted]
+    keys = [(given.kind, given.further, seed) for seed in wanted]
     try:
         rows = stored(given.csv) if given.csv else []
         if given.again:
-            rows = [row for row in rows if (row.kind, row.refinements, row.seed) not in keys]
+            rows = [row for row in rows if (row.kind, row.further, row.seed) not in keys]
         table = Table(given.csv, rows)
     except (OSError, ValueError) as error:
         print(f"error: {error}", file=sys.stderr)
         return BAD_INPUT
-    left = [seed for kind, refinements, seed in keys if (kind, refinements, seed) not in table.rows]
+    left = [seed for kind, further, seed in keys if (kind, further, seed) not in table.rows]
     code = DONE
     try:
         with _signals(), shown(True) as tell:
-            for done, row in enumerate(rows_of(given.kind, left, given.refinements, given.jobs), start=1):
+            for done, row in enumerate(rows_of(given.kind, left, given.further, given.jobs), start=1):
                 table.add(row)
                 if tell is not None:
                     tell(Progress("running bodies", done, len(left)))

@@ -12,8 +12,6 @@ import numpy as np
 import percute as pc
 from percute.verification.random_bodies.cases import RandomBody, body
 
-REFINEMENTS = 2
-"""From a mesh to its reference."""
 REFERENCE_COURANT = 0.9
 """Step of the reference over its critical one."""
 SOUND = (0.8, 1.7)
@@ -27,7 +25,8 @@ class Row:
 
     kind: str
     seed: int
-    refinements: int
+    further: int
+    """Further refinements of the reference."""
     shape: str
     mesh: str
     elements: int
@@ -79,21 +78,21 @@ class Row:
 COLUMNS = [field.name for field in fields(Row)]
 
 
-def judged(kind: str, seed: int, refinements: int = REFINEMENTS) -> Row:
+def judged(kind: str, seed: int, further: int = 0) -> Row:
     """Run a body, estimate its error, and compare it with that of a simulation on a finer mesh."""
     drawn = body(kind, seed)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         # With the digits of the file, so that a table is the same from it.
-        return Row.of_cells(_judged(drawn, refinements).cells)
+        return Row.of_cells(_judged(drawn, further).cells)
 
 
-def _judged(drawn: RandomBody, refinements: int) -> Row:
+def _judged(drawn: RandomBody, further: int) -> Row:
     problem = drawn.problem()
     common = dict(
         kind=drawn.kind,
         seed=drawn.seed,
-        refinements=refinements,
+        further=further,
         shape=drawn.shape,
         mesh=drawn.mesh_kind,
         elements=len(drawn.mesh.cells),
@@ -112,7 +111,7 @@ def _judged(drawn: RandomBody, refinements: int) -> Row:
     try:
         history = pc.simulate(problem, end=drawn.end, courant=drawn.courant)
         estimate = pc.estimate(history, threads=1)
-        (error,) = pc.true_errors([history], drawn.problem(refinements), end=drawn.end, courant=REFERENCE_COURANT)
+        (error,) = pc.true_errors([history], drawn.reference(further), end=drawn.end, courant=REFERENCE_COURANT)
     except pc.PercuteError as failed:
         none = dict.fromkeys(("relative_sup", "sup", "mean", "low", "high"), math.nan)
         texts = dict.fromkeys(("trust", "inside", "touches", "untested", "situation"), "")

@@ -109,8 +109,8 @@ def of_cells(shape: Shape, elements: int, place: Floats, grading: float, slope: 
         inside = shape.area / ((right - left) * (top - low))
         times = max(1, round(math.sqrt(elements / (2 * nx * ny * inside))))
         mesh = _kept(shape, pc.Mesh.rectangle(right - left, top - low, nx=times * nx, ny=times * ny), right - left if mirrored else 0.0)
-    sides = _longest(mesh) / math.sqrt(2.0)
-    return _refined(mesh, Sizes(place, float(sides.max()) / grading, float(sides.max()), slope))
+    sides = longest(mesh) / math.sqrt(2.0)
+    return refined(mesh, Sizes(place, float(sides.max()) / grading, float(sides.max()), slope), MOST)
 
 
 def _kept(shape: Shape, mesh: pc.Mesh, mirror: float) -> pc.Mesh:
@@ -120,22 +120,23 @@ def _kept(shape: Shape, mesh: pc.Mesh, mirror: float) -> pc.Mesh:
     return pc.Mesh(points[used], cells.reshape(-1, 3))
 
 
-def _longest(mesh: pc.Mesh) -> Floats:
+def longest(mesh: pc.Mesh) -> Floats:
+    """Give the longest edge of each element (m)."""
     nodes = mesh.points[mesh.cells]
-    longest: Floats = np.linalg.norm(nodes - np.roll(nodes, 1, axis=1), axis=2).max(axis=1)
-    return longest
+    edges: Floats = np.linalg.norm(nodes - np.roll(nodes, 1, axis=1), axis=2).max(axis=1)
+    return edges
 
 
-def _refined(mesh: pc.Mesh, sizes: Sizes) -> pc.Mesh:
-    """Refine a mesh to the sizes at its nodes."""
+def refined(mesh: pc.Mesh, sizes: Sizes, most: int) -> pc.Mesh:
+    """Refine a mesh to the sizes at its nodes, with so many elements at most."""
     while True:
         wanted = sizes.at(mesh.points)[mesh.cells].min(axis=1)
         # Half a square has the size of its sides. Rounding must not decide.
-        coarse = _longest(mesh) / math.sqrt(2.0) > 1.0001 * wanted
+        coarse = longest(mesh) / math.sqrt(2.0) > 1.0001 * wanted
         if not coarse.any():
             return mesh
         mesh = mesh.refine(where=coarse)
-        if len(mesh.cells) > MOST:
+        if len(mesh.cells) > most:
             raise NoMesh("too many elements")
 
 
