@@ -8,39 +8,43 @@ import multiprocessing
 import os
 import signal
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
-from percute import Progress
+from percute import PercuteError, Progress
 from percute.progress import shown
 from percute.verification.random_bodies.cases import KINDS
 from percute.verification.random_bodies.judge import COLUMNS, HEADER, Row, judged, line, summary
 
-DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+DONE, BAD_INPUT, INTERRUPTED = 0, 2, 130
 
 
 def _parser() -> argparse.ArgumentParser:
     text = "Make random bodies, and print how close the estimate of their error is to the true one, beside what the verdict states."
     parser = argparse.ArgumentParser("python -m percute.verification.random_bodies", description=text, allow_abbrev=False)
-    parser.add_argument("--seed", type=_count, default=0, metavar="S", help="seed of the first body [default: %(default)s]")
-    parser.add_argument("--count", type=_count, default=20, metavar="N", help="number of bodies, with the seeds S to S + N − 1 [default: %(default)s]")
+    parser.add_argument("--seed", type=_whole(0), default=0, metavar="S", help="seed of the first body [default: %(default)s]")
+    parser.add_argument("--count", type=_whole(1), default=20, metavar="N", help="number of bodies, with the seeds S to S + N − 1 [default: %(default)s]")
     parser.add_argument("--kind", choices=KINDS, default=KINDS[0], help="what the bodies do [default: %(default)s]")
-    parser.add_argument("--jobs", type=_count, default=1, metavar="J", help="processes side by side [default: %(default)s]; no number depends on it")
+    parser.add_argument("--jobs", type=_whole(1), default=1, metavar="J", help="processes side by side [default: %(default)s]; no number depends on it")
     parser.add_argument("--csv", type=Path, metavar="FILE", help="a table to which each body is added once it is done; bodies in it are not run again")
     parser.add_argument("--again", action="store_true", help="run bodies again that are in the table")
     further = "refine the reference so many further times [default: %(default)s]: with 1, a body takes four to eight times as long"
-    parser.add_argument("--further", type=_count, default=0, metavar="R", help=further)
+    parser.add_argument("--further", type=_whole(0), default=0, metavar="R", help=further)
     return parser
 
 
-def _count(text: str) -> int:
-    value = int(text)
-    if value < 0:
-        raise ValueError(text)
-    return value
+def _whole(least: int) -> Callable[[str], int]:
+    """Read a whole number from a least one on."""
+
+    def read(text: str) -> int:
+        if not text.isdecimal() or int(text) < least:
+            raise argparse.ArgumentTypeError(f"{text!r}; it must be a whole number from {least} on")
+        return int(text)
+
+    return read
 
 
 def stored(file: Path) -> list[Row]:
@@ -134,6 +138,9 @@ def main(arguments: Sequence[str]) -> int:
                 table.add(row)
                 if tell is not None:
                     tell(Progress("running bodies", done, len(left)))
+    except PercuteError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return BAD_INPUT
     except KeyboardInterrupt:
         code = INTERRUPTED
         print("interrupted" + f": {given.csv} has the bodies that are done" * (given.csv is not None), file=sys.stderr)

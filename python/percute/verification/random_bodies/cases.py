@@ -28,10 +28,11 @@ MATERIALS: dict[str, tuple[float, float, float]] = {
     "rubber": (20e6, 0.485, 1100.0),
 }
 """Young's modulus (Pa), Poisson's ratio and density (kg/m³)."""
-REFINEMENTS, LOCAL = 2, 3
-"""From a mesh to its reference, and more where a corner or a curve touches: a slow contact is much smaller than elements."""
-LIGHTER, LIGHT = 3, 1e5
-"""From a mesh to its reference where an edge touches or nothing, if elements times critical steps of the run are fewer."""
+REFINEMENTS, LOCAL = (2, 3), (5, 7)
+"""From a mesh to its reference, and where a corner or a curve touches: a slow contact is much smaller than elements. The second ones are those
+of short runs; elsewhere than where a corner or a curve touches they have the first."""
+LIGHT = 1e5
+"""Elements times critical steps of short runs are fewer."""
 OF_CELLS = ("rectangle", "beam", "L", "bracket", "frame", "disc")
 """Shapes that may have a mesh of equal cells, the disc one in rings."""
 ATTEMPTS = 200
@@ -82,12 +83,12 @@ class RandomBody:
         """Give the problem on a much finer mesh, refined some further times."""
         points = self.mesh.points
         lowest = np.flatnonzero(points[:, 1] < points[:, 1].min() + 1e-9 * self.mesh.size)
+        light = len(self.mesh.cells) * self.end < LIGHT * self.problem().critical_time_step
         if self.velocity is not None or len(lowest) > 1:
-            light = len(self.mesh.cells) * self.end < LIGHT * self.problem().critical_time_step
-            return self._on(self.mesh.refine((LIGHTER if light else REFINEMENTS) + further))
-        mesh = self.mesh.refine(REFINEMENTS + further)
+            return self._on(self.mesh.refine(REFINEMENTS[light] + further))
+        mesh = self.mesh.refine(REFINEMENTS[False] + further)
         touching = (self.mesh.cells == lowest[0]).any(axis=1)
-        size = float(meshes.longest(self.mesh)[touching].min()) / math.sqrt(2.0) / 2.0 ** (REFINEMENTS + LOCAL + further)
+        size = float(meshes.longest(self.mesh)[touching].min()) / math.sqrt(2.0) / 2.0 ** (LOCAL[light] + further)
         return self._on(meshes.refined(mesh, Sizes(points[lowest[[0, 0]]], size, self.mesh.size, 0.25), 10 * len(mesh.cells)))
 
     def _on(self, mesh: pc.Mesh) -> pc.Problem:

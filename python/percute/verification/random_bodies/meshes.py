@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import percute as pc
-from matplotlib.tri import Triangulation
 from numpy.typing import NDArray
 from percute.verification.random_bodies.draws import Draws
 from percute.verification.random_bodies.shapes import Floats, Piece, Shape
@@ -181,6 +180,10 @@ def _jittered(shape: Shape, sizes: Sizes, boundary: Floats, ring: Integers, draw
 
 def _triangles(shape: Shape, points: Floats, ring: Integers) -> Integers:
     """Give the Delaunay triangles inside the shape, of which the outline must consist of the given edges."""
+    try:
+        from matplotlib.tri import Triangulation
+    except ImportError as error:
+        raise pc.InputError(f"random bodies need matplotlib: pip install 'percute[plot]' ({error})") from None
     scale = float(np.ptp(points, axis=0).max())
     cells: Integers = Triangulation(*(points / scale).T).triangles.astype(np.int64)
     a, b, c = (points[cells[:, k]] for k in range(3))
