@@ -189,8 +189,10 @@ def test_the_summary_counts() -> None:
     rows[1] = replace(rows[1], mean=0.75, inside="no", trust="limited")
     rows[2] = replace(rows[2], inside="", low=float("nan"), high=float("nan"))
     text = "\n".join(summary([*rows, replace(rows[3], error="no")]))
-    assert "5 bodies, 1 refused, 1 without a range" in text
+    assert "5 cases, 1 refused, 1 without a range" in text
     assert "inside the stated range: 1 of 3 (33.3 %)" in text
-    assert "trust high: 3 bodies, 1 outside the stated range" in text and "trust limited: 1 bodies, 1 outside" in text
+    assert "trust high: 3 cases; outside the stated range: 0 (1.75, 1.00)" in text
+    assert "trust limited: 1 case; outside the stated range: 1 (1.01, 0.75)" in text
+    assert "1.3: 1 of 2" in "\n".join(summary([row_of("vibration", 0), replace(row_of("vibration", 1), mean=0.8)]))
     assert "trust high outside 0.8 to 1.7: 0 (1.75, 1.00)" in text
     assert "index of sup, quantiles: 0 % 1.01," in text and "100 % 1.75" in text

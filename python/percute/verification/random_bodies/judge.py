@@ -11,11 +11,14 @@ from dataclasses import astuple, dataclass, fields
 import numpy as np
 import percute as pc
 from percute.verification.random_bodies.cases import RandomBody, body
+from percute.words import counted
 
 REFERENCE_COURANT = 0.9
 """Step of the reference over its critical one."""
 SOUND = (0.8, 1.7)
 """Indices that a verdict with high trust may have."""
+VIBRATING = (0.85, 1.3)
+"""Indices that bodies which vibrate should have."""
 QUANTILES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 
 
@@ -154,15 +157,19 @@ def summary(rows: Iterable[Row]) -> list[str]:
     found = [row for row in done if not row.error]
     ranged = [row for row in found if row.inside]
     inside = sum(row.inside == "yes" for row in ranged)
-    lines = [f"{len(done)} bodies, {len(done) - len(found)} refused, {len(found) - len(ranged)} without a range"]
+    lines = [f"{counted(len(done), 'case')}, {len(done) - len(found)} refused, {len(found) - len(ranged)} without a range"]
     if ranged:
         lines.append(f"inside the stated range: {inside} of {len(ranged)} ({100.0 * inside / len(ranged):.1f} %)")
     for trust in ("high", "limited", "low"):
         of = [row for row in found if row.trust == trust]
-        lines.append(f"trust {trust}: {len(of)} bodies, {sum(row.inside == 'no' for row in of)} outside the stated range")
-    wrong = [row for row in found if row.wrong]
-    said = ", ".join(f"{row.seed} ({row.sup:.2f}, {row.mean:.2f})" for row in wrong)
-    lines.append(f"trust high outside {SOUND[0]} to {SOUND[1]}: {said or 'none'}")
+        outside = [f"{row.seed} ({row.sup:.2f}, {row.mean:.2f})" for row in of if row.inside == "no"]
+        lines.append(f"trust {trust}: {counted(len(of), 'case')}; outside the stated range: {', '.join(outside) or 'none'}")
+    unsound = ", ".join(f"{row.seed} ({row.sup:.2f}, {row.mean:.2f})" for row in found if row.wrong)
+    lines.append(f"trust high outside {SOUND[0]} to {SOUND[1]}: {unsound or 'none'}")
+    free = [row for row in found if row.kind == "vibration"]
+    if free:
+        near = sum(VIBRATING[0] <= min(row.sup, row.mean) and max(row.sup, row.mean) <= VIBRATING[1] for row in free)
+        lines.append(f"both indices of {VIBRATING[0]} to {VIBRATING[1]}: {near} of {len(free)}")
     if found:
         for name in ("sup", "mean"):
             values = np.quantile([getattr(row, name) for row in found], QUANTILES)
