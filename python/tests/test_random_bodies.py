@@ -108,6 +108,13 @@ def test_meshes_fill_the_shape_and_are_graded(name: str, grading: float) -> None
     assert sizes.largest / sizes.smallest == pytest.approx(grading) or grading > 1.0
 
 
+def test_nodes_along_a_side_make_no_triangles() -> None:
+    """With rounding, the nodes of the sides of this trapezoid are not in line, and the triangulation has triangles between them."""
+    shape = SHAPES["trapezoid"](Draws(4), 0.05)
+    sizes = sized(shape, shape.lowest(0.3), 300, 5.0, 0.4)
+    assert area(delaunay(shape, sizes, Draws(4, 1))) == pytest.approx(polygon_area(shape, sizes), rel=1e-12)
+
+
 @pytest.mark.parametrize("name", OF_CELLS)
 @pytest.mark.parametrize("grading", [1.0, 64.0])
 def test_cells_fill_the_shape_and_are_graded(name: str, grading: float) -> None:
