@@ -3,8 +3,8 @@
 ``python -m percute.verification.random_bodies --seed 0 --count 20`` prints them; ``docs/verdict.md`` describes columns and aims. A seed alone
 determines its body; meshes of Gmsh and of matplotlib are the same with the same versions of these.
 
-A reference has elements of a quarter of the size, and where a corner or a curve touches, of a 32nd, in short runs of a 128th. With further elements
-of half the size, there or everywhere, the indices of four short runs change by at most 1 %, those of four long ones by at most 2 %. A quarter
-everywhere would make them up to 44 % larger, most in slow impacts. Where an edge touches or nothing, elements are of an eighth in short runs. In
-long runs a quarter gives up to 7 % more than an eighth, most in brackets with sharp inner corners.
+A reference has elements of a quarter of the size, and where a corner or a curve touches, of an eighth to a 128th, the finest that takes some
+ten seconds. With elements of half the size, there or everywhere, the indices of eight such impacts change by at most 2 %, those of one slow impact
+with a 32nd by 8 %; a quarter everywhere would make indices up to 44 % larger. Where an edge touches or nothing, elements are of an eighth if that
+does not take longer, else of a quarter, which gives up to 7 % more, most in brackets with sharp inner corners.
 """

@@ -11,8 +11,9 @@ import numpy as np
 import percute as pc
 from percute.verification.random_bodies import meshes
 from percute.verification.random_bodies.draws import Draws
-from percute.verification.random_bodies.meshes import NoMesh, Sizes
+from percute.verification.random_bodies.meshes import Integers, NoMesh, Sizes
 from percute.verification.random_bodies.shapes import SHAPES, Floats, Shape
+from percute.verification.random_bodies.velocities import Velocity, smooth
 
 KINDS = ("impact", "vibration", "graded")
 """Impacts of any kind; free bodies that vibrate; impacts on meshes that are graded towards the contact."""
@@ -28,11 +29,8 @@ MATERIALS: dict[str, tuple[float, float, float]] = {
     "rubber": (20e6, 0.485, 1100.0),
 }
 """Young's modulus (Pa), Poisson's ratio and density (kg/m³)."""
-REFINEMENTS, LOCAL = (2, 3), (5, 7)
-"""From a mesh to its reference, and where a corner or a curve touches: a slow contact is much smaller than elements. The second ones are those
-of short runs; elsewhere than where a corner or a curve touches they have the first."""
-LIGHT = 1e5
-"""Elements times critical steps of short runs are fewer."""
+REFERENCE_WORK = 3e8
+"""Most elements times critical steps of a reference, which take some ten seconds, unless it would be too coarse."""
 OF_CELLS = ("rectangle", "beam", "L", "bracket", "frame", "disc")
 """Shapes that may have a mesh of equal cells, the disc one in rings."""
 ATTEMPTS = 200
@@ -43,7 +41,6 @@ WORK = 1e6
 """Most elements times critical steps of the run: simulation, estimate and reference take 10 to 20 s."""
 SHORTEST = 0.3
 """Fewest wave passages; a body that takes more work for them is drawn again."""
-Velocity = Callable[[Floats], Floats]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,16 +77,32 @@ class RandomBody:
         return self._on(self.mesh)
 
     def reference(self, further: int = 0) -> pc.Problem:
-        """Give the problem on a much finer mesh, refined some further times."""
-        points = self.mesh.points
-        lowest = np.flatnonzero(points[:, 1] < points[:, 1].min() + 1e-9 * self.mesh.size)
-        light = len(self.mesh.cells) * self.end < LIGHT * self.problem().critical_time_step
-        if self.velocity is not None or len(lowest) > 1:
-            return self._on(self.mesh.refine(REFINEMENTS[light] + further))
-        mesh = self.mesh.refine(REFINEMENTS[False] + further)
+        """Give the problem on a much finer mesh, the finest that is not too much work, refined some further times."""
+        if self.velocity is not None or len(self._lowest) > 1:
+            return self._finest(lambda times: self.mesh.refine(times + further), (3, 2), 8.0**further)
+        return self._finest(lambda times: self._where_it_touches(2 + further, times + further), range(7, 2, -1), 8.0**further)
+
+    def _finest(self, mesh: Callable[[int], pc.Mesh], times: Sequence[int], more: float) -> pc.Problem:
+        """Give the problem on the first of these meshes that is not too much work, or on the last one."""
+        for each in times[:-1]:
+            problem = self._on(mesh(each))
+            if len(problem.mesh.cells) * self.end < REFERENCE_WORK * more * problem.critical_time_step:
+                return problem
+        return self._on(mesh(times[-1]))
+
+    @property
+    def _lowest(self) -> Integers:
+        """The nodes that touch first."""
+        heights = self.mesh.points[:, 1]
+        lowest: Integers = np.flatnonzero(heights < heights.min() + 1e-9 * self.mesh.size)
+        return lowest
+
+    def _where_it_touches(self, times: int, there: int) -> pc.Mesh:
+        """Refine the mesh so often, and more often where its lowest node is: a slow contact is much smaller than elements."""
+        mesh, lowest = self.mesh.refine(times), self._lowest
         touching = (self.mesh.cells == lowest[0]).any(axis=1)
-        size = float(meshes.longest(self.mesh)[touching].min()) / math.sqrt(2.0) / 2.0 ** (LOCAL[light] + further)
-        return self._on(meshes.refined(mesh, Sizes(points[lowest[[0, 0]]], size, self.mesh.size, 0.25), 10 * len(mesh.cells)))
+        size = float(meshes.longest(self.mesh)[touching].min()) / math.sqrt(2.0) / 2.0**there
+        return meshes.refined(mesh, Sizes(self.mesh.points[lowest[[0, 0]]], size, self.mesh.size, 0.25), 10 * len(mesh.cells))
 
     def _on(self, mesh: pc.Mesh) -> pc.Problem:
         if self.velocity is not None:
@@ -205,7 +218,7 @@ def _vibrating(draws: Draws, seed: int) -> RandomBody:
     mesh_kind = _mesh_kind(draws, shape)
     mesh = _mesh(draws, shape, mesh_kind, place, grading)
     free = pc.Problem(mesh, material=law)
-    velocity = _smooth(draws, mesh, draws.log_uniform(1e-5, 1e-3) * wave)
+    velocity = smooth(draws, mesh, draws.log_uniform(1e-5, 1e-3) * wave)
     courant = draws.uniform(0.3, 0.95)
     passage = mesh.size / free.wave_speed
     end = draws.log_uniform(1.0, 30.0) * period(shape, passage)
@@ -221,38 +234,3 @@ def period(shape: Shape, passage: float) -> float:
     Both follow from passages and the mean thickness 2 A/P, for ν = 0.3.
     """
     return 0.7 * passage * shape.diagonal * shape.perimeter / (2.0 * shape.area)
-
-
-def _smooth(draws: Draws, mesh: pc.Mesh, speed: float) -> Velocity:
-    """Draw a field of velocity: a polynomial, or waves, without the motion of a rigid body; of this speed at most on the mesh (m/s)."""
-    middle, half = mesh.points.mean(axis=0), 0.5 * mesh.size
-    if draws.chance(0.5):
-        powers = [(i, j) for i in range(4) for j in range(4 - i) if i + j > 0]
-        highest = draws.whole(1, 3)
-        factors = 2.0 * draws.array(len(powers), 2) - 1.0
-
-        def shape_of(x: Floats) -> Floats:
-            return sum((f * (x[:, :1] ** i * x[:, 1:] ** j) for f, (i, j) in zip(factors, powers, strict=True) if i + j <= highest), np.zeros_like(x))
-    else:
-        waves = (2.0 * draws.array(2, 2) - 1.0) * draws.uniform(1.0, 5.0)
-        phases, factors = 2.0 * math.pi * draws.array(2), 2.0 * draws.array(2, 2) - 1.0
-
-        def shape_of(x: Floats) -> Floats:
-            found: Floats = np.sin(x @ waves.T + phases) @ factors
-            return found
-
-    def raw(points: Floats) -> Floats:
-        return shape_of((points - middle) / half)
-
-    apart = mesh.points - middle
-    found = raw(mesh.points)
-    shift = found.mean(axis=0)
-    spin = float(np.sum(apart[:, 0] * found[:, 1] - apart[:, 1] * found[:, 0]) / np.sum(apart**2))
-
-    def free(points: Floats) -> Floats:
-        x, y = (points - middle).T
-        rest: Floats = raw(points) - shift - spin * np.stack([-y, x], axis=1)
-        return rest
-
-    factor = speed / float(np.linalg.norm(free(mesh.points), axis=1).max())
-    return lambda points: factor * free(points)
