@@ -19,6 +19,18 @@ fn of_sources(Separation { at_sup, mean, half_size, half_step, over_time }: &Sep
     all.flat_map(|s| [s.surface, s.front, s.dispersion, s.mesh]).chain([*half_step]).collect()
 }
 
+/// Every number of a map.
+fn of_map<const D: usize>(map: &ElementMap<D>, numbers: &mut Vec<f64>) {
+    let ElementMap { step, time, kinetic, elastic, contact, accumulated, fields } = map;
+    numbers.extend([*step as f64, *time]);
+    [kinetic, elastic, contact, accumulated].into_iter().for_each(|row| numbers.extend(row));
+    let Some(AdmissibleFields { displacement, velocity, stress, compatible_stress, acceleration }) = fields else {
+        return;
+    };
+    [displacement, velocity, acceleration].into_iter().for_each(|field| numbers.extend(field.iter().flatten()));
+    [stress, compatible_stress].into_iter().for_each(|field| numbers.extend(field.iter().flatten().flatten()));
+}
+
 /// Every number of an estimate; those of its maps come last.
 fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
     let Estimate {
@@ -63,15 +75,7 @@ fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
     numbers.extend(by_element);
     numbers.extend(surfaces.iter().flat_map(|s| [s.slide, s.lift, s.rounds as f64, s.stress]));
     numbers.extend(residuals.entries().map(|entry| entry.1));
-    for ElementMap { step, time, kinetic, elastic, contact, accumulated, fields } in maps {
-        numbers.extend([*step as f64, *time]);
-        [kinetic, elastic, contact, accumulated].into_iter().for_each(|row| numbers.extend(row));
-        let Some(AdmissibleFields { displacement, velocity, stress, compatible_stress, acceleration }) = fields else {
-            continue;
-        };
-        [displacement, velocity, acceleration].into_iter().for_each(|field| numbers.extend(field.iter().flatten()));
-        [stress, compatible_stress].into_iter().for_each(|field| numbers.extend(field.iter().flatten().flatten()));
-    }
+    maps.iter().for_each(|map| of_map(map, &mut numbers));
     numbers.into_iter().map(f64::to_bits).collect()
 }
 
