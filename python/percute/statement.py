@@ -58,6 +58,8 @@ class Elastic:
         Thickness of a plane body (m). With 1 m, energies and forces are per metre.
     section : float, optional
         Section of a bar (m²). Bars need it, plane bodies have none.
+    yield_stress : float, optional
+        Yield stress (Pa). The simulation does not use it; the verdict says where the von Mises stress is above it.
     """
 
     young: float
@@ -66,9 +68,10 @@ class Elastic:
     plane: Literal["stress", "strain"] | None = None
     thickness: float = 1.0
     section: float | None = None
+    yield_stress: float | None = None
 
     def __post_init__(self) -> None:
-        units = {"young": "Pa", "density": "kg/m³", "thickness": "m", "poisson": "", "section": "m²"}
+        units = {"young": "Pa", "density": "kg/m³", "thickness": "m", "poisson": "", "section": "m²", "yield_stress": "Pa"}
         for name, unit in units.items():
             if getattr(self, name) is not None or name in ("young", "density", "thickness"):
                 object.__setattr__(self, name, number(name, getattr(self, name), unit=unit))

@@ -50,6 +50,17 @@ impl<const D: usize> ElementState<D> {
         (0.5 * squares + 3.0 * shears.map(|(i, j)| self.stress[i][j].powi(2)).sum::<f64>()).sqrt()
     }
 
+    /// The principal strain in the plane (a bar: ε) that is largest without its sign; of two equal ones, the elongation.
+    #[must_use]
+    pub fn principal_strain(&self) -> f64 {
+        if D == 1 {
+            return self.strain[0][0];
+        }
+        let (xx, yy, xy) = (self.strain[0][0], self.strain[1 % D][1 % D], self.strain[0][1 % D]);
+        let (mean, radius) = (0.5 * (xx + yy), (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
+        if mean < 0.0 { mean - radius } else { mean + radius }
+    }
+
     /// Pressure −⅓ tr σ (Pa), positive in compression.
     #[must_use]
     pub fn pressure(&self) -> f64 {

@@ -11,9 +11,10 @@ use percute_io::estimate_file::EstimateContents;
 use percute_io::{Case, Overwrite, estimate_file};
 use percute_workflow::Failure;
 use percute_workflow::case::statement;
+use percute_workflow::deformation::Deformation;
 use percute_workflow::foreign::Checked;
 use percute_workflow::outline::Outline;
-use percute_workflow::report::{Report, Subject, Warning, warnings_of};
+use percute_workflow::report::{Findings, Report, Subject, Warning, warnings_of};
 use percute_workflow::run::Results;
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
@@ -48,6 +49,8 @@ pub(crate) enum ReportSource<const D: usize> {
         contact: Arc<ContactResults<D>>,
         /// The outline of a plane body at the last step.
         outline: Option<Box<Outline>>,
+        /// The deformation and the stress.
+        deformation: Deformation,
         /// Number of instants, of a stored history.
         held: Option<usize>,
         /// How long the estimate took (s).
@@ -96,9 +99,9 @@ impl<const D: usize, const N: usize> Made<D, N> {
         held: Option<usize>,
         seconds: f64,
     ) -> Self {
-        let Results { simulation, estimate, contact, outline } = results;
-        let report =
-            ReportSource::Now { simulation, contact: Arc::new(contact), outline: outline.map(Box::new), held, seconds };
+        let Results { simulation, estimate, contact, deformation, outline } = results;
+        let (contact, outline) = (Arc::new(contact), outline.map(Box::new));
+        let report = ReportSource::Now { simulation, contact, outline, deformation, held, seconds };
         let (checked, case, unended) = (None, None, None);
         Self { problem, times, options: options.filled(D), estimate, report, checked, case, unended }
     }
@@ -116,12 +119,14 @@ impl<const D: usize, const N: usize> Made<D, N> {
     /// Warnings that only the result shows, and those that a run is told of before; none if the report was made before.
     pub(crate) fn warnings(&self) -> [Vec<Warning>; 2] {
         let Self { problem, times, options, estimate, report, checked, unended, .. } = self;
-        let ReportSource::Now { simulation, contact, held, .. } = report else { return Default::default() };
+        let ReportSource::Now { simulation, contact, deformation, held, .. } = report else {
+            return Default::default();
+        };
         // Equal steps need no critical step.
         let critical_step = if times.varies() { critical_time_step(problem) } else { f64::NAN };
         let (name, held, checked, unended) = ("", *held, checked.as_ref(), unended.as_ref());
         let subject = Subject { name, problem, times, critical_step, held, checked, unended };
-        warnings_of(&subject, *options, &simulation.balance, estimate, contact)
+        warnings_of(&subject, *options, Findings { simulation, estimate, contact, deformation, outline: None })
     }
 
     /// A document made from the report; if that is there as a text only, this text, which has all of it.
@@ -133,12 +138,13 @@ impl<const D: usize, const N: usize> Made<D, N> {
         let Self { problem, times, options, estimate, report, checked, unended, .. } = self;
         match report {
             ReportSource::Before(text) => Ok(text.clone()),
-            ReportSource::Now { simulation, contact, outline, held, seconds } => {
+            ReportSource::Now { simulation, contact, outline, deformation, held, seconds } => {
                 let critical_step = critical_time_step(problem);
                 let (held, checked, unended) = (*held, checked.as_ref(), unended.as_ref());
                 let subject = Subject { name, problem, times, critical_step, held, checked, unended };
                 let outline = outline.as_deref();
-                let report = Report::new(&subject, *options, simulation, estimate, contact, outline, *seconds);
+                let findings = Findings { simulation, estimate, contact, deformation, outline };
+                let report = Report::new(&subject, *options, findings, *seconds);
                 text(&report).map_err(|error| error.to_string())
             }
         }

@@ -37,10 +37,12 @@ pub(crate) fn material<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> 
     let poisson: Option<f64> = attribute(given, "poisson")?;
     let plane: Option<String> = attribute(given, "plane")?;
     let (thickness, section): (f64, Option<f64>) = (attribute(given, "thickness")?, attribute(given, "section")?);
+    let yield_stress: Option<f64> = attribute(given, "yield_stress")?;
     let bad = |key: &str, message: &str| wrong(py, &format!("{name}.{key}"), message);
     let refused = |MaterialError { name, value, unit, allowed, .. }| {
         bad(name, &format!("is {value} {unit}; it must be {allowed}"))
     };
+    let yielding = |law: Elastic| yield_stress.map_or(Ok(law), |stress| law.with_yield_stress(stress));
     if D == 1 {
         for (key, there) in
             [("poisson", poisson.is_some()), ("plane", plane.is_some()), ("thickness", thickness != 1.0)]
@@ -50,15 +52,16 @@ pub(crate) fn material<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> 
             }
         }
         let section = section.ok_or_else(|| bad("section", "is missing: a bar needs it (m²)"))?;
-        return Elastic::bar(young, density, section).map_err(refused);
+        let law = Elastic::bar(young, density, section);
+        return law.and_then(yielding).map_err(refused);
     }
     if section.is_some() {
         return Err(bad("section", "applies to bars only; a plane body has a `thickness` (m)"));
     }
     let poisson = poisson.ok_or_else(|| bad("poisson", "is missing: a plane body needs it"))?;
     match plane.as_deref() {
-        Some("stress") => Elastic::plane_stress(young, poisson, density, thickness).map_err(refused),
-        Some("strain") => Elastic::plane_strain(young, poisson, density, thickness).map_err(refused),
+        Some("stress") => Elastic::plane_stress(young, poisson, density, thickness).and_then(yielding).map_err(refused),
+        Some("strain") => Elastic::plane_strain(young, poisson, density, thickness).and_then(yielding).map_err(refused),
         Some(other) => Err(bad("plane", &format!("is {other:?}; it must be \"stress\" or \"strain\""))),
         None => Err(bad("plane", "is missing; give \"stress\" (a thin plate) or \"strain\" (a long body)")),
     }
@@ -167,6 +170,7 @@ pub(crate) fn material_arguments<'py>(py: Python<'py>, law: &Elastic) -> PyResul
     let arguments = PyDict::new(py);
     arguments.set_item("young", law.young())?;
     arguments.set_item("density", law.density())?;
+    arguments.set_item("yield_stress", law.yield_stress())?;
     if law.hypothesis() == Hypothesis::Bar {
         arguments.set_item("section", law.extent())?;
         return Ok(arguments);

@@ -4,6 +4,7 @@
 
 pub mod case;
 pub mod choice;
+pub mod deformation;
 mod difference;
 pub mod effort;
 pub mod export;

@@ -36,6 +36,11 @@ impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
         self.local.as_ref().map_or(self.stated, |(problem, _)| problem)
     }
 
+    /// The problem that was stated.
+    pub(crate) fn stated_problem(&self) -> &'p Problem<D, N> {
+        self.stated
+    }
+
     fn numbering(&self) -> Option<&Numbering> {
         self.local.as_ref().map(|(_, numbering)| numbering)
     }
@@ -155,6 +160,11 @@ impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
         {
             *position = self.node(*position);
         }
+    }
+
+    /// An element by the number of the user.
+    pub(crate) fn element(&self, new: usize) -> usize {
+        self.numbering().map_or(new, |numbering| numbering.elements()[new].index())
     }
 
     /// A node by the number of the user.

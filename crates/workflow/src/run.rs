@@ -3,12 +3,14 @@
 //! problem is solved in a local order of its own; all results have the numbers of the problem that was stated.
 
 use crate::case::CaseOf;
+use crate::deformation::{Deformation, DeformationRecorder};
 use crate::failure::Failure;
 use crate::info::memory;
 use crate::leaving::Leaving;
 use crate::numbering::Ordered;
 pub use crate::numbering::TakeStep;
 use crate::outline::{LastOutline, Outline};
+use crate::report::Findings;
 use crate::storing::drive;
 pub use crate::storing::{Outcome, Storage};
 use crate::until::{Found, Stop, Until};
@@ -42,11 +44,20 @@ pub struct Results<const D: usize> {
     pub estimate: Estimate<D>,
     /// The contact results.
     pub contact: ContactResults<D>,
+    /// The deformation and the stress.
+    pub deformation: Deformation,
     /// The outline of a plane body at the last step.
     pub outline: Option<Outline>,
 }
 
 impl<const D: usize> Results<D> {
+    /// What a report is made of.
+    #[must_use]
+    pub fn findings(&self) -> Findings<'_, D> {
+        let Self { simulation, estimate, contact, deformation, outline } = self;
+        Findings { simulation, estimate, contact, deformation, outline: outline.as_ref() }
+    }
+
     /// Whether the observer broke before all steps were done and estimated.
     #[must_use]
     pub fn interrupted(&self) -> bool {
@@ -144,13 +155,12 @@ pub(crate) fn beside<const D: usize, const N: usize>(
     let estimator =
         Estimator::new(ordered.problem(), times, analysis.options).and_then(|e| e.keeping(&analysis.request));
     let mut estimator = estimator.map_err(RunError::from)?.stopping(observer.flag());
-    let mut outline = LastOutline::new(ordered.problem().mesh());
-    let mut sinks = ((&mut estimator, (&mut contact, &mut outline)), sink);
+    let mut shown = shown(ordered, times);
+    let mut sinks = ((&mut estimator, (&mut contact, &mut shown)), sink);
     let done = drive(ordered, times, (analysis.options.threads, None), storage, &mut sinks, observer)?;
     done.map(|simulation| {
         let estimate = ordered.estimate(estimator.finish().map_err(RunError::from)?);
-        let (contact, outline) = (ordered.contact(contact.finish()), outline.finish(|node| ordered.node(node)));
-        Ok(Results { simulation, estimate, contact, outline })
+        Ok(results(ordered, simulation, estimate, contact.finish(), shown))
     })
 }
 
@@ -173,15 +183,36 @@ pub fn estimate<const D: usize, const N: usize>(
     memory::refusal(needed).map_or(Ok(()), |told| Err(Failure::Memory(told)))?;
     let ordered = Ordered::new(problem);
     let mut contact = analysis.recorder(ordered.problem(), source.times())?;
-    let mut outline = LastOutline::new(ordered.problem().mesh());
-    let (source, mut beside) = (ordered.source(source), (&mut contact, &mut outline));
+    let mut shown = shown(&ordered, source.times());
+    let (source, mut beside) = (ordered.source(source), (&mut contact, &mut shown));
     let done = percute_estimator::estimate(ordered.problem(), &source, *options, request, &mut beside, observer);
     let (simulation, estimate) = done.map_err(|error| match error {
         RunError::Source(cause) => ordered.failure(Failure::from_sink(cause, RunError::Source)),
         error => ordered.failure(error.into()),
     })?;
-    let (contact, outline) = (ordered.contact(contact.finish()), outline.finish(|node| ordered.node(node)));
-    Ok(Results { simulation, estimate: ordered.estimate(estimate), contact, outline })
+    let estimate = ordered.estimate(estimate);
+    Ok(results(&ordered, simulation, estimate, contact.finish(), shown))
+}
+
+/// What a report shows beside contact and error, of the steps of a problem in its order.
+type Beside<'o, const D: usize, const N: usize> = (DeformationRecorder<'o, D, N>, LastOutline<D>);
+
+fn shown<'o, const D: usize, const N: usize>(ordered: &'o Ordered<'_, D, N>, times: &TimeGrid) -> Beside<'o, D, N> {
+    let problem = ordered.problem();
+    (DeformationRecorder::new(problem, times.step_count()), LastOutline::new(problem.mesh()))
+}
+
+/// The results in the numbers of the problem that was stated.
+fn results<const D: usize, const N: usize>(
+    ordered: &Ordered<'_, D, N>,
+    simulation: Simulation,
+    estimate: Estimate<D>,
+    contact: ContactResults<D>,
+    (deformation, outline): Beside<'_, D, N>,
+) -> Results<D> {
+    let deformation = deformation.finish(ordered.stated_problem().mesh(), |element| ordered.element(element));
+    let (contact, outline) = (ordered.contact(contact), outline.finish(|node| ordered.node(node)));
+    Results { simulation, estimate, contact, deformation, outline }
 }
 
 /// The true errors of runs, each a problem and its steps, against a reference, its problem and instants. Without the

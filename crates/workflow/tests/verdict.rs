@@ -21,7 +21,7 @@ fn of<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Verdict {
         (Analysis { options: case.options, ..Analysis::default() }, Storage { file: None, memory: None, open: None });
     let results = run(&case.problem, &case.times, &analysis, storage, &mut Unobserved).unwrap().results;
     let (subject, options) = (case.subject(), case.options);
-    Report::new(&subject, options, &results.simulation, &results.estimate, &results.contact, None, 0.0).verdict
+    Report::new(&subject, options, results.findings(), 0.0).verdict
 }
 
 /// A block of aluminium over a plane, with cells along both sides, a gap (m), a speed towards the plane (m/s), an end

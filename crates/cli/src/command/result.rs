@@ -39,8 +39,7 @@ pub(super) fn give<const D: usize, const N: usize>(
     console: &mut Console<'_>,
 ) -> Result<u8, Failure> {
     let Finished { subject, options, results, seconds, told, .. } = finished;
-    let Results { simulation, estimate, contact, outline } = results;
-    let report = &Report::new(subject, *options, simulation, estimate, contact, outline.as_ref(), *seconds);
+    let report = &Report::new(subject, *options, results.findings(), *seconds);
     if !work.quiet {
         console.warn(report.warnings.iter().filter(|warning| !told.contains(&warning.name)));
     }

@@ -30,7 +30,7 @@ pub use obstacle::{Obstacle, ObstacleError};
 pub use plane::Plane;
 pub(crate) use prediction::{Predicted, Prediction};
 pub use results::{
-    ContactMemoryError, ContactPoint, ContactRecorder, ContactResults, ContactSteps, NodeSummary, Resultant,
+    ContactMemoryError, ContactPoint, ContactRecorder, ContactResults, ContactSteps, Nearest, NodeSummary, Resultant,
 };
 pub(crate) use solve::solve;
 pub use surface::{ContactFacet, ContactNode, ContactSurface};

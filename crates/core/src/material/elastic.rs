@@ -26,6 +26,7 @@ pub struct Elastic {
     shear: f64,
     density: f64,
     extent: f64,
+    yield_stress: Option<f64>,
 }
 
 /// Checks one parameter; NaN fails every test.
@@ -48,7 +49,7 @@ impl Elastic {
         require(section > 0.0, "section", section, "m²", "positive")?;
         Self::checked(young, 0.0, density)?;
         let (hypothesis, shear) = (Hypothesis::Bar, young / 2.0);
-        Ok(Self { hypothesis, young, poisson: 0.0, lambda: 0.0, shear, density, extent: section })
+        Ok(Self { hypothesis, young, poisson: 0.0, lambda: 0.0, shear, density, extent: section, yield_stress: None })
     }
 
     /// Plane stress: Young's modulus (Pa), Poisson's ratio, density (kg/m³), thickness (m).
@@ -74,7 +75,8 @@ impl Elastic {
         Self::checked(young, poisson, density)?;
         require(thickness > 0.0, "thickness", thickness, "m", "positive")?;
         let shear = young / (2.0 * (1.0 + poisson));
-        Ok(Self { hypothesis, young, poisson, lambda, shear, density, extent: thickness })
+        let (extent, yield_stress) = (thickness, None);
+        Ok(Self { hypothesis, young, poisson, lambda, shear, density, extent, yield_stress })
     }
 
     fn checked(young: f64, poisson: f64, density: f64) -> Result<(), MaterialError> {
@@ -99,6 +101,21 @@ impl Elastic {
     #[must_use]
     pub fn young(&self) -> f64 {
         self.young
+    }
+
+    /// The same law with a yield stress (Pa), which it does not use: results say where the von Mises stress is above it.
+    ///
+    /// # Errors
+    /// A value that is not positive and finite.
+    pub fn with_yield_stress(self, yield_stress: f64) -> Result<Self, MaterialError> {
+        require(yield_stress > 0.0, "yield_stress", yield_stress, "Pa", "positive")?;
+        Ok(Self { yield_stress: Some(yield_stress), ..self })
+    }
+
+    /// The yield stress (Pa), if one is known.
+    #[must_use]
+    pub fn yield_stress(&self) -> Option<f64> {
+        self.yield_stress
     }
 }
 
@@ -244,5 +261,6 @@ mod tests {
         assert_eq!(Elastic::bar(f64::NAN, 1.0, 1.0).unwrap_err().name, "young");
         assert_eq!(Elastic::plane_stress(1.0, 0.3, 0.0, 1.0).unwrap_err().name, "density");
         assert_eq!(Elastic::bar(1.0, 1.0, -1.0).unwrap_err().name, "section");
+        assert_eq!(Elastic::bar(1.0, 1.0, 1.0).unwrap().with_yield_stress(0.0).unwrap_err().name, "yield_stress");
     }
 }

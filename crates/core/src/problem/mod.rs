@@ -11,6 +11,7 @@ mod error;
 mod facing_edges;
 mod gaps;
 mod joined;
+mod levers;
 mod may_touch;
 mod pairs;
 mod plausibility;
@@ -24,7 +25,10 @@ pub(crate) mod symmetry;
 pub use bodies::{Between, Contact};
 pub use builder::{Builder, Initial, Statement};
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
-pub use plausibility::{PlausibilityWarning, RefusedStart, cause_of_refused_start, plausibility_warnings};
+pub use levers::Levers;
+pub use plausibility::{
+    PlausibilityWarning, RefusedStart, SMALL_ROTATION, cause_of_refused_start, plausibility_warnings,
+};
 
 use crate::contact::{ContactSurface, Facing, Interface, Obstacle};
 use crate::ids::{ElementId, FacetId, NodeId};

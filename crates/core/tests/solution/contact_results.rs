@@ -299,29 +299,3 @@ fn doubled(half: &TriangleMesh) -> TriangleMesh {
     let bottom = bottom.clone().chain(bottom.map(|f| f.map(|n| image[n]))).collect();
     TriangleMesh::new(points, &cells, &[("bottom".to_string(), bottom)].into(), &Default::default()).unwrap()
 }
-
-/// Two bodies that spin freely turn evenly, ωt: a linear rotation has no strain. The instants that are looked at are
-/// each 64th one and the last one.
-#[test]
-fn bodies_turn() {
-    const SPIN: [f64; 2] = [30.0, -70.0];
-    let lower = TriangleMesh::rectangle(0.03, 0.02, 6, 4).unwrap();
-    let upper = lower.placed(&[0.1, 0.05], 0.0).unwrap();
-    let mesh = TriangleMesh::joined(&[("lower", &lower), ("upper", &upper)]).unwrap();
-    let spin = |x: &[f64; 2]| {
-        let (turn, centre) = if x[0] < 0.05 { (SPIN[0], [0.015, 0.01]) } else { (SPIN[1], [0.115, 0.06]) };
-        [7.0 - turn * (x[1] - centre[1]), turn * (x[0] - centre[0])]
-    };
-    let velocity = mesh.points().iter().map(spin).collect();
-    let problem = TriangleProblem::builder(mesh)
-        .material(aluminium())
-        .initial_velocity(Initial::Nodal(velocity))
-        .build()
-        .unwrap();
-    for count in [100, 128] {
-        let times = equal_steps(&problem, count);
-        let results = results(&run(&problem, &times));
-        let turned = 70.0 * times.end();
-        assert!((results.rotation / turned - 1.0).abs() < 1e-9, "{} {turned}", results.rotation);
-    }
-}

@@ -5,8 +5,8 @@ use super::table::Table;
 use percute_core::material::{Elastic, MaterialError};
 use percute_core::simplex::Shape;
 
-const BAR_KEYS: [&str; 4] = ["young", "density", "section", "group"];
-const PLANE_KEYS: [&str; 6] = ["young", "poisson", "density", "plane", "thickness", "group"];
+const BAR_KEYS: [&str; 5] = ["young", "density", "section", "yield_stress", "group"];
+const PLANE_KEYS: [&str; 7] = ["young", "poisson", "density", "plane", "thickness", "yield_stress", "group"];
 
 /// What is said of properties that a bar does not have.
 pub(super) const NOT_FOR_BARS: &str = "does not apply to a bar";
@@ -30,10 +30,12 @@ pub(super) fn read(root: &Table<'_>, shape: Shape) -> Result<Vec<(Option<String>
 
 /// Reads the law of a material.
 pub(super) fn law(table: &Table<'_>, shape: Shape) -> Result<Elastic, CaseError> {
-    match shape {
+    let law = match shape {
         Shape::Bar => bar(table),
         Shape::Triangle => plane(table),
-    }
+    }?;
+    let Some(yield_stress) = table.get("yield_stress") else { return Ok(law) };
+    law.with_yield_stress(yield_stress.number("Pa")?).map_err(|error| out_of_range(table, &error))
 }
 
 fn bar(table: &Table<'_>) -> Result<Elastic, CaseError> {

@@ -121,6 +121,9 @@ fn material<const D: usize>(
     text.group(group);
     text.number("young", law.young());
     text.number("density", law.density());
+    if let Some(yield_stress) = law.yield_stress() {
+        text.number("yield_stress", yield_stress);
+    }
     let plane = match hypothesis {
         Hypothesis::Bar => {
             text.number("section", law.extent());

@@ -3,16 +3,15 @@
 use super::columns::{Columns, EnergiesOverTime, PARTS};
 use super::flat::FlatElements;
 use super::found::found;
+use super::linearity::Linearity;
 use super::varying_steps::varying_steps;
 use super::warnings::{Facts, Warning, few_samples, reported};
 use super::{
-    ADMISSIBLE, ContactReport, FORMAT, Impacts, LargestResidual, ObstacleSummary, ProblemSummary, Rebound, Report,
-    SlidingReport, SourceReport, Subject, Verdict, Versions, WorstElement, meaning, verdict,
+    ADMISSIBLE, ContactReport, FORMAT, Findings, Impacts, LargestResidual, ObstacleSummary, ProblemSummary, Rebound,
+    Report, SlidingReport, SourceReport, Subject, Verdict, Versions, WorstElement, meaning, verdict,
 };
 use crate::foreign::Checked;
-use crate::outline::Outline;
-use percute_core::contact::ContactResults;
-use percute_core::dynamics::{Balance, Simulation};
+use percute_core::dynamics::Balance;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::mesh::Mesh;
@@ -29,16 +28,14 @@ impl Report {
     pub fn new<const D: usize, const N: usize>(
         subject: &Subject<'_, D, N>,
         options: Options,
-        simulation: &Simulation,
-        estimate: &Estimate<D>,
-        contact: &ContactResults<D>,
-        outline: Option<&Outline>,
+        findings: Findings<'_, D>,
         seconds: f64,
     ) -> Self {
+        let Findings { simulation, estimate, contact, deformation, outline } = findings;
         let Subject { name, times, critical_step, held, checked, problem: problem_of, .. } = *subject;
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
-        let (rebound, verdict) = judged(subject, options, largest_residual.admissible, simulation, estimate, contact);
-        let [mut warnings, told_before] = warnings_of(subject, options, &simulation.balance, estimate, contact);
+        let (rebound, verdict) = judged(subject, options, largest_residual.admissible, findings);
+        let [mut warnings, told_before] = warnings_of(subject, options, findings);
         warnings.extend(told_before);
         Self {
             format: FORMAT,
@@ -78,6 +75,7 @@ impl Report {
             rebound,
             impacts: Impacts::new(problem_of, contact),
             sliding: SlidingReport::all(problem_of, contact, &estimate.surfaces),
+            deformation: deformation.clone(),
             over_time: Columns::new(estimate.over_time.clone(), PARTS),
             by_element: estimate.by_element.clone(),
             outline: outline.cloned(),
@@ -91,16 +89,24 @@ fn judged<const D: usize, const N: usize>(
     subject: &Subject<'_, D, N>,
     options: Options,
     admissible: bool,
-    simulation: &Simulation,
-    estimate: &Estimate<D>,
-    contact: &ContactResults<D>,
+    findings: Findings<'_, D>,
 ) -> (Option<Rebound>, Verdict) {
+    let Findings { simulation, estimate, contact, deformation, .. } = findings;
     let Subject { problem, times, critical_step, checked, .. } = *subject;
     let (courant, drift) = (times.longest_step() / critical_step, simulation.balance.energy_drift);
     let contact_energy = contact_energy(&simulation.balance, checked);
     let rebound = Rebound::new(problem, &simulation.balance_over_time, contact);
-    let beside =
-        verdict::Beside { options, courant, drift, contact_energy, admissible, rebound: rebound.as_ref(), checked };
+    let rebounded = rebound.as_ref();
+    let beside = verdict::Beside {
+        options,
+        courant,
+        drift,
+        contact_energy,
+        admissible,
+        rebound: rebounded,
+        checked,
+        deformation,
+    };
     let verdict = Verdict::new(&verdict::Facts::new(problem, estimate, contact, beside), &estimate.parts);
     (rebound, verdict)
 }
@@ -119,10 +125,9 @@ fn foreseen<const D: usize, const N: usize>(
 pub fn warnings_of<const D: usize, const N: usize>(
     subject: &Subject<'_, D, N>,
     options: Options,
-    balance: &Balance,
-    estimate: &Estimate<D>,
-    contact: &ContactResults<D>,
+    Findings { simulation, estimate, contact, deformation, .. }: Findings<'_, D>,
 ) -> [Vec<Warning>; 2] {
+    let balance = &simulation.balance;
     let Subject { times, checked, critical_step, unended, .. } = *subject;
     let foreseen = foreseen(subject, estimate);
     let flat = FlatElements::new(subject.problem, &estimate.by_element);
@@ -143,7 +148,7 @@ pub fn warnings_of<const D: usize, const N: usize>(
         slip: contact.slip,
         depth: contact.depth,
         common_slope: contact.lean.to_degrees(),
-        rotation: if subject.problem.statement().interfaces.is_empty() { 0.0 } else { contact.rotation },
+        linearity: &Linearity::new(deformation),
         residual: &largest_residual(estimate),
         flat: flat.as_ref(),
         critical_step,

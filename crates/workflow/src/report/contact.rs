@@ -1,14 +1,26 @@
 //! What contact did, for the report: resultants at every step, and what each node went through, but not all nodes at
 //! all steps, which may be millions.
 
-use percute_core::contact::{ContactResults, NodeSummary, Resultant};
+use percute_core::contact::{ContactResults, Nearest, NodeSummary, Resultant};
 use serde::Serialize;
+
+/// The gap that is left where nothing has touched.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct NearestNode {
+    /// The node of the contact surface that is nearest to its obstacle at the last instant.
+    pub node: usize,
+    /// Its gap (m).
+    pub gap: f64,
+    /// The first instant at which a gap would close at the speed of the last step (s); none if no node approaches.
+    pub touch: Option<f64>,
+}
 
 /// What contact did.
 #[derive(Clone, Debug, Serialize)]
 #[allow(missing_docs)]
 pub struct ContactReport {
     pub first_touch: Option<f64>,
+    pub nearest: Option<NearestNode>,
     pub peak_normal_force: f64,
     pub time_of_peak: Option<f64>,
     pub peak_pressure: f64,
@@ -59,6 +71,11 @@ impl ContactReport {
         let (peak, pressed) = (results.peak(), results.most_pressed());
         Some(Self {
             first_touch: results.first_touch(),
+            nearest: results.nearest.map(|Nearest { at, gap, touch }| NearestNode {
+                node: results.nodes[at].node.index(),
+                gap,
+                touch,
+            }),
             peak_normal_force: peak.map_or(0.0, |n| results.total[n].normal_force),
             time_of_peak: peak.map(|n| results.instants[n]),
             peak_pressure: pressed.map_or(0.0, |at| results.summary[at].peak_pressure),

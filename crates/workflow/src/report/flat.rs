@@ -13,7 +13,7 @@ use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 
 /// Elements with a larger angle (degrees) are nearly flat.
-const ANGLE: f64 = 150.0;
+pub(super) const ANGLE: f64 = 150.0;
 /// The part of the squared mean error in them and around them from which on they spoil the estimate.
 const SHARE: f64 = 0.35;
 /// So many of them are named.

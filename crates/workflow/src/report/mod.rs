@@ -7,7 +7,9 @@ mod contact;
 mod flat;
 mod found;
 mod impacts;
+mod linearity;
 mod meaning;
+mod poor;
 mod rebound;
 mod simulated;
 mod sliding;
@@ -20,9 +22,10 @@ mod warnings;
 
 pub use build::warnings_of;
 pub use columns::{Columns, ENERGIES, EnergiesOverTime, Named, PARTS, SOURCES};
-pub use contact::{ContactNodes, ContactReport, ContactResultants};
+pub use contact::{ContactNodes, ContactReport, ContactResultants, NearestNode};
 pub use impacts::{BodyMotion, Impacts, InterfaceRebound};
 pub use meaning::meaning;
+pub use poor::PoorElement;
 pub use rebound::{Rebound, rebound_to_json};
 pub use simulated::simulated;
 pub use sliding::SlidingReport;
@@ -35,12 +38,14 @@ pub(crate) use warnings::few_samples;
 pub use warnings::reported;
 pub use warnings::{Warning, left_out};
 
+use crate::deformation::Deformation;
 use crate::foreign::{Checked, Consistency, Derived, Samples};
 use crate::outline::Outline;
-use percute_core::dynamics::Balance;
+use percute_core::contact::ContactResults;
+use percute_core::dynamics::{Balance, Simulation};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{ErrorMeasures, Given, Options, Parts, Residuals, Sample};
+use percute_estimator::{ErrorMeasures, Estimate, Given, Options, Parts, Residuals, Sample};
 use serde::Serialize;
 
 /// Number of the layout of the JSON document; it grows when a key changes its meaning or goes.
@@ -65,6 +70,21 @@ pub struct Subject<'a, const D: usize, const N: usize> {
     pub checked: Option<&'a Checked>,
     /// The warning of a run that was to end with the rebound, if contact did not end.
     pub unended: Option<&'a Warning>,
+}
+
+/// What a report is made of: the results of a run, or of the estimate of a history.
+#[derive(Clone, Copy, Debug)]
+pub struct Findings<'a, const D: usize> {
+    /// Balance and number of the steps.
+    pub simulation: &'a Simulation,
+    /// The estimate of the error.
+    pub estimate: &'a Estimate<D>,
+    /// The contact results.
+    pub contact: &'a ContactResults<D>,
+    /// The deformation and the stress.
+    pub deformation: &'a Deformation,
+    /// The outline of a plane body at the last step.
+    pub outline: Option<&'a Outline>,
 }
 
 /// The report of a run. SI units; energies, errors and forces of a plane body are those of its
@@ -109,6 +129,7 @@ pub struct Report {
     pub rebound: Option<Rebound>,
     pub impacts: Option<Impacts>,
     pub sliding: Vec<SlidingReport>,
+    pub deformation: Deformation,
     pub over_time: Columns<Sample, 6>,
     pub by_element: Vec<f64>,
     pub outline: Option<Outline>,
@@ -182,14 +203,16 @@ impl Versions {
 }
 
 impl Report {
-    /// Verdict, warnings, rebound and the contact of several bodies as a JSON document.
+    /// Verdict, warnings, rebound, the contact of several bodies and the deformation as a JSON document.
     ///
     /// # Errors
     /// As [`Report::to_json`].
     pub fn verdict_to_json(&self) -> Result<String, std::io::Error> {
-        let Self { verdict, rebound, impacts, sliding, warnings, .. } = self;
+        let Self { verdict, rebound, impacts, sliding, deformation, warnings, .. } = self;
+        let nearest = self.contact.as_ref().and_then(|contact| contact.nearest);
         let document = serde_json::json!({
-            "verdict": verdict, "rebound": rebound, "impacts": impacts, "sliding": sliding, "warnings": warnings,
+            "verdict": verdict, "rebound": rebound, "impacts": impacts, "sliding": sliding,
+            "contact": { "nearest": nearest }, "deformation": deformation, "warnings": warnings,
         });
         serde_json::to_string(&document).map_err(std::io::Error::from)
     }

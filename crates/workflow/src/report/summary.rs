@@ -1,6 +1,6 @@
 //! The summary of a run: at most 28 lines of 80 columns.
 
-use super::{ADMISSIBLE, InterfaceRebound, ProblemSummary, Rebound, Report, SOURCES, meaning};
+use super::{ADMISSIBLE, InterfaceRebound, NearestNode, ProblemSummary, Rebound, Report, SOURCES, meaning};
 use crate::foreign::Consistency;
 use crate::message::{counted, percent, printable, short, trimmed, whole_percent};
 use percute_core::dynamics::Balance;
@@ -39,7 +39,8 @@ fn wrapped(line: &str) -> String {
 }
 
 fn lines(report: &Report) -> Vec<(&'static str, String)> {
-    let mut lines = what_was_run(report);
+    let mut lines: Vec<_> = nothing_touched(report).map(|line| ("CONTACT", line)).into_iter().collect();
+    lines.extend(what_was_run(report));
     lines.extend(error(report));
     lines.extend(sources(report).map(|line| ("sources", line)));
     lines.extend(worst_elements(report));
@@ -53,6 +54,13 @@ fn lines(report: &Report) -> Vec<(&'static str, String)> {
     lines.extend(impacts(report));
     lines.extend(warnings(report));
     lines
+}
+
+/// That nothing touched, and the gap that is left.
+fn nothing_touched(report: &Report) -> Option<String> {
+    let NearestNode { gap, touch, .. } = report.contact.as_ref()?.nearest?;
+    let when = touch.map_or("no node approaches".to_string(), |time| format!("it would close at {} s", trimmed(time, 4)));
+    Some(format!("NOTHING TOUCHED: the least gap left is {} m; {when}", short(gap, 3)))
 }
 
 /// Elements, nodes and size of a body.
@@ -163,7 +171,9 @@ fn result(report: &Report) -> String {
     }
     let (sup, time) = (short(e.sup, 4), trimmed(report.time_of_sup, 5));
     let [at_most, mean] = [e.relative_sup, e.relative_mean].map(percent);
-    format!("sup {at_most} ({sup} J^½ at {time} s), mean {mean}")
+    let touched = report.contact.as_ref().is_none_or(|contact| contact.nearest.is_none());
+    let nothing = if touched { "" } else { "nothing touched: " };
+    format!("{nothing}sup {at_most} ({sup} J^½ at {time} s), mean {mean}")
 }
 
 fn worst_elements(report: &Report) -> Vec<(&'static str, String)> {

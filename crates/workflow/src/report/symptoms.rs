@@ -26,8 +26,6 @@ pub(crate) const DEPTH: f64 = 0.05;
 /// normal. Between chevrons of aluminium of 5, 15 and 30°, without friction, the motion differs by 2, 9 and 24 % from
 /// that with a contact for each slope.
 pub(crate) const COMMON_SLOPE: f64 = 10.0;
-/// The largest mean rotation of a body (rad) that is not warned of.
-const ROTATION: f64 = 0.02;
 /// The remedy for all figures of a history that contradicts itself or its problem.
 const INCONSISTENT: &str = "the history is not consistent: correct it first";
 /// A gain of the time step by more than this is told.
@@ -52,7 +50,7 @@ impl Symptom {
     }
 }
 
-fn symptom(
+pub(super) fn symptom(
     name: &'static str,
     brief: impl Into<String>,
     figure: impl Into<String>,
@@ -74,7 +72,8 @@ pub(super) fn symptoms(facts: &Facts<'_>) -> impl Iterator<Item = Symptom> {
         slipped(facts.slip),
         entered(facts.depth),
         leant(facts.common_slope),
-        turned(facts.rotation),
+        facts.linearity.strained(),
+        facts.linearity.turned(),
     ];
     all.into_iter().flatten()
 }
@@ -249,20 +248,6 @@ fn leant(slope: f64) -> Option<Symptom> {
     let remedy = "name groups of edges that face each other around the place where they touch, or of slopes of a \
                   ridge, each in a contact of its own without the edges at the ridge";
     symptom("common_slope", format!("surfaces lean together by {angle}° from their normal"), figure, remedy)
-}
-
-/// Bodies that turn farther than small rotations.
-fn turned(rotation: f64) -> Option<Symptom> {
-    if rotation <= ROTATION {
-        return None;
-    }
-    let [angle, strain] = [rotation, 0.5 * rotation * rotation].map(|value| short(value, 2));
-    let figure = format!(
-        "a body turns by up to {angle} rad, but rotations are small by assumption, up to {ROTATION} rad: this one \
-         counts as a strain of {strain}, which is no part of the error measure"
-    );
-    let brief = format!("a body turns by {angle} rad: too far for small rotations");
-    symptom("rotation", brief, figure, "take an earlier end")
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! What the user should look at before trusting a result.
 
 use super::flat::FlatElements;
+use super::linearity::Linearity;
 use super::{LargestResidual, ProblemSummary};
 use crate::foreign::{Checked, Samples};
 use crate::message::{counted, percent, short, trimmed};
@@ -50,8 +51,7 @@ pub(super) struct Facts<'a> {
     pub(super) depth: f64,
     /// The largest angle by which surfaces that slide and touch lean together from their normal (degrees).
     pub(super) common_slope: f64,
-    /// The largest mean rotation of a body (rad); 0 unless bodies may touch each other.
-    pub(super) rotation: f64,
+    pub(super) linearity: &'a Linearity,
     pub(super) residual: &'a LargestResidual,
     pub(super) flat: Option<&'a FlatElements>,
     /// Δt_c (s).
@@ -75,6 +75,7 @@ impl Warning {
             "slip",
             "depth",
             "common_slope",
+            "large_strain",
             "rotation",
         ]
         .contains(&self.name)

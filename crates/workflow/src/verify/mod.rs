@@ -141,7 +141,6 @@ impl<const D: usize, const N: usize> Prepared<D, N> {
         let Self { problem, times, critical_step } = self;
         let (name, critical_step) = ("", *critical_step);
         let subject = Subject { name, problem, times, critical_step, held: None, checked: None, unended: None };
-        let Results { simulation, estimate, contact, outline } = results;
-        Level::new(&Report::new(&subject, options, simulation, estimate, contact, outline.as_ref(), 0.0))
+        Level::new(&Report::new(&subject, options, results.findings(), 0.0))
     }
 }

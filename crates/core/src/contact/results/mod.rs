@@ -5,11 +5,12 @@
 //! are therefore those of R_n and of this step: a node is in contact at t_n if and only if it touches at t_{n+1}. Gap
 //! and position are those of u_n. At the last t_n before the first touch the node has both a force and a gap.
 
+mod nearest;
 mod recorder;
 mod resultant;
-mod rotation;
 mod summary;
 
+pub use nearest::Nearest;
 pub use recorder::{ContactMemoryError, ContactRecorder};
 pub use resultant::Resultant;
 pub use summary::NodeSummary;
@@ -44,8 +45,8 @@ pub struct ContactResults<const D: usize> {
     /// act, or by which a side leans on which a corner of the slave acts (rad): forces have the direction of the
     /// normal.
     pub lean: f64,
-    /// The largest mean rotation of a plane body at each 64th instant and the last one (rad); 0 on bars.
-    pub rotation: f64,
+    /// The gap that is left where nothing has touched; none without contact surface, or after any touch or force.
+    pub nearest: Option<Nearest>,
     /// All nodes at all instants, if requested.
     pub steps: Option<ContactSteps<D>>,
 }

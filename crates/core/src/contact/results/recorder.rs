@@ -1,7 +1,7 @@
 //! Contact results of the steps of a run or a history.
 
+use super::nearest::Gaps;
 use super::resultant::{Share, Sum};
-use super::rotation::Rotation;
 use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
 use crate::contact::coulomb::{Coulomb, Status, dissipation};
 use crate::contact::frame::{Frame, dot};
@@ -40,7 +40,7 @@ pub struct ContactRecorder<'p, const D: usize, const N: usize> {
     /// The shortest edge of each node that may touch another body (m); infinite at rigid obstacles, and on a bar.
     shortest: Vec<f64>,
     leaning: Leaning<'p, D>,
-    rotation: Rotation<D>,
+    gaps: Gaps,
     results: ContactResults<D>,
 }
 
@@ -68,15 +68,15 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             depth: 0.0,
             at_end: false,
             lean: 0.0,
-            rotation: 0.0,
+            nearest: None,
             steps: None,
             nodes,
         };
         let (laws, now) = (TangentialLaw::of_surface(problem), vec![start; results.nodes.len()]);
         let facing = problem.surface().facing(problem.initial_displacement());
-        let (shortest, rotation) = (shortest_edges(problem), Rotation::new(problem, times.step_count()));
+        let (shortest, gaps) = (shortest_edges(problem), Gaps::default());
         let leaning = Leaning::new(problem.surface(), problem.mesh(), problem.on_lines_of_symmetry());
-        Self { problem, times, laws, now, facing, shortest, leaning, rotation, results }
+        Self { problem, times, laws, now, facing, shortest, leaning, gaps, results }
     }
 
     /// Keeps all nodes at all instants too.
@@ -96,7 +96,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
     /// What contact did at the steps taken.
     #[must_use]
     pub fn finish(self) -> ContactResults<D> {
-        self.results
+        ContactResults { nearest: self.gaps.nearest(), ..self.results }
     }
 
     /// The normal force of each obstacle (N) up to which its nodes are free.
@@ -107,6 +107,13 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             least[obstacle] = least[obstacle].max(LEAST_PART * frame.split(&step.reaction[at]).0);
         }
         least
+    }
+
+    /// Records the gaps, as long as nothing touches.
+    fn gap_left(&mut self, step: &Step<'_, D>) {
+        let touches = step.touching.contains(&true) || step.reaction.iter().flatten().any(|force| *force != 0.0);
+        let gaps = (0..self.now.len()).map(|at| self.facing.gap(at, step.displacement));
+        self.gaps.advance(step.time, touches, gaps);
     }
 
     /// By which angle surfaces lean where forces act (rad), or have leant before.
@@ -191,7 +198,7 @@ impl<const D: usize, const N: usize> ContactRecorder<'_, D, N> {
         let mut sums = vec![Sum::new(); self.results.obstacles.len()];
         let mut total = Sum::new();
         self.facing.update(step.displacement);
-        self.results.rotation = self.results.rotation.max(self.rotation.at(step.index, step.displacement));
+        self.gap_left(step);
         let least = self.least_forces(step);
         for at in 0..self.now.len() {
             let obstacle = self.results.nodes[at].obstacle;

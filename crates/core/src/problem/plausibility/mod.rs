@@ -2,8 +2,11 @@
 
 mod held;
 mod motion;
+mod spin;
 mod time;
 mod units;
+
+pub use spin::SMALL_ROTATION;
 
 use super::{Place, Problem};
 use crate::time::TimeGrid;
@@ -41,7 +44,7 @@ pub fn plausibility_warnings<const D: usize, const N: usize>(
     });
     let others =
         motion::plausibility_warnings(problem, times).into_iter().chain(time::plausibility_warnings(problem, times));
-    let others = others.chain(held::plausibility_warnings(problem));
+    let others = others.chain(held::plausibility_warnings(problem)).chain(spin::plausibility_warnings(problem, times));
     all.extend(
         others.filter(|plausibility_warning| {
             !mixed || !["supersonic", "single_step"].contains(&plausibility_warning.name)

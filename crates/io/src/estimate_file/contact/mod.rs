@@ -45,10 +45,9 @@ pub(super) fn write<const D: usize>(
     write("peak_pressure", "Pa", &[nodes], &column(summary, |s| s.peak_pressure))?;
     write("impulse", "N s", &[nodes, D], &vectors(summary, |s| s.impulse))?;
     write("time", "s", &[instants], &results.instants)?;
-    let angles = [("lean", "rad", results.lean), ("rotation", "rad", results.rotation)];
-    let largest = [("slip", "", results.slip), ("depth", "", results.depth)].into_iter().chain(angles);
-    let at_end = ("at_end", "", f64::from(u8::from(results.at_end)));
-    for (name, of, value) in largest.chain([at_end]).filter(|(.., value)| *value > 0.0) {
+    let at_end = f64::from(u8::from(results.at_end));
+    let (slip, depth, lean) = (("slip", "", results.slip), ("depth", "", results.depth), ("lean", "rad", results.lean));
+    for (name, of, value) in [slip, depth, lean, ("at_end", "", at_end)].into_iter().filter(|(.., value)| *value > 0.0) {
         write(name, of, &[1], &[value])?;
     }
     write("force", "N", &[instants, nodes, D], steps.force.as_flattened())?;

@@ -4,7 +4,7 @@ use crate::error::{FileCause, FileError};
 use crate::estimate_file::maps::size;
 use crate::kind::Kind;
 use crate::read::{Part, reading};
-use percute_core::contact::{ContactPoint, ContactResults, ContactSteps, NodeSummary, Resultant, Status};
+use percute_core::contact::{ContactPoint, ContactResults, ContactSteps, Nearest, NodeSummary, Resultant, Status};
 use percute_core::ids::NodeId;
 use percute_core::simplex::ByDimension;
 use std::path::Path;
@@ -52,14 +52,15 @@ impl Reader<'_, '_> {
             of_obstacles.push(Reader { part: &part }.resultants(instants.len())?);
         }
         let steps = self.steps(instants.len(), count)?;
+        let (nodes, summary) = (self.places(&node, of_obstacles.len())?, self.summary(count, &steps)?);
         Ok(ContactResults {
             slip: self.one("slip")?,
             depth: self.one("depth")?,
             at_end: self.one("at_end")? > 0.0,
             lean: self.one("lean")?,
-            rotation: self.one("rotation")?,
-            nodes: self.places(&node, of_obstacles.len())?,
-            summary: self.summary(count, &steps)?,
+            nearest: Nearest::of_steps(&instants, &nodes, &summary, &steps),
+            nodes,
+            summary,
             total: Reader { part: &self.part.group("total")? }.resultants(instants.len())?,
             obstacles: of_obstacles,
             steps: Some(steps),

@@ -3,10 +3,13 @@
 use super::onset::Onset;
 use super::touches::{Contact, first_contacts};
 use super::uneven::Uneven;
+use crate::deformation::Deformation;
 use crate::foreign::{Checked, Contradiction, by_a_penalty, is_off_contact, off_contact};
 use crate::report::flat::FlatElements;
+use crate::report::linearity::Linearity;
+use crate::report::poor::{PoorElement, poor_elements};
 use crate::report::rebound::Rebound;
-use percute_core::contact::ContactResults;
+use percute_core::contact::{ContactResults, Nearest};
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::mesh::Mesh;
@@ -40,6 +43,11 @@ pub(in crate::report) struct Facts {
     /// Whether nearly flat elements have much of the estimate.
     pub(super) flat: bool,
     pub(super) uneven: Uneven,
+    /// The elements of bad shape that matter most, if they matter.
+    pub(super) poor: Vec<PoorElement>,
+    pub(super) linearity: Linearity,
+    /// The gap that is left where nothing has touched, and the last instant (s).
+    pub(super) nearest: Option<(Nearest, f64)>,
     pub(super) onset: Onset,
     pub(super) largest_friction: f64,
     /// The least angle between two planes that touch the body at edges with a common node (degrees).
@@ -103,6 +111,7 @@ pub(in crate::report) struct Beside<'a> {
     pub(in crate::report) rebound: Option<&'a Rebound>,
     /// Of a history of another program.
     pub(in crate::report) checked: Option<&'a Checked>,
+    pub(in crate::report) deformation: &'a Deformation,
 }
 
 impl Facts {
@@ -119,6 +128,10 @@ impl Facts {
         // Nodes bounce on the springs of a penalty: a release ends when a wave could not cross the body meanwhile.
         let shortest_release = if figures.is_some_and(by_a_penalty) { slenderness * size / wave_speed } else { 0.0 };
         let bodies = !problem.statement().interfaces.is_empty();
+        let flat = FlatElements::new(problem, &estimate.by_element).is_some();
+        let uneven = Uneven::new(problem, &estimate.by_element);
+        let matter = flat || uneven.longest > 1.0;
+        let poor = if matter { poor_elements(problem.mesh(), &estimate.by_element) } else { Vec::new() };
         let speed = if bodies { approach(problem) } else { beside.rebound.map(|rebound| -rebound.normal_before) };
         Self {
             dimension: D,
@@ -131,8 +144,11 @@ impl Facts {
             phases: phases(results, APART * size / wave_speed, shortest_release),
             passages: after_first_touch(results) * wave_speed / size,
             slenderness,
-            flat: FlatElements::new(problem, &estimate.by_element).is_some(),
-            uneven: Uneven::new(problem, &estimate.by_element),
+            flat,
+            uneven,
+            poor,
+            linearity: Linearity::new(beside.deformation),
+            nearest: results.nearest.zip(results.instants.last().copied()),
             onset: Onset::new(problem, results, beside.rebound, speed),
             largest_friction: problem.obstacles().iter().map(|o| o.law().friction()).fold(0.0, f64::max),
             corner: corner(problem, results),

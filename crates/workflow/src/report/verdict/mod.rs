@@ -1,5 +1,5 @@
 //! The verdict on an estimate: the situation of the run, the effectivity indices of such cases in the evidence, and one
-//! recommendation, in at most three sentences.
+//! recommendation, a sentence each.
 
 mod facts;
 mod onset;
@@ -12,6 +12,7 @@ mod untested;
 pub(super) use facts::{Beside, Facts};
 pub use touches::Touches;
 
+use super::PoorElement;
 use percute_estimator::Parts;
 use rules::{RULES, Rule};
 use serde::Serialize;
@@ -22,7 +23,7 @@ use serde::Serialize;
 pub enum Trust {
     /// The evidence has such cases, and the estimate is between 0.8 and 1.6 times the true error in all of them.
     High,
-    /// The range is wider, or a property of the run is not in the evidence.
+    /// The range is wider, a property of the run is not in the evidence, or strains or rotations are not small.
     Limited,
     /// There is a reason not to trust the number.
     Low,
@@ -46,7 +47,8 @@ const GOOD: [f64; 2] = [0.8, 1.6];
 pub struct Verdict {
     /// How far the estimate can be trusted.
     pub trust: Trust,
-    /// At most three sentences: situation and effectivity index, place and parts of the error, recommendation.
+    /// Sentences: first that nothing touched, if that is so; situation and effectivity index; place and parts of the
+    /// error; recommendation; elements to mend; stress beyond the linear law.
     pub text: Vec<String>,
     /// Smallest and largest effectivity index (estimate over true error, sup and mean) of such cases in the evidence;
     /// none where such cases are outside the range of all others.
@@ -71,6 +73,10 @@ pub struct Verdict {
     pub at_contact: f64,
     /// Properties of the run that no case of the evidence has.
     pub untested: Vec<String>,
+    /// Strains and rotations that are not small.
+    pub not_small: Vec<String>,
+    /// The elements of bad shape with the largest parts of the squared mean error, if such elements matter.
+    pub mend: Vec<PoorElement>,
 }
 
 /// Parts of η at its largest value, over η, eq. \[14\].
@@ -90,10 +96,10 @@ impl Verdict {
     pub(super) fn new(facts: &Facts, parts: &Parts) -> Self {
         let rule = RULES.iter().find(|rule| (rule.applies)(facts)).unwrap_or(&RULES[RULES.len() - 1]);
         let (untested, shares) = (untested::untested(facts), shares(parts));
-        let doubts = text::doubts(facts, rule);
+        let (doubts, not_small) = (text::doubts(facts, rule), facts.linearity.not_small());
         let trust = match () {
             () if !doubts.is_empty() => Trust::Low,
-            () if !untested.is_empty() || !within(rule) => Trust::Limited,
+            () if !untested.is_empty() || !not_small.is_empty() || !within(rule) => Trust::Limited,
             () => Trust::High,
         };
         Self {
@@ -110,6 +116,8 @@ impl Verdict {
             shares,
             at_contact: facts.at_contact,
             untested,
+            not_small,
+            mend: facts.poor.clone(),
         }
     }
 }

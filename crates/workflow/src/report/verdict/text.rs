@@ -5,8 +5,11 @@ use super::facts::Facts;
 use super::rules::{self, Rule};
 use super::touches::Touches;
 use crate::foreign::Contradiction;
-use crate::message::{change, short, whole_percent};
+use crate::message::{change, short, trimmed, whole_percent};
+use crate::report::flat;
+use crate::report::poor::PoorElement;
 use crate::report::symptoms::{AUXILIARY_CONTACT_ENERGY, CONTACT_ENERGY, DRIFT, KEPT};
+use percute_core::contact::Nearest;
 
 /// A relative error above this is as large as the solution: it cannot exceed 1/√2 by much.
 const AS_LARGE: f64 = 0.5;
@@ -59,10 +62,11 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
         );
     }
     doubts.extend(rule.doubt.map(str::to_string));
+    doubts.extend(facts.linearity.doubts());
     doubts
 }
 
-/// The sentences: situation, place, recommendation.
+/// The sentences: that nothing touched, situation, place, recommendation, elements to mend, stress.
 pub(super) fn sentences(
     facts: &Facts,
     rule: &Rule,
@@ -71,9 +75,38 @@ pub(super) fn sentences(
     shares: Shares,
 ) -> Vec<String> {
     if facts.is_exact() && doubts.is_empty() {
-        return vec!["Nothing deforms: the error is zero to rounding.".to_string()];
+        let exact = "Nothing deforms: the error is zero to rounding.".to_string();
+        return nothing_touched(facts).into_iter().chain([exact]).collect();
     }
-    vec![situation(facts, rule, untested), place(facts, shares), recommendation(facts, doubts)]
+    let usual = [situation(facts, rule, untested), place(facts, shares), recommendation(facts, doubts)];
+    let beside = [mend(&facts.poor), facts.linearity.stress.clone()];
+    nothing_touched(facts).into_iter().chain(usual).chain(beside.into_iter().flatten()).collect()
+}
+
+/// That nothing touched although it could, with the gap that is left.
+fn nothing_touched(facts: &Facts) -> Option<String> {
+    let (Nearest { gap, touch, .. }, end) = facts.nearest?;
+    let (gap, end) = (short(gap, 3), trimmed(end, 4));
+    let when = match touch {
+        Some(touch) => format!("it would close at {} s at its present speed", trimmed(touch, 4)),
+        None => "no node approaches".to_string(),
+    };
+    Some(format!("Nothing touched: at the end, at {end} s, the least gap is {gap} m, and {when}."))
+}
+
+/// The elements to mend.
+fn mend(poor: &[PoorElement]) -> Option<String> {
+    let each = |one: &PoorElement| {
+        let angle = match one.largest_angle > flat::ANGLE {
+            true => format!("an angle of {}°", trimmed(one.largest_angle, 4)),
+            false => format!("an angle of {}°, edges 1 to {}", trimmed(one.smallest_angle, 2), short(one.aspect, 2)),
+        };
+        let place = one.centroid.iter().map(|&x| short(x, 3)).collect::<Vec<_>>().join(", ");
+        format!("{} ({angle}, at ({place}) m, {})", one.element, whole_percent(one.share))
+    };
+    let named = poor.iter().map(each).collect::<Vec<_>>().join(", ");
+    let told = || format!("Mend first, each with its part of the squared mean error: element {named}.");
+    (!poor.is_empty()).then(told)
 }
 
 fn situation(facts: &Facts, rule: &Rule, untested: &[String]) -> String {
@@ -97,7 +130,9 @@ fn situation(facts: &Facts, rule: &Rule, untested: &[String]) -> String {
     };
     let untested: Vec<&str> = untested.iter().map(String::as_str).filter(|one| Some(*one) != outside).collect();
     let missing = if untested.is_empty() { String::new() } else { format!("; not tested: {}", untested.join(", ")) };
-    format!("{touches}{speed}, with steps of {} Δt_c: {range}{missing}.", short(facts.courant, 2))
+    let not_small = facts.linearity.not_small().join(", ");
+    let not_small = if not_small.is_empty() { not_small } else { format!("; not small: {not_small}") };
+    format!("{touches}{speed}, with steps of {} Δt_c: {range}{missing}{not_small}.", short(facts.courant, 2))
 }
 
 fn place(facts: &Facts, shares: Shares) -> String {

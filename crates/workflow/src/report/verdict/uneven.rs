@@ -1,15 +1,13 @@
 //! Meshes and materials that are more uneven than those of the evidence: long elements, elements of very different
 //! sizes, and materials of very different impedance beside each other.
 
+use crate::report::poor::{LONG, aspect};
 use percute_core::dynamics::time_step_of_element;
 use percute_core::ids::ElementId;
 use percute_core::material::{Elastic, Law};
 use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
 
-/// Elements whose longest edge is more than so many times as long as the shortest one are long. The evidence has up to
-/// 2.9, a trapezoid; python/percute/verification/beyond.py has indices of 1.2 at 3.0, 1.4 at 4.1 and 7.0 at 12.5.
-pub(super) const LONG: f64 = 3.0;
 /// The part of the squared mean error in long elements from which on they matter: without it, the estimate would be
 /// smaller by 5 %.
 const SHARE: f64 = 0.1;
@@ -37,15 +35,9 @@ impl Uneven {
 
 /// The longest edge over the shortest one of a long element, if they matter.
 fn longest<const D: usize, const N: usize>(mesh: &Mesh<D, N>, by_element: &[f64]) -> f64 {
-    let ratio = |element: usize| {
-        let points = mesh.cell_points(ElementId::new(element));
-        let between = |a: usize, b: usize| (0..D).map(|c| (points[a][c] - points[b][c]).powi(2)).sum::<f64>().sqrt();
-        let edges = || (0..N).flat_map(|b| (0..b).map(move |a| (a, b))).map(|(a, b)| between(a, b));
-        edges().fold(0.0, f64::max) / edges().fold(f64::INFINITY, f64::min)
-    };
     let (mut most, mut of_long, mut total) = (1.0_f64, 0.0, 0.0);
     for (element, error) in by_element.iter().enumerate() {
-        let ratio = ratio(element);
+        let ratio = aspect(mesh, element);
         total += error * error;
         if ratio > LONG {
             (most, of_long) = (most.max(ratio), of_long + error * error);

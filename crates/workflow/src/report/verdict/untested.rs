@@ -3,7 +3,6 @@
 use super::facts::Facts;
 use super::rules::{LONG, PENALTY};
 use super::touches::Touches;
-use super::uneven;
 use crate::message::{percent, short};
 use crate::report::symptoms::{DEPTH, SLIP};
 
@@ -137,7 +136,7 @@ fn at_the_start(facts: &Facts) -> impl Iterator<Item = String> {
 fn of_uneven_meshes(facts: &Facts) -> impl Iterator<Item = String> {
     let (uneven, plane) = (facts.uneven, facts.dimension == 2);
     let more = |ratio: f64, most: f64| ratio > most * (1.0 + STATED);
-    let long = plane && !facts.flat && uneven.longest > uneven::LONG;
+    let long = plane && !facts.flat && uneven.longest > crate::report::poor::LONG;
     let named = [
         (long, "elements", uneven.longest, "times as long as their shortest edge"),
         (plane && more(uneven.impedances, IMPEDANCES), "impedances that differ by a factor of", uneven.impedances, ""),

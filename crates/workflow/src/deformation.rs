@@ -1,0 +1,198 @@
+//! How far bodies strain and turn, and how far stress goes: strains and rotations are small by assumption, and the law
+//! is linear.
+
+use percute_core::element_state::ElementState;
+use percute_core::history::{SinkError, State, StateSink};
+use percute_core::ids::ElementId;
+use percute_core::material::Elastic;
+use percute_core::mesh::Mesh;
+use percute_core::problem::{Levers, Problem};
+use serde::Serialize;
+
+/// Instants from one that is looked at to the next one. Stress behind a front stays for longer, and the work is a few
+/// hundredths of that of the estimate.
+const EVERY: usize = 8;
+
+/// The deformation of bodies and the stress in materials, at each eighth instant and the last one.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Deformation {
+    /// The bodies, in the order of their first nodes.
+    pub bodies: Vec<BodyDeformation>,
+    /// The materials, in their order.
+    pub materials: Vec<MaterialStress>,
+}
+
+/// How far a body strains and turns.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BodyDeformation {
+    /// Its name: that of the group of all its elements, or "body 0".
+    pub name: String,
+    /// Its largest mean rotation, counterclockwise (rad): Σm x×u / Σm|x|², x from the centre of mass; 0 of a bar.
+    pub rotation: f64,
+    /// The instant of this rotation (s).
+    pub time_of_rotation: f64,
+    /// The principal strain of an element, in the plane, that is largest without its sign.
+    pub strain: Extreme,
+}
+
+/// The stress in the elements of a material.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MaterialStress {
+    /// Its group of elements; none if it is that of all.
+    pub group: Option<String>,
+    /// Young's modulus (Pa).
+    pub young: f64,
+    /// The largest von Mises stress of an element (Pa).
+    pub von_mises: Extreme,
+    /// Where it was above the yield stress; none without one.
+    pub yielding: Option<Yielding>,
+}
+
+/// Where and when the von Mises stress was above the yield stress.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Yielding {
+    /// The yield stress (Pa).
+    pub yield_stress: f64,
+    /// The part of the volume of the material in which the stress was above it at some instant.
+    pub share: f64,
+    /// The first of these instants (s).
+    pub first: Option<f64>,
+}
+
+/// A largest value with its place.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Extreme {
+    /// The value.
+    pub value: f64,
+    /// The element.
+    pub element: usize,
+    /// The instant (s).
+    pub time: f64,
+}
+
+impl Extreme {
+    /// Takes in a value; the first of equal ones stays.
+    fn take(&mut self, value: f64, element: usize, time: f64) {
+        if value.abs() > self.value.abs() {
+            *self = Self { value, element, time };
+        }
+    }
+}
+
+impl Deformation {
+    /// The largest principal strain of all bodies.
+    #[must_use]
+    pub fn strain(&self) -> Extreme {
+        let all = self.bodies.iter().map(|body| body.strain);
+        all.fold(Extreme::default(), |most, next| if next.value.abs() > most.value.abs() { next } else { most })
+    }
+}
+
+/// Follows the deformation in the steps that it takes.
+#[derive(Clone, Debug)]
+pub(crate) struct DeformationRecorder<'p, const D: usize, const N: usize> {
+    problem: &'p Problem<D, N>,
+    last: usize,
+    levers: Levers<D>,
+    body_of_element: Vec<usize>,
+    /// Whether the stress in an element was above its yield stress.
+    yielded: Vec<bool>,
+    found: Deformation,
+}
+
+impl<'p, const D: usize, const N: usize> DeformationRecorder<'p, D, N> {
+    /// That of a run of so many steps.
+    pub(crate) fn new(problem: &'p Problem<D, N>, steps: usize) -> Self {
+        let mesh = problem.mesh();
+        let of_node = mesh.part_numbers();
+        let body = |name| BodyDeformation { name, rotation: 0.0, time_of_rotation: 0.0, strain: Extreme::default() };
+        let stated = &problem.statement().materials;
+        let material = |(at, law): (usize, &Elastic)| MaterialStress {
+            group: stated.get(at).and_then(|(group, _)| group.clone()),
+            young: law.young(),
+            von_mises: Extreme::default(),
+            yielding: law.yield_stress().map(|yield_stress| Yielding { yield_stress, share: 0.0, first: None }),
+        };
+        let found = Deformation {
+            bodies: mesh.part_names().into_iter().map(body).collect(),
+            materials: problem.materials().iter().enumerate().map(material).collect(),
+        };
+        let yields = problem.materials().iter().any(|law| law.yield_stress().is_some());
+        Self {
+            problem,
+            last: steps,
+            levers: Levers::new(problem),
+            body_of_element: mesh.cells().iter().map(|nodes| of_node[nodes[0].index()]).collect(),
+            yielded: vec![false; if yields { mesh.element_count() } else { 0 }],
+            found,
+        }
+    }
+
+    /// What was found, with elements as `number` calls them, those of `mesh`.
+    pub(crate) fn finish(mut self, mesh: &Mesh<D, N>, number: impl Fn(usize) -> usize) -> Deformation {
+        let materials = self.problem.element_material();
+        let mut volumes = vec![[0.0; 2]; self.found.materials.len()];
+        for (element, yielded) in self.yielded.iter().enumerate() {
+            let volume = self.problem.volume(ElementId::new(element));
+            let [all, above] = &mut volumes[usize::from(materials[element])];
+            (*all, *above) = (*all + volume, if *yielded { *above + volume } else { *above });
+        }
+        for (material, [all, above]) in self.found.materials.iter_mut().zip(volumes) {
+            material.von_mises.element = number(material.von_mises.element);
+            if let Some(yielding) = material.yielding.as_mut().filter(|_| all > 0.0) {
+                yielding.share = above / all;
+            }
+        }
+        self.found.bodies.iter_mut().for_each(|body| body.strain.element = number(body.strain.element));
+        self.found.bodies = self.bodies_of(mesh, number);
+        self.found
+    }
+
+    /// The bodies in the order of a mesh, with its names.
+    fn bodies_of(&self, mesh: &Mesh<D, N>, number: impl Fn(usize) -> usize) -> Vec<BodyDeformation> {
+        let (of_node, mut bodies) = (mesh.part_numbers(), self.found.bodies.clone());
+        for (own, found) in self.found.bodies.iter().enumerate() {
+            // Each body has an element: nodes without one are refused.
+            if let Some(element) = self.body_of_element.iter().position(|&body| body == own) {
+                bodies[of_node[mesh.cells()[number(element)][0].index()]].clone_from(found);
+            }
+        }
+        bodies.iter_mut().zip(mesh.part_names()).for_each(|(body, name)| body.name = name);
+        bodies
+    }
+
+    fn rotations(&mut self, displacement: &[[f64; D]], time: f64) {
+        for (body, rotation) in self.found.bodies.iter_mut().zip(self.levers.rotations(displacement)) {
+            if rotation.abs() > body.rotation.abs() {
+                (body.rotation, body.time_of_rotation) = (rotation, time);
+            }
+        }
+    }
+
+    fn elements(&mut self, displacement: &[[f64; D]], time: f64) {
+        let materials = self.problem.element_material();
+        for element in 0..self.body_of_element.len() {
+            let state = ElementState::new(self.problem, ElementId::new(element), displacement);
+            let body = &mut self.found.bodies[self.body_of_element[element]];
+            body.strain.take(state.principal_strain(), element, time);
+            let material = &mut self.found.materials[usize::from(materials[element])];
+            let von_mises = state.von_mises();
+            material.von_mises.take(von_mises, element, time);
+            if let Some(yielding) = material.yielding.as_mut().filter(|yielding| von_mises > yielding.yield_stress) {
+                yielding.first = yielding.first.or(Some(time));
+                self.yielded[element] = true;
+            }
+        }
+    }
+}
+
+impl<const D: usize, const N: usize> StateSink<D> for DeformationRecorder<'_, D, N> {
+    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+        let step = state.step();
+        if step.index.is_multiple_of(EVERY) || step.index == self.last {
+            self.rotations(step.displacement, step.time);
+            self.elements(step.displacement, step.time);
+        }
+        Ok(())
+    }
+}

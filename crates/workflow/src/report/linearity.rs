@@ -1,0 +1,157 @@
+//! What small strains, small rotations and the linear law suppose, and what a run does.
+//!
+//! python/percute/verification/finite.py compares with the motion of finite strains: see docs/verdict.md.
+
+use super::symptoms::{Symptom, symptom};
+use crate::deformation::{BodyDeformation, Deformation, Extreme, MaterialStress};
+use crate::message::{percent, short, trimmed};
+use percute_core::problem::SMALL_ROTATION;
+
+/// Principal strains above the first limit trust, above the second one trust is low: a linear strain neglects half of
+/// the square of the gradient, which is 1 and 5 % of these.
+const STRAIN: [f64; 2] = [0.02, 0.1];
+/// Rotations (rad) that do the same: their growth θ²/2 is 1.3e-3 and 2 %, the latter as much as a large strain.
+const ROTATION: [f64; 2] = [SMALL_ROTATION, 0.2];
+/// The growth θ²/2 of a body that turns is an error of its shape, and of its gaps, of this part of its largest strain.
+const OF_STRAIN: f64 = 0.1;
+/// Rotations below this (rad) do not count, whatever the strain: their growth is 5e-7, below what strain gauges resolve.
+const LEAST: f64 = 1e-3;
+/// A von Mises stress above this part of Young's modulus is beyond the law of a material without a stated yield stress.
+/// Metals yield below it: aluminium alloys at 0.1 to 0.8 % of their modulus, steels at 0.1 to 0.9, titanium at 0.9.
+const OF_YOUNG: f64 = 0.01;
+
+/// How far a run is from what the linear theory supposes.
+#[derive(Clone, Debug)]
+pub(super) struct Linearity {
+    /// The largest principal strain.
+    strain: Extreme,
+    /// The body that turns too far.
+    turned: Option<Turned>,
+    /// The stress that is beyond the linear law, in a sentence.
+    pub(super) stress: Option<String>,
+}
+
+/// A body that turns too far.
+#[derive(Clone, Debug)]
+struct Turned {
+    /// "the body", or its name.
+    subject: String,
+    /// The largest rotation (rad), and its instant (s).
+    angle: f64,
+    time: f64,
+    /// The largest strain.
+    strain: f64,
+}
+
+impl Linearity {
+    pub(super) fn new(deformation: &Deformation) -> Self {
+        let several = deformation.bodies.len() > 1;
+        let turned = |body: &BodyDeformation| {
+            let (angle, strain) = (body.rotation.abs(), body.strain.value.abs());
+            let subject = if several { format!("{:?}", body.name) } else { "the body".to_string() };
+            let too_far = angle > ROTATION[0] || (angle > LEAST && growth(angle) > OF_STRAIN * strain);
+            too_far.then_some(Turned { subject, angle, time: body.time_of_rotation, strain })
+        };
+        let turned = deformation.bodies.iter().filter_map(turned).max_by(|a, b| a.angle.total_cmp(&b.angle));
+        Self { strain: deformation.strain(), turned, stress: stress(&deformation.materials) }
+    }
+
+    /// What is not small, for the first sentence of a verdict: trust is limited.
+    pub(super) fn not_small(&self) -> Vec<String> {
+        let strain = self.is_strained(0).then(|| format!("strains of up to {}", percent(self.strain.value.abs())));
+        let turned = self.turned.as_ref().map(|turned| format!("a rotation of {} rad", short(turned.angle, 2)));
+        strain.into_iter().chain(turned).collect()
+    }
+
+    /// What is far from small: trust is low.
+    pub(super) fn doubts(&self) -> Vec<String> {
+        let strain = self
+            .is_strained(1)
+            .then(|| format!("strains of up to {} are not small, as the theory supposes", self.shown_strain()));
+        let turned = self.turned.as_ref().filter(|turned| turned.angle > ROTATION[1]).map(|Turned { subject, angle, .. }| {
+            format!("{subject} turns by {} rad, and small rotations are supposed", short(*angle, 2))
+        });
+        strain.into_iter().chain(turned).collect()
+    }
+
+    fn is_strained(&self, limit: usize) -> bool {
+        self.strain.value.abs() > STRAIN[limit]
+    }
+
+    fn shown_strain(&self) -> String {
+        percent(self.strain.value.abs())
+    }
+
+    /// The warning of large strains.
+    pub(super) fn strained(&self) -> Option<Symptom> {
+        let Extreme { value, element, time } = self.strain;
+        if !self.is_strained(0) {
+            return None;
+        }
+        let (sign, shown, time) = (if value < 0.0 { "−" } else { "" }, self.shown_strain(), trimmed(time, 4));
+        let figure = format!(
+            "element {element} has a principal strain of {sign}{shown} at {time} s, but strains are small by \
+             assumption, up to {}: the error measure does not contain what the linear theory neglects",
+            percent(STRAIN[0])
+        );
+        let remedy = "take a lower speed or load, a stiffer material, or a program for finite strains";
+        symptom("large_strain", format!("strains of up to {shown}: not small"), figure, remedy)
+    }
+
+    /// The warning of a body that turns.
+    pub(super) fn turned(&self) -> Option<Symptom> {
+        let Turned { subject, angle, time, strain } = self.turned.as_ref()?;
+        let (shown, time, grown) = (short(*angle, 2), trimmed(*time, 4), short(growth(*angle), 2));
+        let beside = match *strain > 0.0 {
+            true => format!("{} times its largest strain", short(growth(*angle) / strain, 2)),
+            false => "and it has no strain".to_string(),
+        };
+        let figure = format!(
+            "{subject} turns by {shown} rad by {time} s, but rotations are small by assumption: its nodes move along \
+             straight lines, which makes it larger by a part of {grown} ({beside}), and no part of the error measure \
+             contains this"
+        );
+        let brief = format!("{subject} turns by {shown} rad: too far for small rotations");
+        symptom("rotation", brief, figure, "take an earlier end, or a start closer to contact")
+    }
+}
+
+/// 1/cos θ − 1 ≈ θ²/2: by how much a body grows whose nodes leave their arcs along tangents.
+fn growth(angle: f64) -> f64 {
+    0.5 * angle * angle
+}
+
+/// The stress that is farthest beyond the linear law, in a sentence.
+fn stress(materials: &[MaterialStress]) -> Option<String> {
+    let yields = materials.iter().filter_map(|material| {
+        let yielding = material.yielding.filter(|yielding| yielding.share > 0.0)?;
+        Some((yielding.share, yielding, material))
+    });
+    let named = |material: &MaterialStress| {
+        material.group.as_ref().map_or_else(|| "the body".to_string(), |group| format!("group {group:?}"))
+    };
+    let largest = |of: &Extreme| {
+        format!("{} Pa in element {} at {} s", short(of.value, 3), of.element, trimmed(of.time, 4))
+    };
+    if let Some((share, yielding, material)) = yields.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        return Some(format!(
+            "The linear law is used beyond the yield stress of {} Pa in {} of {}, first at {} s; the von Mises stress \
+             is at most {}.",
+            short(yielding.yield_stress, 3),
+            percent(share),
+            named(material),
+            trimmed(yielding.first.unwrap_or_default(), 4),
+            largest(&material.von_mises)
+        ));
+    }
+    let ratio = |material: &MaterialStress| material.von_mises.value / material.young;
+    let unstated = materials.iter().filter(|material| material.yielding.is_none() && ratio(material) > OF_YOUNG);
+    let worst = unstated.max_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
+    Some(format!(
+        "The linear law is used far outside, unless the material is a rubber: a von Mises stress of {}, {} of Young's \
+         modulus; metals yield below {}.",
+        largest(&worst.von_mises),
+        percent(ratio(worst)),
+        percent(OF_YOUNG)
+    ))
+}

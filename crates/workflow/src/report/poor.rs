@@ -1,0 +1,72 @@
+//! The elements of bad shape that have most of an error: those to mend.
+
+use super::flat;
+use percute_core::ids::ElementId;
+use percute_core::mesh::Mesh;
+use serde::Serialize;
+
+/// Elements whose longest edge is more than so many times as long as the shortest one are long. The evidence has up to
+/// 2.9, a trapezoid; python/percute/verification/beyond.py has indices of 1.2 at 3.0, 1.4 at 4.1 and 7.0 at 12.5.
+pub(super) const LONG: f64 = 3.0;
+/// So many are named.
+const NAMED: usize = 3;
+
+/// An element that is nearly flat, or long.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PoorElement {
+    /// Its number.
+    pub element: usize,
+    /// Its centroid (m).
+    pub centroid: Vec<f64>,
+    /// Its longest edge over its shortest one.
+    pub aspect: f64,
+    /// Its smallest angle (degrees).
+    pub smallest_angle: f64,
+    /// Its largest angle (degrees).
+    pub largest_angle: f64,
+    /// Its part of the squared mean error.
+    pub share: f64,
+}
+
+/// Those with the largest parts of the squared mean error, largest first; `by_element` has the contribution of each.
+pub(super) fn poor_elements<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    by_element: &[f64],
+) -> Vec<PoorElement> {
+    let total: f64 = by_element.iter().map(|error| error * error).sum();
+    if N != 3 || total <= 0.0 {
+        return Vec::new();
+    }
+    let poor = |element: usize| {
+        let (aspect, angles) = (aspect(mesh, element), angles(mesh, element));
+        let smallest_angle = angles.iter().copied().fold(f64::INFINITY, f64::min);
+        let largest_angle = angles.iter().copied().fold(0.0, f64::max);
+        let corners = mesh.cell_points(ElementId::new(element));
+        let centroid = (0..D).map(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64).collect();
+        let share = by_element[element] * by_element[element] / total;
+        let is_poor = aspect > LONG || largest_angle > flat::ANGLE;
+        is_poor.then_some(PoorElement { element, centroid, aspect, smallest_angle, largest_angle, share })
+    };
+    let mut all: Vec<PoorElement> = (0..by_element.len()).filter_map(poor).collect();
+    all.sort_by(|a, b| b.share.total_cmp(&a.share));
+    all.truncate(NAMED);
+    all
+}
+
+/// The longest edge of an element over its shortest one.
+pub(super) fn aspect<const D: usize, const N: usize>(mesh: &Mesh<D, N>, element: usize) -> f64 {
+    let points = mesh.cell_points(ElementId::new(element));
+    let between = |a: usize, b: usize| (0..D).map(|c| (points[a][c] - points[b][c]).powi(2)).sum::<f64>().sqrt();
+    let edges = || (0..N).flat_map(|b| (0..b).map(move |a| (a, b))).map(|(a, b)| between(a, b));
+    edges().fold(0.0, f64::max) / edges().fold(f64::INFINITY, f64::min)
+}
+
+/// The angles of a triangle (degrees).
+pub(super) fn angles<const D: usize, const N: usize>(mesh: &Mesh<D, N>, element: usize) -> [f64; 3] {
+    let points = mesh.cell_points(ElementId::new(element));
+    std::array::from_fn(|k| {
+        let side = |to: usize| -> [f64; D] { std::array::from_fn(|c| points[(k + to) % N][c] - points[k % N][c]) };
+        let (a, b) = (side(1), side(2));
+        (a[0] * b[1 % D] - a[1 % D] * b[0]).abs().atan2((0..D).map(|c| a[c] * b[c]).sum()).to_degrees()
+    })
+}
