@@ -20,6 +20,7 @@ from percute._percute import Progress, __version__
 from percute.balance import Balance
 from percute.bodies import Body, Interface
 from percute.contact import Contact, ContactStatus, Resultants
+from percute.deformation import BodyDeformation, Deformation, Extreme, MaterialStress, Nearest, PoorElement, Yielding
 from percute.errors import (
     EstimateError,
     ExistingFileError,
@@ -53,16 +54,19 @@ from percute.verifying import Verification, verify
 __all__ = [
     "Balance",
     "Body",
+    "BodyDeformation",
     "BodyForce",
     "BodyMotion",
     "Contact",
     "ContactStatus",
+    "Deformation",
     "Effectivity",
     "Elastic",
     "ElementMap",
     "Estimate",
     "EstimateError",
     "ExistingFileError",
+    "Extreme",
     "FileFormatError",
     "History",
     "Impacts",
@@ -70,13 +74,16 @@ __all__ = [
     "InputWarning",
     "Interface",
     "InterfaceRebound",
+    "MaterialStress",
     "Mesh",
     "MeshWarning",
     "MissingFileError",
+    "Nearest",
     "OverTime",
     "Parts",
     "PercuteError",
     "Plane",
+    "PoorElement",
     "Problem",
     "Progress",
     "Rebound",
@@ -94,6 +101,7 @@ __all__ = [
     "TrueError",
     "Verification",
     "WorstElement",
+    "Yielding",
     "__version__",
     "estimate",
     "exact",

@@ -16,6 +16,7 @@ from percute import _percute
 from percute.checks import flag, instance, vtkhdf, whole, words
 from percute.checks import path as file_name
 from percute.contact import Contact
+from percute.deformation import Deformation, Nearest, PoorElement
 from percute.errors import InputError
 from percute.estimate_views import EstimateViews
 from percute.history import History
@@ -42,7 +43,7 @@ class Estimate(EstimateViews):
     """The constitutive relation error of a history.
 
     Made by `estimate`, `run` or `percute.open`. Errors are in J^½ and include the thickness of a plane body. ``verdict``
-    says in three sentences how far they can be trusted.
+    says how far they can be trusted.
     """
 
     _data: _percute.EstimateData | StoredEstimate
@@ -116,9 +117,9 @@ class Estimate(EstimateViews):
 
     @property
     def verdict(self) -> str | None:
-        """Situation and effectivity index in tests of such cases, place of the error, and a recommendation, in at most three sentences.
+        """Situation and effectivity index in tests of such cases, place of the error, and a recommendation.
 
-        None if the estimate comes from a file of an earlier version.
+        It begins with whether nothing touched, and ends with elements to mend and with stress beyond the linear law, if there are any. None if the estimate comes from a file of an earlier version.
         """
         verdict = self._verdict.get("verdict")
         return None if verdict is None else " ".join(verdict["text"])
@@ -143,6 +144,22 @@ class Estimate(EstimateViews):
     def impacts(self) -> Impacts | None:
         """Velocities of several bodies before and after contact, and restitution at each interface; None of a single body."""
         return Impacts._of(self._verdict.get("impacts"))
+
+    @cached_property
+    def deformation(self) -> Deformation | None:
+        """The largest strains, rotations and stresses; None if the estimate comes from a file of an earlier version."""
+        return Deformation._of(self._verdict.get("deformation"))
+
+    @cached_property
+    def mend(self) -> tuple[PoorElement, ...]:
+        """The elements to mend, with the largest parts of the error first; empty where bad shapes do not matter."""
+        return PoorElement._all((self._verdict.get("verdict") or {}).get("mend", ()))
+
+    @cached_property
+    def nearest(self) -> Nearest | None:
+        """The gap that is left if nothing touched, although there is a plane or another body; else None."""
+        found = (self._verdict.get("contact") or {}).get("nearest")
+        return None if found is None else Nearest(**found)
 
     @cached_property
     def sliding(self) -> tuple[SlidingEstimate, ...]:

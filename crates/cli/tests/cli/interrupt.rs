@@ -57,7 +57,7 @@ fn ctrl_c_prints_the_summary_of_the_steps_done() {
     let summary = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(130), "{summary}");
     assert!(summary.contains("INTERRUPTED at step "), "{summary}");
-    assert!(summary.lines().count() <= 28 && summary.lines().all(|line| line.chars().count() <= 80), "{summary}");
+    assert!(summary.lines().count() <= 32 && summary.lines().all(|line| line.chars().count() <= 80), "{summary}");
 }
 
 #[test]

@@ -11,7 +11,7 @@ use percute_core::problem::SMALL_ROTATION;
 /// the square of the gradient, which is 1 and 5 % of these.
 const STRAIN: [f64; 2] = [0.02, 0.1];
 /// Rotations (rad) that do the same: their growth θ²/2 is 1.3e-3 and 2 %, the latter as much as a large strain.
-const ROTATION: [f64; 2] = [SMALL_ROTATION, 0.2];
+const ROTATION: [f64; 2] = [SMALL_ROTATION, 0.1];
 /// The growth θ²/2 of a body that turns is an error of its shape, and of its gaps, of this part of its largest strain.
 const OF_STRAIN: f64 = 0.1;
 /// Rotations below this (rad) do not count, whatever the strain: their growth is 5e-7, below what strain gauges resolve.
@@ -29,6 +29,17 @@ pub(super) struct Linearity {
     turned: Option<Turned>,
     /// The stress that is beyond the linear law, in a sentence.
     pub(super) stress: Option<String>,
+}
+
+/// A strain or a rotation that is not small: it limits trust.
+#[derive(Clone, Debug)]
+pub(super) struct Departure {
+    /// Its name and value.
+    pub(super) named: String,
+    /// Whether it is so far from small that trust is low.
+    pub(super) is_far: bool,
+    /// The reason for low trust.
+    pub(super) doubt: String,
 }
 
 /// A body that turns too far.
@@ -56,20 +67,17 @@ impl Linearity {
         Self { strain: deformation.strain(), turned, stress: stress(&deformation.materials) }
     }
 
-    /// What is not small, for the first sentence of a verdict: trust is limited.
-    pub(super) fn not_small(&self) -> Vec<String> {
-        let strain = self.is_strained(0).then(|| format!("strains of up to {}", percent(self.strain.value.abs())));
-        let turned = self.turned.as_ref().map(|turned| format!("a rotation of {} rad", short(turned.angle, 2)));
-        strain.into_iter().chain(turned).collect()
-    }
-
-    /// What is far from small: trust is low.
-    pub(super) fn doubts(&self) -> Vec<String> {
-        let strain = self
-            .is_strained(1)
-            .then(|| format!("strains of up to {} are not small, as the theory supposes", self.shown_strain()));
-        let turned = self.turned.as_ref().filter(|turned| turned.angle > ROTATION[1]).map(|Turned { subject, angle, .. }| {
-            format!("{subject} turns by {} rad, and small rotations are supposed", short(*angle, 2))
+    /// The strains and the rotation that are not small.
+    pub(super) fn departures(&self) -> Vec<Departure> {
+        let strain = self.is_strained(0).then(|| Departure {
+            named: format!("strains of up to {}", self.shown_strain()),
+            is_far: self.is_strained(1),
+            doubt: format!("strains of up to {} are not small, as the theory supposes", self.shown_strain()),
+        });
+        let turned = self.turned.as_ref().map(|Turned { subject, angle, .. }| Departure {
+            named: format!("a rotation of {} rad", short(*angle, 2)),
+            is_far: *angle > ROTATION[1],
+            doubt: format!("{subject} turns by {} rad, and small rotations are supposed", short(*angle, 2)),
         });
         strain.into_iter().chain(turned).collect()
     }
@@ -135,8 +143,8 @@ fn stress(materials: &[MaterialStress]) -> Option<String> {
     };
     if let Some((share, yielding, material)) = yields.max_by(|a, b| a.0.total_cmp(&b.0)) {
         return Some(format!(
-            "The linear law is used beyond the yield stress of {} Pa in {} of {}, first at {} s; the von Mises stress \
-             is at most {}.",
+            "The law is linear, but the von Mises stress is above the yield stress of {} Pa in {} of {}, first at {} s; \
+             it is at most {}.",
             short(yielding.yield_stress, 3),
             percent(share),
             named(material),
@@ -148,10 +156,8 @@ fn stress(materials: &[MaterialStress]) -> Option<String> {
     let unstated = materials.iter().filter(|material| material.yielding.is_none() && ratio(material) > OF_YOUNG);
     let worst = unstated.max_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
     Some(format!(
-        "The linear law is used far outside, unless the material is a rubber: a von Mises stress of {}, {} of Young's \
-         modulus; metals yield below {}.",
+        "The law is linear, but a von Mises stress of {} is {} of Young's modulus, and metals yield below 1 %.",
         largest(&worst.von_mises),
-        percent(ratio(worst)),
-        percent(OF_YOUNG)
+        percent(ratio(worst))
     ))
 }

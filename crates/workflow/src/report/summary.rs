@@ -1,4 +1,4 @@
-//! The summary of a run: at most 28 lines of 80 columns.
+//! The summary of a run: at most 32 lines of 80 columns.
 
 use super::{ADMISSIBLE, InterfaceRebound, NearestNode, ProblemSummary, Rebound, Report, SOURCES, meaning};
 use crate::foreign::Consistency;

@@ -96,7 +96,8 @@ impl Verdict {
     pub(super) fn new(facts: &Facts, parts: &Parts) -> Self {
         let rule = RULES.iter().find(|rule| (rule.applies)(facts)).unwrap_or(&RULES[RULES.len() - 1]);
         let (untested, shares) = (untested::untested(facts), shares(parts));
-        let (doubts, not_small) = (text::doubts(facts, rule), facts.linearity.not_small());
+        let (doubts, not_small) = (text::doubts(facts, rule), facts.linearity.departures());
+        let not_small: Vec<String> = not_small.into_iter().map(|departure| departure.named).collect();
         let trust = match () {
             () if !doubts.is_empty() => Trust::Low,
             () if !untested.is_empty() || !not_small.is_empty() || !within(rule) => Trust::Limited,

@@ -62,7 +62,8 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
         );
     }
     doubts.extend(rule.doubt.map(str::to_string));
-    doubts.extend(facts.linearity.doubts());
+    let far = facts.linearity.departures().into_iter().filter(|departure| departure.is_far);
+    doubts.extend(far.map(|departure| departure.doubt));
     doubts
 }
 
@@ -130,7 +131,8 @@ fn situation(facts: &Facts, rule: &Rule, untested: &[String]) -> String {
     };
     let untested: Vec<&str> = untested.iter().map(String::as_str).filter(|one| Some(*one) != outside).collect();
     let missing = if untested.is_empty() { String::new() } else { format!("; not tested: {}", untested.join(", ")) };
-    let not_small = facts.linearity.not_small().join(", ");
+    let near = facts.linearity.departures().into_iter().filter(|departure| !departure.is_far);
+    let not_small = near.map(|departure| departure.named).collect::<Vec<_>>().join(", ");
     let not_small = if not_small.is_empty() { not_small } else { format!("; not small: {not_small}") };
     format!("{touches}{speed}, with steps of {} Δt_c: {range}{missing}{not_small}.", short(facts.courant, 2))
 }

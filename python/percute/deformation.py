@@ -1,0 +1,124 @@
+"""Strains, rotations and stresses beside an estimate, and elements to mend."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+__all__ = ["BodyDeformation", "Deformation", "Extreme", "MaterialStress", "Nearest", "PoorElement", "Yielding"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Extreme:
+    """A largest value with its place."""
+
+    value: float
+    """The value."""
+    element: int
+    """The element."""
+    time: float
+    """The instant (s)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyDeformation:
+    """How far a body strains and turns."""
+
+    name: str
+    """Its name."""
+    rotation: float
+    """Its largest mean rotation, counterclockwise (rad); 0 of a bar."""
+    time_of_rotation: float
+    """The instant of this rotation (s)."""
+    strain: Extreme
+    """The principal strain of an element, in the plane, that is largest without its sign."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Yielding:
+    """Where and when the von Mises stress was above the yield stress."""
+
+    yield_stress: float
+    """The yield stress (Pa)."""
+    share: float
+    """The part of the volume of the material in which the stress was above it at some instant."""
+    first: float | None
+    """The first of these instants (s)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MaterialStress:
+    """The stress in the elements of a material."""
+
+    group: str | None
+    """Its group of elements; None if it is that of all."""
+    young: float
+    """Young's modulus (Pa)."""
+    von_mises: Extreme
+    """The largest von Mises stress of an element (Pa)."""
+    yielding: Yielding | None
+    """Where it was above the yield stress; None without one."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Deformation:
+    """What the theory of small strains and the linear law suppose to be small, at each eighth instant and the last one."""
+
+    bodies: tuple[BodyDeformation, ...]
+    """The bodies, in the order of their first nodes."""
+    materials: tuple[MaterialStress, ...]
+    """The materials, in their order."""
+
+    @property
+    def strain(self) -> Extreme:
+        """The largest principal strain of all bodies."""
+        return max((body.strain for body in self.bodies), key=lambda strain: abs(strain.value))
+
+    @classmethod
+    def _of(cls, found: Mapping[str, Any] | None) -> Deformation | None:
+        """Make it from its JSON object."""
+        if found is None:
+            return None
+        bodies = [BodyDeformation(**{**body, "strain": Extreme(**body["strain"])}) for body in found["bodies"]]
+        return cls(bodies=tuple(bodies), materials=tuple(_material(each) for each in found["materials"]))
+
+
+def _material(found: Mapping[str, Any]) -> MaterialStress:
+    yielding = None if found["yielding"] is None else Yielding(**found["yielding"])
+    return MaterialStress(**{**found, "von_mises": Extreme(**found["von_mises"]), "yielding": yielding})
+
+
+@dataclass(frozen=True, kw_only=True)
+class PoorElement:
+    """A nearly flat or long element that has much of the error."""
+
+    element: int
+    """Its number."""
+    centroid: tuple[float, ...]
+    """Its centroid (m)."""
+    aspect: float
+    """Its longest edge over its shortest one."""
+    smallest_angle: float
+    """Its smallest angle (degrees)."""
+    largest_angle: float
+    """Its largest angle (degrees)."""
+    share: float
+    """Its part of the squared mean error."""
+
+    @classmethod
+    def _all(cls, found: Sequence[Mapping[str, Any]]) -> tuple[PoorElement, ...]:
+        """Make them from their JSON objects."""
+        return tuple(cls(**{**each, "centroid": tuple(each["centroid"])}) for each in found)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Nearest:
+    """The gap that is left where nothing touched."""
+
+    node: int
+    """The node of the contact surface that is nearest to its obstacle at the last instant."""
+    gap: float
+    """Its gap (m)."""
+    touch: float | None
+    """The first instant at which a gap would close at the speed of the last step (s); None if no node approaches."""
