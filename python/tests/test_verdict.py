@@ -17,7 +17,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::percute.InputWarning")
 ALUMINIUM = {"young": 70e9, "poisson": 0.3, "density": 2700.0}
 
 
-def struck(mesh: pc.Mesh, *, tilt: float = 0.0, speed: float = 400.0, **changes: Any) -> pc.Estimate:
+def struck(mesh: pc.Mesh, *, tilt: float = 0.0, speed: float = 5.0, **changes: Any) -> pc.Estimate:
     """Estimate the impact of a body on a plane that is turned under it by some degrees."""
     angle = math.radians(tilt)
     normal = np.array([math.sin(angle), math.cos(angle)])
@@ -56,7 +56,7 @@ def test_how_a_body_touches(body: str, tilt: float, touches: str) -> None:
     found = facts(estimate)
     assert found["touches"] == touches and found["phases"] == 1 and found["untested"] == []
     assert estimate.trust == "high" and estimate.verdict is not None and estimate.verdict.count(". ") == 2
-    assert found["speed_ratio"] == pytest.approx(400.0 / math.sqrt(70e9 / (2700.0 * (1 - 0.09))), rel=1e-6)
+    assert found["speed_ratio"] == pytest.approx(5.0 / math.sqrt(70e9 / (2700.0 * (1 - 0.09))), rel=1e-6)
     assert sum(found["shares"].values()) == pytest.approx(1.0)
 
 
@@ -72,7 +72,7 @@ def test_the_second_sentence_has_the_share_of_the_elements_that_touch() -> None:
 
 def test_a_disc_that_stands_on_one_of_its_edges_is_a_curve() -> None:
     """The lowest edge of the polygon is parallel to the plane; the next ones turn by 15° and follow."""
-    assert facts(struck(BODIES["disc"]().refine(), tilt=7.5))["touches"] == "curve"
+    assert facts(struck(BODIES["disc"]().refine(), tilt=7.5, speed=400.0))["touches"] == "curve"
 
 
 def test_a_corner_of_one_element_and_a_thin_body() -> None:
@@ -91,7 +91,8 @@ def test_properties_without_evidence_are_named() -> None:
         ({"speed": 1e-2}, "of the wave speed"),
     ):
         estimate = struck(mesh, **changes)  # type: ignore[arg-type]
-        assert estimate.trust == "limited" and len(facts(estimate)["untested"]) == 1
+        # Strains at 800 m/s are far from small.
+        assert estimate.trust == ("low" if changes.get("speed") == 800.0 else "limited") and len(facts(estimate)["untested"]) == 1
         assert named in facts(estimate)["untested"][0] and "not tested" in str(estimate.verdict)
 
 
