@@ -2,14 +2,13 @@
 //!
 //! python/percute/verification/finite.py compares with the motion of finite strains: see docs/verdict.md.
 
-use super::symptoms::{Symptom, symptom};
 use crate::deformation::{BodyDeformation, Deformation, Extreme, MaterialStress};
 use crate::message::{percent, short, trimmed};
 use percute_core::problem::SMALL_ROTATION;
 
 /// Principal strains above the first limit trust, above the second one trust is low: a linear strain neglects half of
 /// the square of the gradient, which is 1 and 5 % of these.
-const STRAIN: [f64; 2] = [0.02, 0.1];
+pub(super) const STRAIN: [f64; 2] = [0.02, 0.1];
 /// Rotations (rad) that do the same: their growth θ²/2 is 1.3e-3 and 2 %, the latter as much as a large strain.
 const ROTATION: [f64; 2] = [SMALL_ROTATION, 0.1];
 /// The growth θ²/2 of a body that turns is an error of its shape, and of its gaps, of this part of its largest strain.
@@ -24,9 +23,9 @@ const OF_YOUNG: f64 = 0.01;
 #[derive(Clone, Debug)]
 pub(super) struct Linearity {
     /// The largest principal strain.
-    strain: Extreme,
+    pub(super) strain: Extreme,
     /// The body that turns too far.
-    turned: Option<Turned>,
+    pub(super) turned: Option<Turned>,
     /// The stress that is beyond the linear law, in a sentence.
     pub(super) stress: Option<String>,
 }
@@ -44,14 +43,15 @@ pub(super) struct Departure {
 
 /// A body that turns too far.
 #[derive(Clone, Debug)]
-struct Turned {
+pub(super) struct Turned {
     /// "the body", or its name.
-    subject: String,
-    /// The largest rotation (rad), and its instant (s).
-    angle: f64,
-    time: f64,
+    pub(super) subject: String,
+    /// The largest rotation (rad).
+    pub(super) angle: f64,
+    /// Its instant (s).
+    pub(super) time: f64,
     /// The largest strain.
-    strain: f64,
+    pub(super) strain: f64,
 }
 
 impl Linearity {
@@ -82,50 +82,18 @@ impl Linearity {
         strain.into_iter().chain(turned).collect()
     }
 
-    fn is_strained(&self, limit: usize) -> bool {
+    /// Whether the largest strain is above a limit: that of limited trust, 0, or that of low trust, 1.
+    pub(super) fn is_strained(&self, limit: usize) -> bool {
         self.strain.value.abs() > STRAIN[limit]
     }
 
     fn shown_strain(&self) -> String {
         percent(self.strain.value.abs())
     }
-
-    /// The warning of large strains.
-    pub(super) fn strained(&self) -> Option<Symptom> {
-        let Extreme { value, element, time } = self.strain;
-        if !self.is_strained(0) {
-            return None;
-        }
-        let (sign, shown, time) = (if value < 0.0 { "−" } else { "" }, self.shown_strain(), trimmed(time, 4));
-        let figure = format!(
-            "element {element} has a principal strain of {sign}{shown} at {time} s, but strains are small by \
-             assumption, up to {}: the error measure does not contain what the linear theory neglects",
-            percent(STRAIN[0])
-        );
-        let remedy = "take a lower speed or load, a stiffer material, or a program for finite strains";
-        symptom("large_strain", format!("strains of up to {shown}: not small"), figure, remedy)
-    }
-
-    /// The warning of a body that turns.
-    pub(super) fn turned(&self) -> Option<Symptom> {
-        let Turned { subject, angle, time, strain } = self.turned.as_ref()?;
-        let (shown, time, grown) = (short(*angle, 2), trimmed(*time, 4), short(growth(*angle), 2));
-        let beside = match *strain > 0.0 {
-            true => format!("{} times its largest strain", short(growth(*angle) / strain, 2)),
-            false => "and it has no strain".to_string(),
-        };
-        let figure = format!(
-            "{subject} turns by {shown} rad by {time} s, but rotations are small by assumption: its nodes move along \
-             straight lines, which makes it larger by a part of {grown} ({beside}), and no part of the error measure \
-             contains this"
-        );
-        let brief = format!("{subject} turns by {shown} rad: too far for small rotations");
-        symptom("rotation", brief, figure, "take an earlier end, or a start closer to contact")
-    }
 }
 
 /// 1/cos θ − 1 ≈ θ²/2: by how much a body grows whose nodes leave their arcs along tangents.
-fn growth(angle: f64) -> f64 {
+pub(super) fn growth(angle: f64) -> f64 {
     0.5 * angle * angle
 }
 
@@ -138,9 +106,8 @@ fn stress(materials: &[MaterialStress]) -> Option<String> {
     let named = |material: &MaterialStress| {
         material.group.as_ref().map_or_else(|| "the body".to_string(), |group| format!("group {group:?}"))
     };
-    let largest = |of: &Extreme| {
-        format!("{} Pa in element {} at {} s", short(of.value, 3), of.element, trimmed(of.time, 4))
-    };
+    let largest =
+        |of: &Extreme| format!("{} Pa in element {} at {} s", short(of.value, 3), of.element, trimmed(of.time, 4));
     if let Some((share, yielding, material)) = yields.max_by(|a, b| a.0.total_cmp(&b.0)) {
         return Some(format!(
             "The law is linear, but the von Mises stress is above the yield stress of {} Pa in {} of {}, first at {} s; \

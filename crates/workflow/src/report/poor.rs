@@ -29,10 +29,7 @@ pub struct PoorElement {
 }
 
 /// Those with the largest parts of the squared mean error, largest first; `by_element` has the contribution of each.
-pub(super) fn poor_elements<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
-    by_element: &[f64],
-) -> Vec<PoorElement> {
+pub(super) fn poor_elements<const D: usize, const N: usize>(mesh: &Mesh<D, N>, by_element: &[f64]) -> Vec<PoorElement> {
     let total: f64 = by_element.iter().map(|error| error * error).sum();
     if N != 3 || total <= 0.0 {
         return Vec::new();

@@ -1,7 +1,9 @@
 //! Figures of a motion that are outside of their range: doubts about the result.
 
 use super::flat::FlatElements;
+use super::linearity::{Linearity, STRAIN, Turned, growth};
 use super::warnings::{Facts, Warning};
+use crate::deformation::Extreme;
 use crate::message::{percent, short, trimmed};
 use percute_estimator::Reconstruction;
 
@@ -50,7 +52,7 @@ impl Symptom {
     }
 }
 
-pub(super) fn symptom(
+fn symptom(
     name: &'static str,
     brief: impl Into<String>,
     figure: impl Into<String>,
@@ -72,8 +74,8 @@ pub(super) fn symptoms(facts: &Facts<'_>) -> impl Iterator<Item = Symptom> {
         slipped(facts.slip),
         entered(facts.depth),
         leant(facts.common_slope),
-        facts.linearity.strained(),
-        facts.linearity.turned(),
+        strained(facts.linearity),
+        turned(facts.linearity),
     ];
     all.into_iter().flatten()
 }
@@ -248,6 +250,39 @@ fn leant(slope: f64) -> Option<Symptom> {
     let remedy = "name groups of edges that face each other around the place where they touch, or of slopes of a \
                   ridge, each in a contact of its own without the edges at the ridge";
     symptom("common_slope", format!("surfaces lean together by {angle}° from their normal"), figure, remedy)
+}
+
+/// Strains that are not small.
+fn strained(linearity: &Linearity) -> Option<Symptom> {
+    let Extreme { value, element, time } = linearity.strain;
+    if !linearity.is_strained(0) {
+        return None;
+    }
+    let (sign, shown, time) = (if value < 0.0 { "−" } else { "" }, percent(value.abs()), trimmed(time, 4));
+    let figure = format!(
+        "element {element} has a principal strain of {sign}{shown} at {time} s, but strains are small by assumption, \
+         up to {}: the error measure does not contain what the linear theory neglects",
+        percent(STRAIN[0])
+    );
+    let remedy = "take a lower speed or load, a stiffer material, or a program for finite strains";
+    symptom("large_strain", format!("strains of up to {shown}: not small"), figure, remedy)
+}
+
+/// A body that turns farther than small rotations.
+fn turned(linearity: &Linearity) -> Option<Symptom> {
+    let Turned { subject, angle, time, strain } = linearity.turned.as_ref()?;
+    let (shown, time, grown) = (short(*angle, 2), trimmed(*time, 4), short(growth(*angle), 2));
+    let beside = match *strain > 0.0 {
+        true => format!("{} times its largest strain", short(growth(*angle) / strain, 2)),
+        false => "and it has no strain".to_string(),
+    };
+    let figure = format!(
+        "{subject} turns by {shown} rad by {time} s, but rotations are small by assumption: its nodes move along \
+         straight lines, which makes it larger by a part of {grown} ({beside}), and no part of the error measure \
+         contains this"
+    );
+    let brief = format!("{subject} turns by {shown} rad: too far for small rotations");
+    symptom("rotation", brief, figure, "take an earlier end, or a start closer to contact")
 }
 
 #[cfg(test)]

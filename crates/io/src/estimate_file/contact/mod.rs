@@ -47,7 +47,8 @@ pub(super) fn write<const D: usize>(
     write("time", "s", &[instants], &results.instants)?;
     let at_end = f64::from(u8::from(results.at_end));
     let (slip, depth, lean) = (("slip", "", results.slip), ("depth", "", results.depth), ("lean", "rad", results.lean));
-    for (name, of, value) in [slip, depth, lean, ("at_end", "", at_end)].into_iter().filter(|(.., value)| *value > 0.0) {
+    for (name, of, value) in [slip, depth, lean, ("at_end", "", at_end)].into_iter().filter(|(.., value)| *value > 0.0)
+    {
         write(name, of, &[1], &[value])?;
     }
     write("force", "N", &[instants, nodes, D], steps.force.as_flattened())?;

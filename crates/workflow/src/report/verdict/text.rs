@@ -89,7 +89,7 @@ fn nothing_touched(facts: &Facts) -> Option<String> {
     let (Nearest { gap, touch, .. }, end) = facts.nearest?;
     let (gap, end) = (short(gap, 3), trimmed(end, 4));
     let when = match touch {
-        Some(touch) => format!("it would close at {} s at its present speed", trimmed(touch, 4)),
+        Some(touch) => format!("a gap would first close at {} s at the present speed", trimmed(touch, 4)),
         None => "no node approaches".to_string(),
     };
     Some(format!("Nothing touched: at the end, at {end} s, the least gap is {gap} m, and {when}."))
