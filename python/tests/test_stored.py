@@ -149,7 +149,7 @@ def test_a_report_of_another_version(reconstruction: str, good: Path, tmp_path: 
     def report(text: bytes) -> np.bytes_:
         document = json.loads(text)
         document["options"]["reconstruction"] = reconstruction
-        del document["meaning"], document["verdict"], document["rebound"]
+        del document["meaning"], document["verdict"], document["rebound"], document["warnings"]
         return np.bytes_(json.dumps(document).encode())
 
     estimate = pc.open(changed(good, tmp_path, replaced(REPORT, report)))

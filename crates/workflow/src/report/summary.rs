@@ -59,8 +59,8 @@ fn lines(report: &Report) -> Vec<(&'static str, String)> {
 /// That nothing touched, and the gap that is left.
 fn nothing_touched(report: &Report) -> Option<String> {
     let NearestNode { gap, touch, .. } = report.contact.as_ref()?.nearest?;
-    let when =
-        touch.map_or("no node approaches".to_string(), |time| format!("a gap would first close at {} s", trimmed(time, 4)));
+    let when = touch
+        .map_or("no node approaches".to_string(), |time| format!("a gap would first close at {} s", trimmed(time, 4)));
     Some(format!("NOTHING TOUCHED: the least gap left is {} m; {when}", short(gap, 3)))
 }
 

@@ -272,9 +272,10 @@ fn strained(linearity: &Linearity) -> Option<Symptom> {
 fn turned(linearity: &Linearity) -> Option<Symptom> {
     let Turned { subject, angle, time, strain } = linearity.turned.as_ref()?;
     let (shown, time, grown) = (short(*angle, 2), trimmed(*time, 4), short(growth(*angle), 2));
-    let beside = match *strain > 0.0 {
+    // More is the strain of rounding.
+    let beside = match growth(*angle) < 1e3 * strain {
         true => format!("{} times its largest strain", short(growth(*angle) / strain, 2)),
-        false => "and it has no strain".to_string(),
+        false => "and it is hardly strained".to_string(),
     };
     let figure = format!(
         "{subject} turns by {shown} rad by {time} s, but rotations are small by assumption: its nodes move along \
