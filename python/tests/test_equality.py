@@ -100,7 +100,8 @@ def test_the_estimate_says_what_its_document_says(block_history: pc.History) -> 
     assert document["case"] == ""
     assert estimate.meaning == document["meaning"]
     assert estimate.verdict == " ".join(document["verdict"]["text"]) and estimate.trust == document["verdict"]["trust"]
-    figures, verdict, meaning = str(estimate).split("\n")
+    figures, *told, verdict, meaning = str(estimate).split("\n")
+    assert told == [f"warning: {each}" for each in estimate.warnings]
     assert f"<{figures}>" == repr(estimate) and meaning == estimate.meaning
     assert verdict == f"trust {estimate.trust}: {estimate.verdict}"
     assert estimate.rebound is not None and estimate.rebound.velocity_before.tolist() == document["rebound"]["velocity_before"]
