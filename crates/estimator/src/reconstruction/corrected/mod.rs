@@ -168,7 +168,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         if let Some(concentration) = &self.concentration {
             self.sliding.add_faced(concentration, couplings, &mut faced);
         }
-        Around { gap, couplings, faced }
+        Around { gap, couplings, faced, own: Vec::new() }
     }
 
     /// The densities of an instant: of the forces of F_DA, and of the reactions of which the normal work is measured.
@@ -201,7 +201,10 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             let facing = nodes[at].opposite.filter(|_| !surface.leads(at));
             shapes.push(concentration.and_then(|concentration| match facing {
                 Some(first) => Some(concentration.facing(problem, [first, at], shapes[first].as_ref()?)),
-                None => concentration.shape(problem, at, around.faced[at].as_ref()?, force, around.gap),
+                None => {
+                    let own = around.own.get(at).copied().flatten();
+                    concentration.shape(problem, at, around.faced[at].as_ref()?, force, around.gap, own)
+                }
             }));
         }
         let shaped = |at: usize| concentration.zip(shapes[at].as_ref());
@@ -243,6 +246,8 @@ struct Around<'a> {
     couplings: &'a [Arc<Coupling>],
     /// What each node faces, if its traction may be hats.
     faced: Vec<Option<Faced>>,
+    /// The shapes of the tractions of own forces, where they are known.
+    own: Vec<Option<TractionShape>>,
 }
 
 impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_, D, N> {
@@ -294,12 +299,13 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         };
         [&mut arresting, &mut contact].into_iter().for_each(|forces| self.sliding.gather(&couplings, forces));
         let gap = surface.gaps(step.displacement);
-        let around = self.around(&gap, &couplings);
+        let mut around = self.around(&gap, &couplings);
         let Some(mut motions) = self.motions.take() else {
             return self.balance_simulation(dynamics, state, [contact, arresting], &around, pool);
         };
         motions.begin(dynamics, step.index);
         self.replace_own((step.index, &mut motions), &stopped, &around, [&mut contact, &mut arresting]);
+        around.own = self.own_forces.shapes();
         let densities = self.level([&contact, &arresting], &around);
         self.halvings = halvings(&contact, &densities.acting);
         let pull = driving_forces(problem, &densities.acting);

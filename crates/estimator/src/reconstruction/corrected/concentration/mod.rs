@@ -51,7 +51,7 @@ impl<const D: usize> Concentration<D> {
 
     /// The shape of the traction of one node under a force (N). None where its tributary density is best: where no edge
     /// leaves the plane, where a hat as wide as a part that is faced is best, or where rounding spoils the stress of
-    /// hats.
+    /// hats. An own force has its own shape.
     pub(super) fn shape<const N: usize>(
         &self,
         problem: &Problem<D, N>,
@@ -59,14 +59,18 @@ impl<const D: usize> Concentration<D> {
         faced: &Faced,
         force: &[f64; D],
         gap: &[f64],
+        own: Option<TractionShape>,
     ) -> Option<TractionShape> {
         let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
         let normal = frame.split(force).0;
         let gaps = self.gaps(at, faced, gap).filter(|_| normal > 0.0)?;
-        let costs = self.costs(problem, at, faced, &force.map(|f| f / normal), &gaps)?;
-        let shape = costs.shape(normal);
+        let shape = match own {
+            Some(own) => own,
+            None => self.costs(problem, at, faced, &force.map(|f| f / normal), &gaps)?.shape(normal),
+        };
         // The density over a part is as good as a hat that is as wide: flat surfaces keep it.
-        let mut hats = shape.iter().zip(costs.widest).filter(|(hat, widest)| *widest > 0 && hat.share > 0.0);
+        let widest = faced.reach.map(|reach| reach.halvings());
+        let mut hats = shape.iter().zip(widest).filter(|(hat, widest)| *widest > 0 && hat.share > 0.0);
         hats.all(|(hat, widest)| hat.halvings > widest).then_some(shape)
     }
 

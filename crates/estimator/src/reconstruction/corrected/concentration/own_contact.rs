@@ -19,6 +19,10 @@ pub(super) struct OwnContact<const D: usize> {
     anchor: [f64; D],
     /// What is left of the depth that the node had at the beginning (m).
     pub(super) depth: f64,
+    /// The shape of its traction.
+    pub(super) shape: TractionShape,
+    /// The normal force that decides on the shape at the next instant (N).
+    width: f64,
 }
 
 /// A node that has a force of its own.
@@ -43,37 +47,60 @@ impl<const D: usize> Own<D> {
         (-(self.approach.gap + self.depth) / self.approach.mobility.between(normal, normal)).max(0.0)
     }
 
-    /// The gap that is left under a normal force (N), that of its traction and of its local compliance (m).
-    fn remaining(&self, costs: &NodeCosts<'_>, force: f64) -> f64 {
-        let (shape, normal) = (costs.shape(force), self.frame.normal());
-        let mean = self.approach.of_traction(far_parts(&shape));
+    /// The gap that is left under a normal force with this shape (N), that of its traction and of its local compliance
+    /// (m).
+    fn remaining(&self, costs: &NodeCosts<'_>, shape: &TractionShape, force: f64) -> f64 {
+        let normal = self.frame.normal();
+        let mean = self.approach.of_traction(far_parts(shape));
         let body = mean.gap + force * mean.mobility.between(normal, normal);
         // Where the motion of far nodes is not foreseen, edges have the gaps of the simulation.
         let local = match self.approach.far[0] {
-            Some(_) => costs.beyond_edges(&shape, self.across(), force),
-            None => costs.approach(&shape, self.across(), force),
+            Some(_) => costs.beyond_edges(shape, self.across(), force),
+            None => costs.approach(shape, self.across(), force),
         };
         body + self.depth + local
     }
 
-    /// The normal force (N) under which the traction comes to its plane with its local compliance; `largest` brings
-    /// the node there without.
-    pub(super) fn normal(&self, costs: &NodeCosts<'_>, largest: f64) -> f64 {
+    /// The normal force (N) under which the traction comes to its plane with its local compliance, and its shape.
+    ///
+    /// The best shape of a first touch is that of its force, at most `largest`, which brings the node there without a
+    /// compliance. Later shapes follow the force with the time τ of the impulse smoothing: where a shape would answer
+    /// the force at once, both would swing where its width jumps.
+    pub(super) fn normal(
+        &self,
+        costs: &NodeCosts<'_>,
+        largest: f64,
+        last: Option<OwnContact<D>>,
+    ) -> (f64, TractionShape) {
+        if let Some(last) = last.filter(|last| last.width > 0.0) {
+            let shape = costs.shape(last.width);
+            let [free, under] = [0.0, last.width].map(|force| self.remaining(costs, &shape, force));
+            return ((-free * last.width / (under - free)).max(0.0), shape);
+        }
         let (mut low, mut high) = (0.0, largest);
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (low + high);
-            if self.remaining(costs, middle) < 0.0 { low = middle } else { high = middle }
+            if self.remaining(costs, &costs.shape(middle), middle) < 0.0 { low = middle } else { high = middle }
         }
-        0.5 * (low + high)
+        let force = 0.5 * (low + high);
+        (force, costs.shape(force))
     }
 
-    /// The contact under a normal force (N): the traction sticks where it first touched, or slides at Coulomb's limit.
-    pub(super) fn contact(&self, costs: &NodeCosts<'_>, force: f64, last: Option<OwnContact<D>>) -> OwnContact<D> {
+    /// The contact under a normal force (N) with a shape, after a part of the time τ: the traction sticks where it first
+    /// touched, or slides at Coulomb's limit.
+    pub(super) fn contact(
+        &self,
+        costs: &NodeCosts<'_>,
+        (force, shape): (f64, TractionShape),
+        part: f64,
+        last: Option<OwnContact<D>>,
+    ) -> OwnContact<D> {
         let (normal, depth) = (self.frame.normal(), self.depth);
+        let width = last.map_or(force, |last| last.width + part.min(1.0) * (force - last.width));
         if force == 0.0 {
-            return OwnContact { force: [0.0; D], direction: *normal, anchor: self.approach.along[0], depth };
+            let anchor = self.approach.along[0];
+            return OwnContact { force: [0.0; D], direction: *normal, anchor, depth, shape, width };
         }
-        let shape = costs.shape(force);
         let approach = self.approach.of_traction(far_parts(&shape));
         let [now, next] = approach.along;
         let (across, along) = (self.across(), [-self.across()[1], self.across()[0]]);
@@ -92,6 +119,8 @@ impl<const D: usize> Own<D> {
             direction: std::array::from_fn(|c| normal[c] + friction / force * tangent[c]),
             anchor: std::array::from_fn(|c| anchor[c] + slip * tangent[c]),
             depth,
+            shape,
+            width,
         }
     }
 }

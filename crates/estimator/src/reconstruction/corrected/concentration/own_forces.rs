@@ -15,6 +15,7 @@
 
 use super::own_contact::{Own, OwnContact};
 use super::{Concentration, Faced};
+use crate::concentrated::TractionShape;
 use crate::reconstruction::corrected::motions::Approach;
 use percute_core::problem::Problem;
 
@@ -56,6 +57,11 @@ impl<const D: usize> OwnForces<D> {
     /// Number of nodes whose force has been replaced at any step.
     pub(in crate::reconstruction::corrected) fn count(&self) -> usize {
         self.replaced.iter().filter(|&&replaced| replaced).count()
+    }
+
+    /// The shape of the traction of each node that has an own force.
+    pub(in crate::reconstruction::corrected) fn shapes(&self) -> Vec<Option<TractionShape>> {
+        self.contacts.iter().map(|own| own.map(|own| own.shape)).collect()
     }
 
     /// Forgets the contact of a node whose traction cannot be hats any more: the force of the simulation acts again.
@@ -166,6 +172,6 @@ impl<const D: usize, const N: usize> Known<'_, D, N> {
         if !keeps {
             return None;
         }
-        Some(own.contact(&costs, own.normal(&costs, largest), last))
+        Some(own.contact(&costs, own.normal(&costs, largest, last), steps(at), last))
     }
 }

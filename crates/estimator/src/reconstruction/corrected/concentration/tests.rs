@@ -64,7 +64,7 @@ fn tractions_have_the_force_and_its_centroid() {
     let (at, force) = corner(&problem);
     for scale in [1e-3, 1.0, 1e3] {
         let force = force.map(|f| scale * f);
-        let shape = concentration.shape(&problem, at, &Faced::WHOLE, &force, &gaps(&problem)).unwrap();
+        let shape = concentration.shape(&problem, at, &Faced::WHOLE, &force, &gaps(&problem), None).unwrap();
         let hats: Vec<_> = concentration.hats(at, &shape, &force).collect();
         let values = |f: usize, k: usize| if k == at { concentration.wide(k, f, &shape, &force) } else { [0.0; 2] };
         let densities = Densities::with_hats(&problem, |f, facet| facet.nodes.map(|k| values(f, k)), hats);
@@ -91,7 +91,9 @@ fn congruent_stars_share_their_stress() {
     let alike: BTreeSet<_> = concentration.nodes.iter().map(|star| star.alike).collect();
     assert!(alike.len() <= 5 && concentration.nodes.len() == 13, "{} of {}", alike.len(), concentration.nodes.len());
     let flat = vec![0.0; concentration.nodes.len()];
-    assert!((0..flat.len()).all(|at| concentration.shape(&problem, at, &Faced::WHOLE, &[0.0, 1e6], &flat).is_none()));
+    assert!(
+        (0..flat.len()).all(|at| concentration.shape(&problem, at, &Faced::WHOLE, &[0.0, 1e6], &flat, None).is_none())
+    );
     assert!(concentration.stresses.iter().all(|stress| stress.get().is_none()));
 }
 
@@ -217,7 +219,11 @@ fn own_forces_close_the_gap() {
     // Under this reaction the node would not be alone; it keeps its own force.
     let large = force.map(|f| 1e5 * f);
     assert!(
-        concentration.shape(&problem, at, &Faced::WHOLE, &large, &gap).unwrap().iter().any(|hat| hat.halvings == 0)
+        concentration
+            .shape(&problem, at, &Faced::WHOLE, &large, &gap, None)
+            .unwrap()
+            .iter()
+            .any(|hat| hat.halvings == 0)
     );
     assert_eq!(apply(&mut own.clone(), large, -6e-5), apply(&mut own.clone(), [0.0; 2], -6e-5));
 }
@@ -312,7 +318,7 @@ fn a_hat_outside_the_cone_shows() {
     let problem = tilted();
     let concentration = Concentration::new(&problem);
     let (at, force) = corner(&problem);
-    let shape = concentration.shape(&problem, at, &Faced::WHOLE, &force, &gaps(&problem)).unwrap();
+    let shape = concentration.shape(&problem, at, &Faced::WHOLE, &force, &gaps(&problem), None).unwrap();
     let step = free_step(&problem);
     let cone = |force: [f64; 2]| {
         let hats: Vec<_> = concentration.hats(at, &shape, &force).collect();
@@ -334,7 +340,7 @@ fn the_residuals_of_stars_are_reported() {
     let problem = tilted();
     let concentration = Concentration::new(&problem);
     let (at, force) = corner(&problem);
-    concentration.shape(&problem, at, &Faced::WHOLE, &force, &gaps(&problem)).unwrap();
+    concentration.shape(&problem, at, &Faced::WHOLE, &force, &gaps(&problem), None).unwrap();
     let mut residuals = Residuals::default();
     concentration.add_residuals(&mut residuals);
     let made = [residuals.hat_resultants, residuals.hat_stress];
@@ -348,7 +354,7 @@ fn shares_that_are_none_show() {
     let concentration = Concentration::new(&problem);
     let (at, force) = corner(&problem);
     let gap = gaps(&problem);
-    let shape = concentration.shape(&problem, at, &Faced::WHOLE, &force, &gap).unwrap();
+    let shape = concentration.shape(&problem, at, &Faced::WHOLE, &force, &gap, None).unwrap();
     let hats: Vec<_> = concentration.hats(at, &shape, &force).collect();
     let residual = |hats: &[NarrowHat<2>]| concentration.share_residual(at, &shape, &force, hats);
     assert!(hats.len() == 2 && residual(&hats) < 1e-15, "{hats:?}");
