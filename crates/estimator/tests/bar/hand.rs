@@ -259,7 +259,7 @@ impl Bar {
         let force = state.force;
         let left = match (e, choice) {
             (0, _) => -state.push,
-            // N + (M_c ã + M o of the element before at its end).
+            // N + (M_c ã + M o of the element before at its end): on a bar, o is all that M_c ã lacks.
             (_, Acceleration::Split) => {
                 let (before, here) = (state.acceleration[e - 1], state.acceleration[e]);
                 let difference = self.lumping_difference(state.acceleration, e);

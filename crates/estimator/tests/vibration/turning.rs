@@ -1,4 +1,4 @@
-//! Free bodies whose elements turn: the estimate over the true error with `mixed`, and with `closest`.
+//! Free bodies whose elements turn: the estimate over the true error with `split`, and with `closest`.
 
 use crate::vibration::block::true_error;
 use percute_core::dynamics::{critical_time_step, simulate};
@@ -49,7 +49,7 @@ fn grid(problem: &TriangleProblem, end: f64) -> TimeGrid {
     TimeGrid::with_step(end, 0.9 * critical_time_step(problem)).unwrap()
 }
 
-/// The motion, and the estimates with `closest` and `mixed`.
+/// The motion, and the estimates with `closest` and `split`.
 fn run(problem: &TriangleProblem, times: &TimeGrid) -> (Motion<2>, [Estimate<2>; 2]) {
     let estimator = |acceleration| {
         Estimator::new(problem, times, Options { acceleration: Some(acceleration), ..Options::default() }).unwrap()
@@ -57,8 +57,8 @@ fn run(problem: &TriangleProblem, times: &TimeGrid) -> (Motion<2>, [Estimate<2>;
     let pair = (estimator(Acceleration::Closest), estimator(Acceleration::Split));
     let mut sink = (Motion::default(), pair);
     simulate(problem, times, &mut sink, &mut Unobserved).unwrap();
-    let (motion, (closest, mixed)) = sink;
-    let estimates = [closest, mixed].map(|e| e.finish().unwrap());
+    let (motion, (closest, split)) = sink;
+    let estimates = [closest, split].map(|e| e.finish().unwrap());
     assert!(estimates.iter().all(|e| e.residuals.largest() <= 1e-11));
     (motion, estimates)
 }
@@ -102,17 +102,17 @@ fn bending(level: usize) -> [[f64; 2]; 2] {
     effectivities(&estimates, exact.sup, exact.mean)
 }
 
-/// Each index of `mixed` lies in the range and does not rise from mesh to mesh, but for 2 %: on coarse meshes, the
+/// Each index of `split` lies in the range and does not rise from mesh to mesh, but for 2 %: on coarse meshes, the
 /// minimisation of the tractions gains a little more.
 fn assert_steady(name: &str, meshes: &[[[f64; 2]; 2]], range: [f64; 2]) {
-    for (k, [_, mixed]) in meshes.iter().enumerate() {
-        assert!(mixed.iter().all(|x| (range[0]..=range[1]).contains(x)), "{name}, mesh {k}: {meshes:?}");
+    for (k, [_, split]) in meshes.iter().enumerate() {
+        assert!(split.iter().all(|x| (range[0]..=range[1]).contains(x)), "{name}, mesh {k}: {meshes:?}");
         let before = meshes[k.saturating_sub(1)][1];
-        assert!(mixed.iter().zip(before).all(|(x, before)| *x <= 1.02 * before), "{name}, mesh {k}: {meshes:?}");
+        assert!(split.iter().zip(before).all(|(x, before)| *x <= 1.02 * before), "{name}, mesh {k}: {meshes:?}");
     }
 }
 
-/// Measured with `mixed` on 6² to 48² cells: largest error 1.20, 1.09, 1.05, 1.03 and mean 1.18, 1.09, 1.06, 1.03;
+/// Measured with `split` on 6² to 48² cells: largest error 1.20, 1.09, 1.05, 1.03 and mean 1.18, 1.09, 1.06, 1.03;
 /// unstructured 1.21, 1.12, 1.08, 1.06 and 1.29, 1.19, 1.13, 1.11. The rotation in Γ_DA of `closest` is an error of the
 /// order of the true one: its index tends to about 2.1, unstructured 2.5.
 #[test]
@@ -124,12 +124,12 @@ fn lame_mode() {
     let unstructured = CELLS.map(|n| lame(random_rectangle(SIDE, SIDE, n, 1).unwrap()));
     assert_steady("unstructured", &unstructured, [0.95, 1.4]);
     for [closest, _] in structured.iter().chain(&unstructured) {
-        assert!(closest.iter().all(|x| *x > 1.75), "{closest:?}");
+        assert!(closest.iter().all(|x| *x > 1.65), "{closest:?}");
     }
     assert!(structured.windows(2).all(|pair| pair[1][0][0] > pair[0][0][0]), "{structured:?}");
 }
 
-/// Measured with `mixed`: largest error 1.24, 1.12, 1.10, mean 1.10, 1.08, 1.09; with `closest` 1.47, 1.39, 1.40 and
+/// Measured with `split`: largest error 1.24, 1.12, 1.10, mean 1.10, 1.08, 1.09; with `closest` 1.47, 1.39, 1.40 and
 /// 1.53, 1.48, 1.48.
 #[test]
 fn bending_mode() {

@@ -59,10 +59,11 @@ pub(super) const RULES: [Rule; 28] = [
         situation: "bodies that vibrate without contact, with `closest`,",
         doubt: None,
     },
-    // effectivity-turning.csv, time-steps-mass.csv: bodies that vibrate freely.
+    // effectivity-turning.csv, time-steps-mass.csv: bodies that vibrate freely. Random bodies over 1 to 30 periods have
+    // 0.88 to 1.22 (python/percute/verification/random_bodies, vibration).
     Rule {
         applies: |f| f.contact.touches == Touches::None,
-        range: [0.95, 1.25],
+        range: [0.85, 1.3],
         situation: "bodies that vibrate without contact",
         doubt: None,
     },
@@ -95,10 +96,11 @@ pub(super) const RULES: [Rule; 28] = [
         situation: "bodies in the corner of two planes",
         doubt: None,
     },
-    // speeds.csv, frame; examples/beam.toml (test `as_far_from_the_truth_as_measured`).
+    // speeds.csv, frame; examples/beam.toml (test `as_far_from_the_truth_as_measured`). Random frames, rings and beams
+    // have 0.92 to 1.31.
     Rule {
         applies: |f| f.is_thin() && f.contact.touches != Touches::Edge,
-        range: [0.74, 1.1],
+        range: [0.8, 1.45],
         situation: "thin parts that bend",
         doubt: None,
     },
@@ -197,14 +199,14 @@ pub(super) const RULES: [Rule; 28] = [
     // speeds.csv, trapezoid, flat.
     Rule {
         applies: |f| f.contact.touches == Touches::End,
-        range: [1.05, 1.3],
+        range: [0.95, 1.35],
         situation: "edges beside an inclined side",
         doubt: None,
     },
-    // effectivity.csv, curved; speeds.csv, curved; bounces-runs.csv after one phase.
+    // effectivity.csv, curved; speeds.csv, curved; bounces-runs.csv after one phase. Random bodies have 1.03 to 1.35.
     Rule {
         applies: |f| f.contact.touches == Touches::Curve,
-        range: [1.05, 1.6],
+        range: [0.95, 1.6],
         situation: "impacts of curves",
         doubt: None,
     },

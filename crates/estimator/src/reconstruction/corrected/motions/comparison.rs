@@ -158,7 +158,10 @@ impl<const D: usize> Plain<D> {
         };
         let lumped = split(&|first, plain, once| (1.0 - first) * plain + first * once);
         let skew = skew_acceleration(problem, inverse, &lumped);
-        let split = [split(&|first, plain, once| plain + first * once), lumped, skew];
+        let split = match D {
+            1 => [plain, vec![[0.0; D]; inverse.len()], once],
+            _ => [split(&|first, plain, once| plain + first * once), lumped, skew],
+        };
         PlainLevel { displacement, velocity, split }
     }
 }
@@ -249,6 +252,7 @@ fn compare<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Time
         let levels: [PlainLevel<D>; MOTIONS] =
             std::array::from_fn(|l| plain[l].advance(&dynamics, times, n, forces[l]));
         let own = &levels[0];
+        // On a bar the fields are ã, 0 and o.
         let [consistent, wanted, turning] = &own.split;
         let fields = [&displacement, &acceleration, &lumped, &skew];
         for (k, (found, expected)) in

@@ -223,6 +223,13 @@ impl<const D: usize> Pass<'_, D> {
         let out = view.level.acceleration[range.clone()].iter_mut();
         match &mut view.level.split {
             None => out.zip(fields).for_each(|(out, (rate, _))| *out = rate.of(0)),
+            // On a bar nothing turns: o is all that M_c ã lacks.
+            Some(split) if D == 1 => {
+                let both = split.lumped[range.clone()].iter_mut().zip(&mut split.skew[range]);
+                for ((out, (lumped, skew)), (rate, once)) in out.zip(both).zip(fields) {
+                    (*out, *lumped, *skew) = (rate.of(0), [0.0; D], once.auxiliary());
+                }
+            }
             Some(split) => {
                 for (((out, lumped), (rate, once)), node) in out.zip(&mut split.lumped[range]).zip(fields).zip(nodes) {
                     let first = self.weights_of(node).first;
@@ -275,7 +282,7 @@ impl<const D: usize> Pass<'_, D> {
         }
         let nodes = self.blocks.finished(turn);
         self.finish_lumping(r, 1, &nodes, view);
-        if let Some(split) = &mut view.level.split {
+        if let Some(split) = view.level.split.as_mut().filter(|_| D == 2) {
             let start = view.start.node;
             let local = nodes.start - start..nodes.end - start;
             for (skew, inverse) in split.skew[local].iter_mut().zip(&self.inverse_mass[nodes.clone()]) {
