@@ -50,7 +50,7 @@ pub(crate) enum ReportSource<const D: usize> {
         /// The outline of a plane body at the last step.
         outline: Option<Box<Outline>>,
         /// The deformation and the stress.
-        deformation: Deformation,
+        deformation: Box<Deformation>,
         /// Number of instants, of a stored history.
         held: Option<usize>,
         /// How long the estimate took (s).
@@ -100,7 +100,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
         seconds: f64,
     ) -> Self {
         let Results { simulation, estimate, contact, deformation, outline } = results;
-        let (contact, outline) = (Arc::new(contact), outline.map(Box::new));
+        let (contact, outline, deformation) = (Arc::new(contact), outline.map(Box::new), Box::new(deformation));
         let report = ReportSource::Now { simulation, contact, outline, deformation, held, seconds };
         let (checked, case, unended) = (None, None, None);
         Self { problem, times, options: options.filled(D), estimate, report, checked, case, unended }

@@ -128,10 +128,8 @@ impl Facts {
         // Nodes bounce on the springs of a penalty: a release ends when a wave could not cross the body meanwhile.
         let shortest_release = if figures.is_some_and(by_a_penalty) { slenderness * size / wave_speed } else { 0.0 };
         let bodies = !problem.statement().interfaces.is_empty();
-        let flat = FlatElements::new(problem, &estimate.by_element).is_some();
-        let uneven = Uneven::new(problem, &estimate.by_element);
-        let matter = flat || uneven.longest > 1.0;
-        let poor = if matter { poor_elements(problem.mesh(), &estimate.by_element) } else { Vec::new() };
+        let by_element = &estimate.by_element;
+        let (flat, uneven) = (FlatElements::new(problem, by_element).is_some(), Uneven::new(problem, by_element));
         let speed = if bodies { approach(problem) } else { beside.rebound.map(|rebound| -rebound.normal_before) };
         Self {
             dimension: D,
@@ -144,9 +142,9 @@ impl Facts {
             phases: phases(results, APART * size / wave_speed, shortest_release),
             passages: after_first_touch(results) * wave_speed / size,
             slenderness,
+            poor: if flat || uneven.longest > 1.0 { poor_elements(problem.mesh(), by_element) } else { Vec::new() },
             flat,
             uneven,
-            poor,
             linearity: Linearity::new(beside.deformation),
             nearest: results.nearest.zip(results.instants.last().copied()),
             onset: Onset::new(problem, results, beside.rebound, speed),
