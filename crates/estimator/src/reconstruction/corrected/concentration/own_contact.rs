@@ -64,8 +64,8 @@ impl<const D: usize> Own<D> {
     /// The normal force (N) under which the traction comes to its plane with its local compliance, and its shape.
     ///
     /// The best shape of a first touch is that of its force, at most `largest`, which brings the node there without a
-    /// compliance. Later shapes follow the force with the time τ of the impulse smoothing: where a shape would answer
-    /// the force at once, both would swing where its width jumps.
+    /// compliance. Later shapes follow a force that rises at once, and one that falls with the time τ of the impulse
+    /// smoothing: where a shape would answer a force that swings, both would swing where the width jumps.
     pub(super) fn normal(
         &self,
         costs: &NodeCosts<'_>,
@@ -96,7 +96,7 @@ impl<const D: usize> Own<D> {
         last: Option<OwnContact<D>>,
     ) -> OwnContact<D> {
         let (normal, depth) = (self.frame.normal(), self.depth);
-        let width = last.map_or(force, |last| last.width + part.min(1.0) * (force - last.width));
+        let width = last.map_or(force, |last| force.max(last.width + part.min(1.0) * (force - last.width)));
         if force == 0.0 {
             let anchor = self.approach.along[0];
             return OwnContact { force: [0.0; D], direction: *normal, anchor, depth, shape, width };
