@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 import percute as pc
-from percute.verification.flat_elements import angles, mapped, meshes, moved, problem, row, share
+from percute.verification.flat_elements import angles, meshes, moved, problem, row, share
 
-ELLIPSE = (0.03, 0.02)
 ROOT = Path(__file__).parents[2]
 
 
@@ -20,7 +19,7 @@ def run(mesh: pc.Mesh) -> tuple[pc.Estimate, pc.TrueError]:
     return pc.estimate(history, every=1), error
 
 
-@pytest.mark.parametrize("mesh", [mapped(14, ELLIPSE), mapped(18, ELLIPSE), moved(0.05), moved(0.02)])
+@pytest.mark.parametrize("mesh", [moved(0.01), moved(0.006), moved(0.004), moved(0.002, 16)])
 def test_flat_elements_are_named(mesh: pc.Mesh) -> None:
     with pytest.warns(pc.SimulationWarning, match="nearly flat") as told:
         estimate, error = run(mesh)
@@ -40,20 +39,21 @@ def test_flat_elements_are_named(mesh: pc.Mesh) -> None:
     assert share(estimate) > 0.35
 
 
-@pytest.mark.parametrize("mesh", [pc.Mesh.rectangle(0.05, 0.04, nx=8, ny=8), pc.Mesh.rectangle(0.05, 0.04, nx=40, ny=2), moved(0.3), moved(0.1)])
+@pytest.mark.parametrize("mesh", [pc.Mesh.rectangle(0.05, 0.04, nx=8, ny=8), pc.Mesh.rectangle(0.05, 0.04, nx=40, ny=2), moved(0.3), moved(0.1), moved(0.02)])
 def test_others_have_no_such_warning(mesh: pc.Mesh) -> None:
+    """With such nodes the index is at most 1.6, as without (docs/verdict.md)."""
     estimate, _ = run(mesh)
     assert not any("flat" in each for each in estimate.warnings) and "flat elements" not in str(estimate.verdict)
 
 
 def test_the_effect_on_the_step_is_that_of_the_mesh() -> None:
     with pytest.warns(pc.SimulationWarning, match="nearly flat"):
-        estimate, _ = run(moved(0.02))
+        estimate, _ = run(moved(0.004))
     text = " ".join(estimate.warnings)
     found = re.search(r"could be ([0-9.]+) times as long", text)
     assert found is not None
     # A lower bound by the other elements, some of which are deformed, too.
-    gain = problem(pc.Mesh.rectangle(0.05, 0.04, nx=8, ny=8)).critical_time_step / problem(moved(0.02)).critical_time_step
+    gain = problem(pc.Mesh.rectangle(0.05, 0.04, nx=8, ny=8)).critical_time_step / problem(moved(0.004)).critical_time_step
     assert 1.1 < float(found[1]) < gain
 
 

@@ -3,6 +3,8 @@
 import json
 import re
 import warnings
+from contextlib import AbstractContextManager, nullcontext
+from typing import Any
 
 import numpy as np
 import percute as pc
@@ -14,12 +16,21 @@ from spoiling import FALLS, STATED, Parts, cause, given, parts, shifted, without
 
 
 def penalty(
-    stiffness: float, courant: float = 0.8, friction: float = 0.0, sideways: float = 400.0, consistent: bool = False
+    stiffness: float, courant: float = 0.8, friction: float = 0.0, sideways: float = 50.0, consistent: bool = False
 ) -> tuple[pc.Problem, Parts]:
-    """A block of percute's mesh with contact and friction by penalties (Pa/m), R_n from the penetration at t_n."""
+    """A block of percute's mesh with contact and friction by penalties (Pa/m), R_n from the penetration at t_n.
+
+    At 50 m/s strains stay below 2 %.
+    """
     stated = block(friction=friction)
-    problem = pc.Problem(stated.mesh, material=stated.material, obstacles=stated.obstacles, initial_velocity=(sideways, -400.0))
+    plane = pc.Plane(point=(0.0, -2.5e-5), normal=(0.0, 1.0), friction=friction)
+    problem = pc.Problem(stated.mesh, material=stated.material, obstacles=[plane], initial_velocity=(sideways, -50.0))
     return problem, {**STATED, **simulated(problem, stiffness, courant=courant, consistent=consistent)}
+
+
+def told_of_energy(given: bool) -> AbstractContextManager[Any]:
+    """Expect the warning that contact gives the auxiliary solution energy: it does not move as the nodes on their springs do."""
+    return pytest.warns(pc.SimulationWarning, match="contact gives the auxiliary solution .* of the energy") if given else nullcontext()
 
 
 @pytest.mark.parametrize("lacks", [(), ("reaction",)])
@@ -28,9 +39,11 @@ def test_contact_by_a_penalty_is_graded(stiffness: float, lacks: tuple[str, ...]
     problem, whole = penalty(stiffness)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "the last instant", pc.InputWarning)
-        estimate = pc.estimate(given(problem, without(whole, *lacks)))
-    # Stiff springs make energy; the verdict warns of that, too.
-    assert estimate.trust == ("limited" if (estimate.consistency or {})["energy"] < 0.1 else "low") and "penalty" in estimate.verdict
+        history = given(problem, without(whole, *lacks))
+        # Measured: 2 %, 12 % and 6 % of the energy; above 10 % the program warns.
+        with told_of_energy(stiffness == 1e15):
+            estimate = pc.estimate(history)
+    assert estimate.trust == ("low" if stiffness == 1e15 else "limited")
     assert (estimate.consistency or {})["penalty"] > 0.9
     # Its index is outside the range of the other cases.
     assert json.loads(estimate.to_json())["verdict"]["effectivity"] is None
@@ -56,7 +69,7 @@ def test_a_shift_is_named_below_the_limit_too(courant: float, steps: int, when: 
     assert "another step" not in pc.estimate(given(problem, whole)).verdict
 
 
-@pytest.mark.parametrize("sideways", [0.0, 5.0, 50.0, 400.0])
+@pytest.mark.parametrize("sideways", [0.0, 0.6, 6.0, 50.0])
 def test_friction_by_a_penalty_is_graded(sideways: float) -> None:
     """Nodes that stick move by the stretch of their springs: that is no other friction."""
     problem, whole = penalty(1e14, friction=0.2, sideways=sideways)
@@ -116,7 +129,9 @@ def test_nodes_that_bounce_on_a_penalty_are_one_contact(stiffness: float, steps:
     history = tilted_trapezoid(stiffness, steps)
     forced = (history.reaction[:, :, 1] > 0).any(axis=1)
     assert np.sum(np.diff(forced.astype(int)) > 0) == {(5e11, 140): 2, (5e11, 400): 4}.get((stiffness, steps), phases)
-    estimate = pc.estimate(history)
+    # Measured: 60 % of the energy with the softest springs, at most 8 % with the others.
+    with told_of_energy(stiffness == 1e10):
+        estimate = pc.estimate(history)
     assert json.loads(estimate.to_json())["verdict"]["phases"] == phases
     assert ("after several contacts" in estimate.verdict) == (phases > 1), estimate.verdict
     assert "contact by a penalty" in estimate.verdict
@@ -146,5 +161,7 @@ def test_a_turned_plane_is_no_penalty() -> None:
 
 def test_the_index_of_a_penalty_is_outside_the_range_without_one() -> None:
     """A row of the table of docs/verdict.md; multipliers have 0.9 to 1.6 (docs/verdict.md, trust)."""
-    sup, mean, depth = row(Impact("block", 1, 0.8), 1e15)
+    # Measured: 14 % of the energy.
+    with told_of_energy(True):
+        sup, mean, depth = row(Impact("block", 1, 0.8), 1e15)
     assert min(sup, mean) > 1.6 and 0 < depth < 0.1

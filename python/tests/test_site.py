@@ -118,7 +118,7 @@ def test_the_page_on_verdicts_quotes_the_program(capsys: pytest.CaptureFixture[s
     verdict = pc.run("examples/block.toml").verdict
     assert verdict == " ".join(re.findall(r"(?m)^> (.*)$", page))
     folder = ROOT / "crates" / "workflow" / "src" / "report" / "verdict"
-    code = (folder / "rules.rs").read_text() + (folder / "text.rs").read_text()
+    code = "".join(file.read_text() for file in (folder / "rules.rs", folder / "text.rs", folder.parent / "linearity.rs"))
     # The verdict has names in quotes of code, and numbers in place of the dots.
     code, plain = code.replace("`", ""), page.replace("`", "")
     reasons = re.findall(r"(?m)^\| (.*?) \|", plain.split("### Reasons for low trust")[1].split("###")[0])[1:]

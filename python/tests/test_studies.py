@@ -83,14 +83,14 @@ def test_the_known_case_has_the_known_effectivities() -> None:
 
 
 def test_the_mode_of_a_square_has_the_known_effectivities() -> None:
-    """Sup and mean on 6×6 cells against the exact mode, of the tests of the estimator."""
+    """Sup and mean on 6×6 cells, measured with this program against 48×48 cells."""
     runs = [dict(zip(ACCELERATIONS, body.run(0), strict=True)) for body in bodies()]
     # All verdicts hold.
     assert all(held for run in runs for _, held in run.values())
     lame, spinning, _ = ({name: index for name, (index, _) in run.items()} for run in runs)
-    for name, known in {"split": (1.20, 1.18), "closest": (1.79, 1.92)}.items():
-        # The reference has 8 times as many cells along a side: the true error against it is 0.8 % smaller, of order 1 in h.
-        assert (lame[name].sup, lame[name].mean) == pytest.approx(known, rel=0.015)
+    for name, known in {"split": (1.001, 1.020), "closest": (1.881, 1.737)}.items():
+        # Rounded to 0.001, and rounding of other processors.
+        assert (lame[name].sup, lame[name].mean) == pytest.approx(known, abs=0.002)
         # Rounding of the rotation.
         assert (spinning[name].sup, spinning[name].mean) == pytest.approx((lame[name].sup, lame[name].mean), rel=1e-9)
 
@@ -106,7 +106,9 @@ def test_sources_say_what_half_the_size_changes() -> None:
     assert bar.step.off < 0.1 and bar.step.expected > 0.5
     # What each is made of.
     assert flat.before.front > 0.5 * flat.before.total and corner.before.surface > 0.9 * corner.before.total
-    assert mode.before.mesh > 0.9 * mode.before.total and mode.before.front == mode.before.surface == 0.0
+    assert mode.before.mesh > 0.8 * mode.before.total and mode.before.front == mode.before.surface == 0.0
+    # J: the mean of D with the exact mode at the nodes, with K and M_c in NumPy. The auxiliary solution has an error, too: 22 % more.
+    assert mode.before.dispersion == pytest.approx(0.1066, rel=0.25)
 
 
 def test_refinement_at_the_contact_helps_corners_not_fronts() -> None:
