@@ -1,12 +1,13 @@
 //! New files: written completely under another name, and then renamed. Their room can be reserved.
 
+use crate::driver::{Driven, Fault};
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::library::{alone, refused};
 use crate::temporary::{probe, temporary};
 use crate::unfinished::Unfinished;
 use crate::write::Texts;
-use hdf5::file::LibraryVersion;
+use hdf5::file::{FileAccess, FileCreate, LibraryVersion};
 use percute_system::{REPLACES_OPEN_FILES, free};
 use std::fs::File;
 use std::io::{self, Write};
@@ -60,9 +61,11 @@ impl Unnamed {
             return Err(FileCause::NoSpace { needed: bytes, free });
         }
         let mut texts = Texts::default();
-        let made = make(temporary.path(), |file| fill(file, &mut texts)).map_err(|cause| match free(folder) {
-            Some(free) if free < bytes => FileCause::NoSpace { needed: bytes, free },
-            _ => cause,
+        let made = make(temporary.as_file(), |file| fill(file, &mut texts));
+        let made = made.map_err(|cause| match (cause, free(folder)) {
+            (_, Some(free)) if free < bytes => FileCause::NoSpace { needed: bytes, free },
+            (FileCause::Create { source }, _) => no_room(source, folder, bytes),
+            (cause, _) => cause,
         })?;
         texts.put(temporary.as_file()).map_err(|error| no_room(error, folder, bytes))?;
         Ok((Self { temporary, unfinished, path, old, overwrite }, made))
@@ -153,19 +156,16 @@ pub fn check_folder(path: &Path) -> io::Result<()> {
     probe(folder_of(path))
 }
 
-/// Creates an HDF5 file and closes it.
-fn make<T>(path: &Path, fill: impl FnOnce(&hdf5::File) -> Result<T, FileCause>) -> Result<T, FileCause> {
+/// Creates the contents of an empty file and closes it.
+fn make<T>(file: &File, fill: impl FnOnce(&hdf5::File) -> Result<T, FileCause>) -> Result<T, FileCause> {
     let _alone = alone();
-    let file = hdf5::File::with_options()
-        // VTK loses arrays of later formats. Arrays are aligned so that they can be mapped into memory. The file
-        // has no other users yet.
-        .with_fapl(|p| p.libver_bounds(LibraryVersion::V18, LibraryVersion::V110).alignment(1, 8).file_locking(false))
-        .with_fcpl(|p| p.obj_track_times(false))
-        .create(path)
-        .map_err(|error| refused(&error))?;
-    let made = fill(&file)?;
-    file.close().map_err(|error| refused(&error))?;
-    Ok(made)
+    // VTK loses arrays of later formats. Arrays are aligned so that they can be mapped into memory.
+    let access = FileAccess::build().libver_bounds(LibraryVersion::V18, LibraryVersion::V110).alignment(1, 8).finish();
+    let creation = FileCreate::build().obj_track_times(false).finish();
+    let (access, creation) = access.and_then(|access| Ok((access, creation?))).map_err(|error| refused(&error))?;
+    let driven = Driven::create(file, &access, &creation).map_err(Fault::of_creation)?;
+    let made = fill(driven.file());
+    driven.close(made, Fault::of_creation)
 }
 
 /// The path of the file, and the lock on the file to be replaced.

@@ -6,6 +6,7 @@
 
 mod checksum;
 mod create;
+mod driver;
 mod error;
 pub mod estimate_file;
 pub mod export;

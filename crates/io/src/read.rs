@@ -11,6 +11,7 @@ pub(crate) use data::Data;
 pub use superblock::is_hdf5;
 
 use crate::checksum::Checksum;
+use crate::driver::{Driven, Fault};
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::kind::Kind;
@@ -48,11 +49,11 @@ impl Texts {
 
 /// A file open for reading, with exclusive use of the library.
 pub(crate) struct Opened {
-    file: hdf5::File,
+    driven: Driven,
     bytes: u64,
     /// Whether texts of variable length can be read; unknown until one is.
     texts: OnceCell<Texts>,
-    _held: Held,
+    held: Held,
     /// Dropped last, after the file is closed.
     _alone: MutexGuard<'static, ()>,
 }
@@ -61,8 +62,8 @@ impl Opened {
     pub(crate) fn new(path: &Path) -> Result<Self, FileCause> {
         let alone = alone();
         let (held, bytes) = look(path)?;
-        let file = hdf5::File::with_options().with_fapl(|p| p.file_locking(false)).open(path).map_err(damaged)?;
-        Ok(Self { file, bytes, texts: OnceCell::new(), _held: held, _alone: alone })
+        let driven = Driven::read(held.file()).map_err(Fault::of_reading)?;
+        Ok(Self { driven, bytes, texts: OnceCell::new(), held, _alone: alone })
     }
 
     /// Bytes of the file.
@@ -71,8 +72,9 @@ impl Opened {
     }
 
     pub(crate) fn root(&self) -> Part<'_> {
-        let Self { file, bytes, texts, .. } = self;
-        Part { group: (**file).clone(), name: String::new(), file_bytes: *bytes, file, texts }
+        let Self { driven, bytes, texts, held, .. } = self;
+        let group = (**driven.file()).clone();
+        Part { group, name: String::new(), file_bytes: *bytes, file: held.file(), texts }
     }
 
     /// History or estimate; any other file is an error with its contents.
@@ -141,7 +143,7 @@ pub(crate) struct Part<'f> {
     group: Group,
     name: String,
     file_bytes: u64,
-    file: &'f hdf5::File,
+    file: &'f File,
     texts: &'f OnceCell<Texts>,
 }
 
@@ -240,8 +242,7 @@ impl<'f> Part<'f> {
         let texts = match self.texts.get() {
             Some(texts) => texts,
             None => {
-                let found = File::open(self.file.filename()).and_then(|file| Texts::check(&file, self.file_bytes));
-                let found = found.map_err(|source| FileCause::Read { source })?;
+                let found = Texts::check(self.file, self.file_bytes).map_err(|source| FileCause::Read { source })?;
                 self.texts.get_or_init(|| found)
             }
         };
@@ -261,8 +262,7 @@ impl<'f> Part<'f> {
             return Err(FileCause::Type { name: data.name.clone(), given, needed: "a text in one piece" });
         };
         let mut bytes = vec![0; length];
-        let file = File::open(self.file.filename()).and_then(|file| read_exact_at(&file, &mut bytes, place));
-        file.map_err(|source| FileCause::Read { source })?;
+        read_exact_at(self.file, &mut bytes, place).map_err(|source| FileCause::Read { source })?;
         bytes.truncate(bytes.iter().position(|b| *b == 0).unwrap_or(length));
         utf8(bytes, data.name.clone())
     }
@@ -292,7 +292,7 @@ impl<'f> Part<'f> {
             return Err(FileCause::Type { name: data.name.clone(), given, needed: "a text in one piece" });
         }
         let Some(place) = data.set.offset() else { return Ok(()) };
-        let long = File::open(self.file.filename()).and_then(|file| heap::is_too_long(&file, place, self.file_bytes));
+        let long = heap::is_too_long(self.file, place, self.file_bytes);
         match long.map_err(|source| FileCause::Read { source })? {
             true => Err(FileCause::Damaged { detail: format!("the length of the text `{}`", data.name) }),
             false => Ok(()),

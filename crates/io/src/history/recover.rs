@@ -3,6 +3,7 @@
 use super::checkpoints::places;
 use super::file::NativeArray;
 use super::open::open;
+use crate::driver::{Driven, Fault};
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::library::{alone, detail};
@@ -47,12 +48,12 @@ pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
             return Err(FileCause::NoStep);
         }
         let failed = |detail: String| FileCause::Finish { detail, steps: recovered.count };
-        set_steps(path, recovered.count).map_err(failed)?;
+        set_steps(held.file(), recovered.count).map_err(failed)?;
         give_back_room(held.file(), arrays.iter().filter_map(room), planned, count);
         if let Some(checkpoints) = checkpoints.filter(|_| count == planned) {
             checkpoints.give_back(held.file());
         }
-        set_complete(path).map_err(failed)?;
+        set_complete(held.file()).map_err(failed)?;
         held.file().sync_all().map_err(|error| failed(error.to_string()))
     };
     finish().map_err(|cause| cause.at(path))?;
@@ -61,12 +62,12 @@ pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
 
 /// Makes a number of instants visible to VTK, which needs at least one. Two writes leave the first instant
 /// visible if the process is killed between them.
-pub(super) fn set_steps(path: &Path, count: usize) -> Result<(), String> {
-    change(path, |file| {
+pub(super) fn set_steps(file: &File, count: usize) -> Result<(), String> {
+    change(file, |file| {
         let times = file.dataset("percute/times")?.read_raw::<f64>()?;
         give_steps(&file.group("VTKHDF")?, times.get(..count.max(1)).unwrap_or(&times))
     })?;
-    change(path, |file| note_steps(&file.group("VTKHDF")?, count.max(1)))
+    change(file, |file| note_steps(&file.group("VTKHDF")?, count.max(1)))
 }
 
 /// Gives back the room of steps that were never written. `rooms` are the places of step 0 and the sizes of a step
@@ -84,18 +85,14 @@ fn room(NativeArray { name, shape, offset }: &NativeArray) -> Option<(u64, u64)>
     Some(((*offset)?, width * shape[1..].iter().product::<usize>() as u64))
 }
 
-fn set_complete(path: &Path) -> Result<(), String> {
-    change(path, |file| file.dataset("percute/complete")?.write_scalar(&1_u8))
+fn set_complete(file: &File) -> Result<(), String> {
+    change(file, |file| file.dataset("percute/complete")?.write_scalar(&1_u8))
 }
 
-/// Changes a file. It is opened without a lock, because a concurrent reader may hold one, and only the part
-/// visible to VTK changes.
-fn change(path: &Path, make: impl FnOnce(&hdf5::File) -> hdf5::Result<()>) -> Result<(), String> {
+/// Changes a file. A concurrent reader may have it open, and only the part visible to VTK changes.
+fn change(file: &File, make: impl FnOnce(&hdf5::File) -> hdf5::Result<()>) -> Result<(), String> {
     let _alone = alone();
-    let file = hdf5::File::with_options().with_fapl(|p| p.file_locking(false)).open_rw(path);
-    let changed = file.and_then(|file| {
-        make(&file)?;
-        file.close()
-    });
-    changed.map_err(|error| detail(&error))
+    let driven = Driven::change(file).map_err(|fault| fault.text())?;
+    let made = make(driven.file()).map_err(|error| detail(&error));
+    driven.close(made, |fault| fault.text())
 }

@@ -145,7 +145,7 @@ impl<const D: usize> Writer<D> {
         let file = self.target.file();
         file.sync_data().map_err(told)?;
         let Some(place) = self.target.place() else { return Err(FileCause::Lost { now: None }) };
-        set_steps(&place, stored).map_err(failed)?;
+        set_steps(file, stored).map_err(failed)?;
         let planned = self.kept.as_ref().map_or(self.last + 1, |kept| kept.steps.len());
         give_back_room(file, self.places.rooms(D as u64), planned, stored);
         if let Some(checkpoints) = self.places.checkpoints.filter(|_| self.next > self.last) {

@@ -6,6 +6,7 @@ use crate::seal;
 use hdf5::dataset::Layout;
 use hdf5::types::TypeDescriptor;
 use hdf5::{Dataset, H5Type, Hyperslab, Selection, SliceOrIndex};
+use std::fs::File;
 use std::ops::Range;
 
 /// Deflate makes at most 1032 bytes from one; other filters of HDF5 make less.
@@ -18,11 +19,11 @@ pub(crate) struct Data<'f> {
     pub(crate) shape: Vec<usize>,
     pub(super) kind: TypeDescriptor,
     /// It must be closed first.
-    _file: &'f hdf5::File,
+    _file: &'f File,
 }
 
 impl<'f> Data<'f> {
-    pub(super) fn new(set: Dataset, name: String, file_bytes: u64, file: &'f hdf5::File) -> Result<Self, FileCause> {
+    pub(super) fn new(set: Dataset, name: String, file_bytes: u64, file: &'f File) -> Result<Self, FileCause> {
         let shape = set.get_shape().map_err(damaged)?;
         let datatype = set.dtype().map_err(damaged)?;
         let kind = datatype.to_descriptor().map_err(|_| FileCause::Type {
