@@ -46,7 +46,7 @@ def rows(history: History, step: Step) -> tuple[NDArray[np.intp], bool]:
             return np.arange(count)[step], False
         except (TypeError, ValueError):
             raise wrong("step", step, "a whole number, a slice or an array of whole numbers") from None
-    if isinstance(step, list | tuple | np.ndarray) and np.ndim(step) > 0:
+    if isinstance(step, list | tuple) or (isinstance(step, np.ndarray) and step.ndim > 0):
         given = integers("step", step, None)
         if np.any((given < -count) | (given >= count)):
             raise wrong("step", step, f"from {-count} to {count - 1}: the history holds {counted(count, 'instant')}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import os
+import stat
 from pathlib import Path
 
 from percute import _percute
@@ -178,9 +179,12 @@ def read_case(case: str | os.PathLike[str]) -> tuple[str, str, str | None]:
     if not isinstance(case, str | os.PathLike):
         raise wrong("case", case, "the name of a case file, or its text")
     path = Path(file_name("case", case))
-    if path.exists() and not (path.is_file() or path.is_dir() or path.is_fifo()):
-        raise StorageError(f"`case`: {os.fspath(path)!r} is not a regular file; name a case file")
     try:
+        kind = path.stat().st_mode
+        # A pipe that a shell has opened has a writer; another one may wait for ever.
+        opened = os.fspath(path).startswith(("/dev/", "/proc/")) and stat.S_ISFIFO(kind)
+        if not (stat.S_ISREG(kind) or stat.S_ISDIR(kind) or opened):
+            raise StorageError(f"`case`: {os.fspath(path)!r} is a pipe or a device; name a case file")
         content = path.read_bytes()
         if (told := _percute.stranger(os.fspath(path), content)) is not None:
             raise InputError(f"`case`: {os.fspath(path)!r}: {told}")

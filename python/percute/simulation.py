@@ -140,7 +140,7 @@ def instants_of(
     progress: ProgressOption,
 ) -> _percute._Times:
     """Check the end and the steps of a run; the end of one that ends with the rebound is looked for."""
-    if end == "rebound":
+    if isinstance(end, str) and end == "rebound":
         if longest is not None and steps is None:
             _percute.check_run(problem._data, times_of(longest, courant, step, steps), flag("long", long))
         end = _rebound_end(problem, times_of(None, courant, step, steps), longest, after, progress)

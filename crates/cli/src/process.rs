@@ -3,8 +3,9 @@
 use crate::command::{Console, command_line};
 use crate::exit::INTERRUPTED;
 use crate::stop::{Answer, Stop};
+use percute_sweep::ENDS_WITH_INPUT;
 use std::ffi::OsString;
-use std::io::{IsTerminal, Write, stderr, stdout};
+use std::io::{IsTerminal, Write, stderr, stdin, stdout};
 use std::sync::LazyLock;
 use std::time::Duration;
 
@@ -26,6 +27,10 @@ where
     I: IntoIterator,
     I::Item: Into<OsString> + Clone,
 {
+    survive_limits();
+    if std::env::var_os(ENDS_WITH_INPUT).is_some() {
+        std::thread::spawn(end_with_input);
+    }
     STOP.begin();
     // A second command in one process finds the handler of the first in place.
     let _ = ctrlc::set_handler(asked);
@@ -36,6 +41,22 @@ where
     let _ = out.flush();
     STOP.end();
     code
+}
+
+/// Lets a write beyond the limit on the size of files fail, as one to a full disk does. It would end the process.
+#[cfg(unix)]
+fn survive_limits() {
+    // Nobody asks for the flag. Where it cannot be set, the process ends at the limit.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
+}
+
+#[cfg(not(unix))]
+fn survive_limits() {}
+
+/// Ends the process as soon as its standard input ends.
+fn end_with_input() {
+    let _ = std::io::copy(&mut stdin(), &mut std::io::sink());
+    leave();
 }
 
 /// A signal has come.
@@ -51,6 +72,11 @@ fn asked() {
             Answer::None => {}
         }
     }
+    leave();
+}
+
+/// Ends the process at once, without files of no use.
+fn leave() -> ! {
     percute_io::remove_unfinished();
     #[allow(clippy::exit)]
     std::process::exit(INTERRUPTED.into());

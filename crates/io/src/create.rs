@@ -77,6 +77,16 @@ impl Unnamed {
         reserve(self.file(), &self.path, length)
     }
 
+    /// A write that failed.
+    pub(crate) fn unwritten(&self, source: io::Error) -> FileCause {
+        no_room(source, folder_of(&self.path), self.file().metadata().map_or(0, |found| found.len()))
+    }
+
+    /// Waits until the file is on its disk.
+    pub(crate) fn sync(&self) -> Result<(), FileCause> {
+        self.file().sync_all().map_err(|source| self.unwritten(source))
+    }
+
     /// The file, for further writes.
     pub(crate) fn file(&self) -> &File {
         self.temporary.as_file()
@@ -181,12 +191,18 @@ fn destination(path: &Path, overwrite: Overwrite) -> Result<(PathBuf, Option<Hel
         return Err(FileCause::NotAFile);
     }
     let old = File::open(&path).map_err(|source| FileCause::Create { source })?;
-    Ok((path, Some(Held::alone(old)?)))
+    // Nobody writes it; others may read it until it is replaced.
+    Ok((path, Some(Held::alone(old)?.share()?)))
 }
 
 fn no_room(source: io::Error, folder: &Path, needed: u64) -> FileCause {
-    if source.kind() == io::ErrorKind::StorageFull || source.kind() == io::ErrorKind::QuotaExceeded {
-        return FileCause::NoSpace { needed, free: free(folder).unwrap_or(0) };
+    match source.kind() {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => match free(folder) {
+            // Of a quota, the system does not tell how much is left.
+            Some(free) if free >= needed => FileCause::Create { source },
+            free => FileCause::NoSpace { needed, free: free.unwrap_or(0) },
+        },
+        io::ErrorKind::FileTooLarge => FileCause::Limit { needed },
+        _ => FileCause::Create { source },
     }
-    FileCause::Create { source }
 }

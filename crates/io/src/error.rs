@@ -29,7 +29,7 @@ pub enum FileCause {
     #[error("the file exists already; give another name, or ask for it to be replaced")]
     Exists,
     /// Not a regular file.
-    #[error("it is a folder or a device, not a regular file; give another name")]
+    #[error("it is a folder, a pipe or a device, not a regular file; give another name")]
     NotAFile,
     /// Locked.
     #[error("another program is using the file (it is locked); wait until it is done, or give another name")]
@@ -40,6 +40,12 @@ pub enum FileCause {
     /// Not enough space.
     #[error("the file needs {needed} bytes of room, but only {free} are free there; make room, or store it elsewhere")]
     NoSpace { needed: u64, free: u64 },
+    /// More than a file may have here.
+    #[error(
+        "the file needs {needed} bytes, more than a file may have here (File too large); raise the limit of the shell \
+         (`ulimit -f`), or store it on another file system"
+    )]
+    Limit { needed: u64 },
     /// Writing failed during the run.
     #[error("step {step} could not be written: {source}; all steps before it are in the file")]
     Write { step: usize, source: io::Error },
@@ -109,10 +115,10 @@ pub enum FileCause {
         step.map_or(String::new(), |step| format!(" at instant {step}"))
     )]
     Checksum { name: String, step: Option<usize> },
-    /// A data set that does not hold what was written.
+    /// A data set or group that does not hold what was written.
     #[error(
         "`{name}` does not have its checksum: the file was damaged or changed after it was written; make it again, or \
-         delete the attribute `checksum` of this data set if it was changed on purpose"
+         delete the attribute `checksum` of this data set or group if it was changed on purpose"
     )]
     Seal { name: String },
     /// A missing part.
@@ -172,6 +178,7 @@ impl FileCause {
             Self::InUse
                 | Self::Create { .. }
                 | Self::NoSpace { .. }
+                | Self::Limit { .. }
                 | Self::Write { .. }
                 | Self::Finish { .. }
                 | Self::Lost { .. }

@@ -4,6 +4,12 @@ use crate::error::FileCause;
 use percute_system::{is_at, name_of, try_lock, try_lock_shared, unlock};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// How often a reader asks for its lock, and how long it waits before it asks again: a file that another process is about
+/// to replace is locked for a moment.
+const ASKED: usize = 40;
+const PAUSE: Duration = Duration::from_millis(5);
 
 /// A file that is locked. The lock is given back in so many words: closing alone leaves it with any child
 /// process that was forked meanwhile, and this one might then find its own file in use. For the same
@@ -14,6 +20,12 @@ pub(crate) struct Held(File);
 impl Held {
     /// Others may read.
     pub(crate) fn shared(file: File) -> Result<Self, FileCause> {
+        for _ in 1..ASKED {
+            match try_lock_shared(&file) {
+                Err(TryLockError::WouldBlock) => std::thread::sleep(PAUSE),
+                lock => return taken(lock).map(|()| Self(file)),
+            }
+        }
         taken(try_lock_shared(&file)).map(|()| Self(file))
     }
 

@@ -1,6 +1,8 @@
 //! The kind of a file.
 
+use percute_system::is_pipe;
 use std::fmt;
+use std::path::Path;
 
 /// The kind of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,8 +28,16 @@ impl fmt::Display for Kind {
     }
 }
 
+/// Whether a path is that of a pipe with a name of its own: whoever opens it waits for a writer, perhaps for ever. A pipe
+/// that a shell has opened, as for `<(command)`, has a writer.
+#[must_use]
+pub fn is_named_pipe(path: &Path) -> bool {
+    let opened = ["/dev", "/proc"].iter().any(|folder| path.starts_with(folder));
+    !opened && path.metadata().is_ok_and(|found| is_pipe(found.file_type()))
+}
+
 /// Whether ParaView recognises a file of this name as VTKHDF: by its ending, `.vtkhdf`.
 #[must_use]
-pub fn is_vtkhdf_name(path: &std::path::Path) -> bool {
+pub fn is_vtkhdf_name(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vtkhdf"))
 }

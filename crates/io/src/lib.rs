@@ -26,7 +26,7 @@ mod write;
 
 pub use create::{Overwrite, check_folder, write_bytes};
 pub use error::{FileCause, FileError};
-pub use kind::{Kind, is_vtkhdf_name};
+pub use kind::{Kind, is_named_pipe, is_vtkhdf_name};
 pub use library::hdf5_version;
 pub use read::is_hdf5;
 pub use read::kind;

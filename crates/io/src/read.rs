@@ -158,7 +158,12 @@ impl<'f> Part<'f> {
         }
         let group = self.group.group(name).map_err(damaged)?;
         let Self { file_bytes, file, texts, .. } = *self;
-        Ok(Some(Part { group, name: self.path(name), file_bytes, file, texts }))
+        let part = Part { group, name: self.path(name), file_bytes, file, texts };
+        if part.has_attribute(seal::NAME) {
+            let names = part.names()?;
+            seal::check(&part.group, &part.name, || seal::of_names(names))?;
+        }
+        Ok(Some(part))
     }
 
     pub(crate) fn group(&self, name: &str) -> Result<Part<'f>, FileCause> {

@@ -1,8 +1,8 @@
-//! Checksums of whole data sets, as attributes of them: those of an estimate file.
+//! Checksums of whole data sets and of the names in groups, as attributes of them: those of an estimate file.
 
 use crate::checksum::Checksum;
 use crate::error::FileCause;
-use hdf5::Dataset;
+use hdf5::Location;
 
 /// Name of the attribute.
 pub(crate) const NAME: &str = "checksum";
@@ -17,8 +17,14 @@ pub(crate) fn of_integers(values: &[i64]) -> Checksum {
     Checksum::new().indices(values.iter().map(|&value| value as usize))
 }
 
-/// Compares what was read with the checksum of its data set, if it has one.
-pub(crate) fn check(set: &Dataset, name: &str, sum: impl FnOnce() -> Checksum) -> Result<(), FileCause> {
+/// The checksum of the names in a group, in any order.
+pub(crate) fn of_names(mut names: Vec<String>) -> Checksum {
+    names.sort();
+    names.iter().fold(Checksum::new(), |sum, name| sum.text(name))
+}
+
+/// Compares what was read with the checksum of its data set or group, if it has one.
+pub(crate) fn check(set: &Location, name: &str, sum: impl FnOnce() -> Checksum) -> Result<(), FileCause> {
     let Ok(stored) = set.attr(NAME) else { return Ok(()) };
     match stored.read_scalar::<i64>() {
         Ok(stored) if stored == sum().stored() => Ok(()),

@@ -128,7 +128,10 @@ fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
             | EstimateError::Acceleration(_)
             | EstimateError::Request(_),
         ) => input(py, error),
-        RunError::Estimate(EstimateError::Scratch(_)) => exception(py, "StorageError", &error.to_string()),
+        RunError::Estimate(EstimateError::Scratch(_)) => {
+            let resumes = "; a history that was stored in a file has the steps so far: `percute.resume` goes on";
+            exception(py, "StorageError", &format!("{error}{resumes}"))
+        }
         RunError::Estimate(_) => exception(py, "EstimateError", &error.to_string()),
         RunError::Source(cause) => steps(py, cause),
     }

@@ -16,6 +16,6 @@ mod values;
 pub use attempt::{State, has_changed};
 pub use key::Key;
 pub use plan::{Plan, Planned};
-pub use pool::{Count, Launch, run};
+pub use pool::{Count, ENDS_WITH_INPUT, Launch, run};
 pub use table::{Column, columns, states, write};
 pub use values::{Values, from_json};

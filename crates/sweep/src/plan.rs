@@ -4,6 +4,7 @@ use crate::key::replace;
 use crate::name::names;
 use crate::values::Values;
 use percute_core::each_dimension;
+use percute_io::is_named_pipe;
 use percute_workflow::Failure;
 use percute_workflow::case::{Source, parse};
 use percute_workflow::effort::Long;
@@ -41,6 +42,7 @@ impl Plan {
     /// Something wrong with the file, with the case, or with the first case of the sweep.
     pub fn read(file: &Path, folder: Option<&Path>, long: Long) -> Result<Self, Failure> {
         let told = |message: String| Failure::Argument(format!("{}: {message}", file.display()));
+        refuse_pipe(file)?;
         let text = std::fs::read_to_string(file);
         let text = text.map_err(|cause| told(format!("cannot read the sweep file: {cause}")))?;
         let document = Document::parse(text.as_str()).map_err(|error| told(error.to_string().trim().to_string()))?;
@@ -88,6 +90,7 @@ impl Plan {
     /// A case that cannot be read, a key that it does not have; a mistake in the first case. Those of the others are
     /// told when they are run.
     pub fn new(case: &Path, folder: PathBuf, values: Values, long: Long) -> Result<Self, Failure> {
+        refuse_pipe(case)?;
         let text = std::fs::read_to_string(case);
         let text = text.map_err(|cause| Failure::Unreadable { file: case.to_path_buf(), cause })?;
         let shown = case.display().to_string();
@@ -127,6 +130,12 @@ fn check(name: &str, text: &str, folder: &Path, long: Long) -> Result<(), Failur
     let case = parse(Source::new(name, text).in_folder(folder))?;
     each_dimension!(&case, case => case.check_run(true, long))?;
     Ok(())
+}
+
+/// Refuses a pipe, which would wait for its writer.
+fn refuse_pipe(file: &Path) -> Result<(), Failure> {
+    let told = || format!("{}: this is a pipe, whose writer may never come; name a file", file.display());
+    if is_named_pipe(file) { Err(Failure::Argument(told())) } else { Ok(()) }
 }
 
 /// Lets a case find its mesh from its own folder.

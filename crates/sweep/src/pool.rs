@@ -17,6 +17,10 @@ const POLL: Duration = Duration::from_millis(10);
 /// How long a process may take to stop when it is told to; percute takes less.
 const PATIENCE: Duration = Duration::from_secs(2);
 
+/// The variable of the environment with which a process of a sweep is to end as soon as its standard input does: its
+/// sweep has ended.
+pub const ENDS_WITH_INPUT: &str = "PERCUTE_ENDS_WITH_INPUT";
+
 /// The exit code of an interrupted run.
 const INTERRUPTED: i32 = 130;
 /// Ctrl-C reaches all processes of a terminal at once; the observer hears of it this much later at most.
@@ -66,7 +70,9 @@ impl Launch {
         if self.long {
             command.arg("--long");
         }
-        command.current_dir(attempt.folder()).stdin(Stdio::null()).stdout(result).stderr(messages).spawn()
+        // Its input ends with this process, however that ends.
+        command.current_dir(attempt.folder()).env(ENDS_WITH_INPUT, "1").stdin(Stdio::piped());
+        command.stdout(result).stderr(messages).spawn()
     }
 }
 

@@ -22,7 +22,7 @@ use crate::progress::Watch;
 use crate::stop::Stop;
 use clap::Parser;
 use percute_estimator::EstimateError;
-use percute_io::{FileError, is_hdf5};
+use percute_io::{FileError, is_hdf5, is_named_pipe};
 use percute_system::is_pipe;
 use percute_workflow::Failure;
 use percute_workflow::case::{Case, CaseOf, Source, parse, stranger};
@@ -155,6 +155,11 @@ impl Console<'_> {
         ));
     }
 
+    /// Says how a run goes on of which something else than its history has failed.
+    fn say_to_resume(&mut self, history: &Path) {
+        self.say(&format!("the steps so far are in {}: the same command with --resume goes on", history.display()));
+    }
+
     /// Prints the plausibility warnings about a case and returns their names.
     fn warn_about<const D: usize, const N: usize>(&mut self, case: &CaseOf<D, N>, quiet: bool) -> Vec<&'static str> {
         let warnings = if quiet { Vec::new() } else { case.plausibility_warnings(false) };
@@ -212,6 +217,10 @@ fn read(file: &Path) -> Result<Source, Failure> {
         return Err(Failure::Argument(format!("{name}: there is no file of this name{}", similar(file))));
     }
     let kind = file.metadata().map_err(unreadable)?.file_type();
+    if is_named_pipe(file) {
+        let told = "this is a pipe, whose writer may never come; name a case file, or give <(COMMAND)";
+        return Err(Failure::Argument(format!("{name}: {told}")));
+    }
     if !kind.is_file() && !is_pipe(kind) {
         return Err(Failure::Argument(format!("{name}: this is not a regular file; name a case file")));
     }

@@ -130,11 +130,15 @@ fn begin<const D: usize, const N: usize>(
     work: &WorkArguments,
     console: &mut Console<'_>,
 ) -> Result<Outcome<Results<D>>, Failure> {
+    let path = history.map(|history| history.file);
     let history = history.map(|file| begin_history(case, file, force, work.quiet, console)).transpose()?;
     let watch = &mut Watch::new(console.progress && !work.quiet, console.stop);
     let storage = Storage { file: history, memory: None, open: None };
     let done = run(&case.problem, &case.times, analysis, storage, watch).map_err(|failure| located(case, failure));
     watch.clear();
+    if let (Err(Failure::Run(RunError::Estimate(EstimateError::Scratch(_)))), Some(path)) = (&done, path) {
+        console.say_to_resume(path);
+    }
     done
 }
 

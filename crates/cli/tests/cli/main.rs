@@ -11,6 +11,7 @@ mod dependencies;
 mod disk;
 mod examples;
 mod export;
+mod faults;
 mod history;
 #[cfg(target_os = "linux")]
 mod interrupt;

@@ -3,7 +3,7 @@
 use crate::checksum::Checksum;
 use crate::error::FileCause;
 use crate::library::refused;
-use crate::seal::{NAME, of_floats, of_integers};
+use crate::seal::{NAME, of_floats, of_integers, of_names};
 use crate::write::attribute;
 use hdf5::Group;
 use hdf5::types::TypeDescriptor;
@@ -23,6 +23,13 @@ pub(super) fn seal_numbers(group: &Group) -> Result<(), FileCause> {
         attribute(&set, NAME, sum.stored())?;
     }
     group.groups().map_err(refused)?.iter().try_for_each(seal_numbers)
+}
+
+/// Gives a group, and the groups in it, the checksum of the names of what they hold.
+pub(super) fn seal_names(group: &Group) -> Result<(), FileCause> {
+    let refused = |error: hdf5::Error| refused(&error);
+    attribute(group, NAME, of_names(group.member_names().map_err(refused)?).stored())?;
+    group.groups().map_err(refused)?.iter().try_for_each(seal_names)
 }
 
 /// Gives the data set of a text its checksum.

@@ -1,7 +1,7 @@
 //! Writes an estimate, completely or not at all.
 
 use super::contact;
-use super::sums::{seal_numbers, seal_text};
+use super::sums::{seal_names, seal_numbers, seal_text};
 use crate::create::{Overwrite, Unnamed};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
@@ -13,7 +13,6 @@ use hdf5::Group;
 use percute_core::contact::{ContactResults, ContactSteps};
 use percute_core::problem::Problem;
 use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Sample};
-use std::io;
 use std::path::Path;
 
 /// Overhead of the library beside the arrays and for each group of the mesh (bytes), with a margin.
@@ -51,8 +50,7 @@ pub fn write<const D: usize, const N: usize>(
     let written = contents.check().and_then(|()| {
         let (unnamed, ()) = Unnamed::new(path, overwrite, contents.bytes(), |file, texts| contents.fill(file, texts))?;
         unnamed.reserve()?;
-        let synced = |source: io::Error| FileCause::Create { source };
-        unnamed.file().sync_all().map_err(synced)?;
+        unnamed.sync()?;
         unnamed.put().map(drop)
     });
     written.map_err(|cause| cause.at(path))
@@ -125,9 +123,10 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
         self.seal(file, &ours)
     }
 
-    /// Adds the checksums of all data sets.
+    /// Adds the checksums of all data sets, and of the names in the groups of percute.
     fn seal(&self, file: &Group, ours: &Group) -> Result<(), FileCause> {
         seal_numbers(file)?;
+        seal_names(ours)?;
         let case = self.case.map(|case| [("case", &case.text), ("case_name", &case.name)]);
         let case = case.iter().flatten().map(|(name, text)| (*name, text.as_str()));
         let mut texts = [("problem", self.statement), ("report", self.report)].into_iter().chain(case);

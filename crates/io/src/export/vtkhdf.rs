@@ -38,7 +38,7 @@ impl<'a, const D: usize, const N: usize> Single<'a, D, N> {
             let row = (8 * field.components * self.contents.rows(field.place)) as u64;
             let bytes: Vec<u8> = values.iter().flat_map(|x| x.to_ne_bytes()).collect();
             let written = write_all_at(self.unnamed.file(), &bytes, place + self.written as u64 * row);
-            written.map_err(|source| FileCause::Create { source }.at(&self.path))?;
+            written.map_err(|source| self.unnamed.unwritten(source).at(&self.path))?;
         }
         self.written += 1;
         Ok(())
@@ -46,8 +46,7 @@ impl<'a, const D: usize, const N: usize> Single<'a, D, N> {
 
     pub(super) fn finish(self) -> Result<Vec<PathBuf>, FileError> {
         let Self { path, unnamed, .. } = self;
-        let synced = unnamed.file().sync_all().map_err(|source| FileCause::Create { source });
-        synced.and_then(|()| unnamed.put().map(drop)).map_err(|cause| cause.at(&path))?;
+        unnamed.sync().and_then(|()| unnamed.put().map(drop)).map_err(|cause| cause.at(&path))?;
         Ok(vec![path])
     }
 }

@@ -32,6 +32,10 @@ impl Identity {
             io::ErrorKind::NotFound => FileCause::Missing,
             _ => FileCause::Read { source },
         };
+        // A pipe would wait for its writer.
+        if !path.metadata().map_err(refused)?.is_file() {
+            return Err(FileCause::NotAFile);
+        }
         File::open(path).map(Self).map_err(refused)
     }
 

@@ -5,6 +5,7 @@ use super::elsewhere::Elsewhere;
 use super::file::{AnyHistoryFile, Contents, HistoryFile, Identity};
 use super::kept;
 use super::nodal::{finite, nodal};
+use super::rows::FIELDS;
 use super::sums::{check_fixed_part, check_rows, fixed_part, of_vectors};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
@@ -84,7 +85,11 @@ where
     let statement =
         ours.optional_text("problem")?.ok_or_else(|| FileCause::MissingPart { name: "percute/problem".to_string() })?;
     let (case, provenance, elsewhere) = (case(&ours)?, provenance(&ours)?, Elsewhere::read(&ours, nodes)?);
-    let checksums = provenance.is_percute() && ours.optional("checksums")?.is_some();
+    let stored_sums = ours.optional("checksums")?.filter(|_| provenance.is_percute());
+    if let Some(sums) = &stored_sums {
+        sums.expect(&[instants, FIELDS.len()], "one for each field at each instant")?;
+    }
+    let checksums = stored_sums.is_some();
     if checksums {
         let nodes = contact_nodes.iter().copied();
         let run = kept.as_ref().map_or(&[][..], |kept| kept.times.instants());

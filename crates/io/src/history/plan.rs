@@ -175,7 +175,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
     fn unnamed(&self, path: &Path, overwrite: Overwrite, bytes: u64) -> Result<(Unnamed, Places), FileCause> {
         let (unnamed, places) = Unnamed::new(path, overwrite, bytes, |file, texts| self.fill(file, texts))?;
         let start = write_vectors(unnamed.file(), places.displacement, self.problem.initial_displacement());
-        start.map_err(|source| FileCause::Create { source })?;
+        start.map_err(|source| unnamed.unwritten(source))?;
         Ok((unnamed, places))
     }
 

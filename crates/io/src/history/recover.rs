@@ -3,7 +3,7 @@
 use super::checkpoints::places;
 use super::file::NativeArray;
 use super::open::open;
-use crate::driver::{Driven, Fault};
+use crate::driver::Driven;
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::library::{alone, detail};

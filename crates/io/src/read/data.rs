@@ -74,8 +74,10 @@ impl<'f> Data<'f> {
     pub(crate) fn floats(&self) -> Result<Vec<f64>, FileCause> {
         self.check_floats()?;
         let values = self.all()?;
-        if matches!(self.kind, TypeDescriptor::Float(_)) {
-            seal::check(&self.set, &self.name, || seal::of_floats(&values))?;
+        // The numbers are sealed as they are stored.
+        match self.kind {
+            TypeDescriptor::Float(_) => seal::check(&self.set, &self.name, || seal::of_floats(&values))?,
+            _ => self.integers().map(drop)?,
         }
         Ok(values)
     }
@@ -139,16 +141,22 @@ impl<'f> Data<'f> {
         }
     }
 
+    fn refuse_scalar<T>(&self) -> Result<T, FileCause> {
+        let needed = "rows, one for each instant or node".to_string();
+        Err(FileCause::Shape { name: self.name.clone(), given: Vec::new(), needed })
+    }
+
     fn all<T: H5Type>(&self) -> Result<Vec<T>, FileCause> {
         self.room::<T>(self.shape.iter().product())?;
         self.set.read_raw().map_err(damaged)
     }
 
     fn rows<T: H5Type>(&self, rows: Range<usize>) -> Result<Vec<T>, FileCause> {
-        let row: usize = self.shape[1..].iter().product();
+        let Some(of_row) = self.shape.get(1..) else { return self.refuse_scalar() };
+        let row: usize = of_row.iter().product();
         self.room::<T>(rows.len().saturating_mul(row))?;
         let mut slab = vec![SliceOrIndex::from(rows)];
-        slab.extend(self.shape[1..].iter().map(|_| SliceOrIndex::from(..)));
+        slab.extend(of_row.iter().map(|_| SliceOrIndex::from(..)));
         let selection = Selection::from(Hyperslab::from(slab));
         let values = self.set.read_slice::<T, _, ndarray::IxDyn>(selection).map_err(damaged)?;
         Ok(values.into_raw_vec_and_offset().0)

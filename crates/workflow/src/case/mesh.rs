@@ -91,7 +91,9 @@ pub(super) fn coarsest(table: &Table<'_>) -> Option<Coarsest> {
         table.get(of)?.table(keys, "").ok()?.get(key)?.number("m").ok().filter(|length| *length > 0.0)
     };
     let [nx, ny] = sides;
-    let corners = || vec![0, nx, ny * (nx + 1), ny * (nx + 1) + nx];
+    // Beyond all that a mesh may have, the large mesh is refused.
+    let above = ny.saturating_mul(nx.saturating_add(1));
+    let corners = || vec![0, nx, above, above.saturating_add(nx)];
     let (made, nodes) = match ["rectangle", "disc", "bar"].map(|key| table.get(key).is_some()) {
         [true, false, false] => {
             let size = ["width", "height"].map(|side| length("rectangle", &["width", "height", "nx", "ny"], side));
