@@ -68,7 +68,7 @@ const SCENARIOS: [Scenario; 7] = [
         name: "sweep",
         before: &[],
         command: "sweep sweep.toml --jobs 1 --quiet",
-        files: &["sweep/table.csv"],
+        files: &["sweep/results.csv"],
         after: "sweep sweep.toml --jobs 1 --quiet",
     },
 ];

@@ -184,3 +184,34 @@ fn what_a_killed_sweep_left_is_removed() {
     assert!(left.is_empty(), "{left:?}");
     assert_eq!(rows(&bench.path("sweep/results.csv")).len(), 4);
 }
+
+/// However a sweep ends, its processes end with it: a kill leaves no time to tell them.
+#[test]
+#[cfg(target_os = "linux")]
+fn processes_end_with_a_killed_sweep() {
+    let bench = bench("case = \"case.toml\"\n[grid]\nobstacle.0.friction = [0.1, 0.4]\n");
+    let long = BLOCK.replace("nx = 5, ny = 4", "nx = 50, ny = 40").replace("end = 5e-6", "end = 5e-2");
+    std::fs::write(bench.path("case.toml"), long).unwrap();
+    for signal in ["KILL", "HUP"] {
+        let mut sweep = start(&bench, &["sweep", "sweep.toml", "--jobs", "2", "--long", "--quiet"]);
+        let children = format!("/proc/{0}/task/{0}/children", sweep.id());
+        let running = || std::fs::read_to_string(&children).unwrap().split_whitespace().map(String::from).collect();
+        let mut found: Vec<String> = running();
+        while found.len() < 2 {
+            assert!(sweep.try_wait().unwrap().is_none(), "it has ended");
+            std::thread::sleep(std::time::Duration::from_millis(5));
+            found = running();
+        }
+        let id = sweep.id().to_string();
+        assert!(std::process::Command::new("kill").args(["-s", signal, &id]).status().unwrap().success());
+        sweep.wait().unwrap();
+        let lives = |id: &String| {
+            std::fs::read(format!("/proc/{id}/cmdline")).is_ok_and(|line| line.windows(3).any(|word| word == b"run"))
+        };
+        let begun = std::time::Instant::now();
+        while found.iter().any(lives) {
+            assert!(begun.elapsed().as_secs() < 60, "{signal}: the processes {found:?} go on");
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+    }
+}
