@@ -61,6 +61,13 @@ fn dimension(opened: &Opened) -> Result<i64, FileCause> {
     opened.root().group("percute")?.integer_attribute("dimension")
 }
 
+/// Whether a history has checksums: then one for each field at each instant.
+fn has_checksums(ours: &Part<'_>, instants: usize) -> Result<bool, FileCause> {
+    let Some(sums) = ours.optional("checksums")? else { return Ok(false) };
+    sums.expect(&[instants, FIELDS.len()], "one for each field at each instant")?;
+    Ok(true)
+}
+
 pub(super) fn contents<const D: usize, const N: usize>(
     path: &Path,
     identity: Identity,
@@ -85,11 +92,7 @@ where
     let statement =
         ours.optional_text("problem")?.ok_or_else(|| FileCause::MissingPart { name: "percute/problem".to_string() })?;
     let (case, provenance, elsewhere) = (case(&ours)?, provenance(&ours)?, Elsewhere::read(&ours, nodes)?);
-    let stored_sums = ours.optional("checksums")?.filter(|_| provenance.is_percute());
-    if let Some(sums) = &stored_sums {
-        sums.expect(&[instants, FIELDS.len()], "one for each field at each instant")?;
-    }
-    let checksums = stored_sums.is_some();
+    let checksums = provenance.is_percute() && has_checksums(&ours, instants)?;
     if checksums {
         let nodes = contact_nodes.iter().copied();
         let run = kept.as_ref().map_or(&[][..], |kept| kept.times.instants());
