@@ -152,7 +152,13 @@ fn a_file_without_and_damaged_ones() {
         drop(file);
         contact(path(name)).unwrap_err().to_string()
     };
-    let said = damage("missing", &|contact| contact.unlink("gap").unwrap());
+    let said = damage("lost", &|contact| contact.unlink("gap").unwrap());
+    assert!(said.contains("`percute/contact` does not have its checksum"), "{said}");
+    let said = damage("missing", &|contact| {
+        contact.unlink("gap").unwrap();
+        // Changed on purpose.
+        contact.delete_attr("checksum").unwrap();
+    });
     assert!(said.contains("`percute/contact/gap` is missing"), "{said}");
     let said = damage("changed", &|contact| {
         contact.dataset("force").unwrap().write_slice(&[1.0], (3, 2, 1..2)).unwrap();
