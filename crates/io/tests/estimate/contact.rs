@@ -129,7 +129,7 @@ fn the_body_shows_contact_at_the_instants() {
 }
 
 #[test]
-fn a_file_without_and_damaged_ones() {
+fn a_file_without_contact() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     let (problem, results) = (block(), replayed(&block(), &steps(&block())));
@@ -144,7 +144,14 @@ fn a_file_without_and_damaged_ones() {
     early.instants.pop();
     let error = with_contact(&path("early"), &problem, &estimate, Some(&early)).unwrap_err();
     assert!(matches!(error.cause, FileCause::Problem { what: "instants", given: 20, needed: 21 }), "{error}");
+}
 
+#[test]
+fn damaged_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let (problem, results) = (block(), replayed(&block(), &steps(&block())));
+    let estimate = estimated(&problem, 2, false);
     let damage = |name: &str, damage: &dyn Fn(&hdf5::Group)| {
         with_contact(&path(name), &problem, &estimate, Some(&results)).unwrap();
         let file = hdf5::File::open_rw(path(name)).unwrap();
