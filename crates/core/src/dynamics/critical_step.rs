@@ -110,8 +110,10 @@ fn largest_eigenvalue<const D: usize, const N: usize>(problem: &Problem<D, N>) -
     }
 }
 
-/// A vector without structure, of the norm 1 with the mass, that is the same in every run (Knuth's MMIX generator).
-fn random_start<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<[f64; D]> {
+/// A nodal field without structure, of values between −½ and ½ and 0 on prescribed components, that is the same in every
+/// run (Knuth's MMIX generator).
+#[must_use]
+pub fn rough_field<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<[f64; D]> {
     let mut state = 1_u64;
     let mut draw = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -119,6 +121,12 @@ fn random_start<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<
     };
     let mut x: Vec<[f64; D]> = (0..problem.mesh().node_count()).map(|_| std::array::from_fn(|_| draw())).collect();
     problem.prescribed().iter().for_each(|p| x[p.node.index()][p.component] = 0.0);
+    x
+}
+
+/// A rough field of the norm 1 with the mass.
+fn random_start<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<[f64; D]> {
+    let mut x = rough_field(problem);
     let norm = x.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
     for (x, mass) in x.iter_mut().zip(problem.mass()) {
         *x = x.map(|x| x / (norm * mass.sqrt()));

@@ -20,7 +20,7 @@ mod work_meter;
 
 pub use balance::Balance;
 pub use balancing::Balancing;
-pub use critical_step::{element_time_step, time_step_of_element};
+pub use critical_step::{element_time_step, rough_field, time_step_of_element};
 pub use evaluation::Evaluation;
 pub use instances::{critical_time_step, replay, resume, simulate, simulate_threaded};
 pub use internal_force::Stiffness;

@@ -9,8 +9,7 @@ use super::parts::{Part, View, for_all};
 use super::pass::{PartPass, Pass};
 use super::{AuxiliaryLevel, Fields, Motions, Nodal, start_of};
 use crate::simd::run_task;
-use percute_core::dynamics::{critical_time_step, element_time_step};
-use std::array::from_fn;
+use percute_core::dynamics::{critical_time_step, element_time_step, rough_field};
 
 /// Up to this part of the critical step the scheme is stable. 1e-3 is the precision of the critical step.
 const SAFE: f64 = 0.9 + 1e-3;
@@ -46,17 +45,9 @@ impl<const D: usize, const N: usize> Motions<'_, D, N> {
     fn is_stable(&self, step: f64) -> bool {
         let count = self.problem.mesh().node_count();
         let mut fields = Fields::new(self.problem, &self.smoothing, self.fields.gradients.len());
-        // Knuth's MMIX generator: the same start in each run.
-        let mut state = 1_u64;
-        let mut draw = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-        };
-        for u in &mut fields.displacement {
-            let rough: [f64; D] = from_fn(|_| draw());
+        for (u, rough) in fields.displacement.iter_mut().zip(rough_field(self.problem)) {
             *u = Nodal::new([rough, [0.0; D], [0.0; D], [0.0; D]]);
         }
-        self.problem.prescribed().iter().for_each(|p| fields.displacement[p.node.index()].set(p.component, 0.0));
         fields.half_step.fill(Nodal::ZERO);
         let inverse_mass: Vec<f64> = self.problem.mass().iter().map(|m| 1.0 / m).collect();
         let [simulated, mut displacement, mut acceleration] = [0; 3].map(|_| vec![[0.0; D]; count]);
