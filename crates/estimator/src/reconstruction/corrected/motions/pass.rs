@@ -232,7 +232,7 @@ impl<const D: usize> Pass<'_, D> {
             }
             Some(split) => {
                 for (((out, lumped), (rate, once)), node) in out.zip(&mut split.lumped[range]).zip(fields).zip(nodes) {
-                    let first = self.weights_of(node).first;
+                    let [first, ..] = self.weights_of(node).auxiliary();
                     let (plain, once): ([f64; D], [f64; D]) = (rate.of(0), once.auxiliary());
                     *out = std::array::from_fn(|c| plain[c] + first * once[c]);
                     *lumped = std::array::from_fn(|c| out[c] - first * plain[c]);

@@ -51,8 +51,6 @@ pub(super) struct Weights {
 pub(super) struct BodyWeights {
     /// Of M⁻¹(M − M_c)ã once, twice and three times.
     pub(super) mass: [FirstPair; 3],
-    /// c₁ of the auxiliary solution.
-    pub(super) first: f64,
 }
 
 /// Factors of the parts of a correction at one level.
@@ -68,7 +66,17 @@ pub(super) struct LevelWeights<'a> {
 impl BodyWeights {
     fn new(body: &Coefficients, [first, second]: [f64; 2]) -> Self {
         let pair = |factor: f64| FirstPair([factor * first, factor * second, factor * first, factor * second]);
-        Self { mass: body.mass.map(pair), first: first * body.mass[0] }
+        Self { mass: body.mass.map(pair) }
+    }
+
+    /// Those of all bodies, with these shares of the first pair of motions.
+    fn all(smoothing: &Smoothing, shares: [f64; 2]) -> Vec<Self> {
+        smoothing.bodies().iter().map(|body| Self::new(body, shares)).collect()
+    }
+
+    /// Those of the auxiliary solution.
+    pub(super) fn auxiliary(&self) -> [f64; 3] {
+        self.mass.map(|pair| pair.0[0])
     }
 }
 
@@ -82,7 +90,7 @@ impl Weights {
     /// Those with these shares of the auxiliary solution.
     pub(super) fn new(smoothing: &Smoothing, auxiliary: Shares) -> Self {
         let shares = shares(auxiliary);
-        let of = |pair: [f64; 2]| smoothing.bodies().iter().map(|body| BodyWeights::new(body, pair)).collect();
+        let of = |pair| BodyWeights::all(smoothing, pair);
         Self { shares, bodies: of([shares[0].space, shares[1].space]), plain: of([0.0; 2]), reversals: 0 }
     }
 
@@ -94,7 +102,7 @@ impl Weights {
     /// Weakens the corrections of the mass to this part.
     pub(super) fn weaken(&mut self, smoothing: &Smoothing, part: f64) {
         let pair = [self.shares[0].space, self.shares[1].space].map(|share| part * share);
-        self.bodies = smoothing.bodies().iter().map(|body| BodyWeights::new(body, pair)).collect();
+        self.bodies = BodyWeights::all(smoothing, pair);
     }
 
     /// Whether corrections are made at the level that has begun.
@@ -104,7 +112,7 @@ impl Weights {
 
     /// c₁, c₂ and −c₃ of the auxiliary solution in a body, where corrections are made.
     pub(super) fn auxiliary(&self, body: usize) -> [f64; 3] {
-        self.bodies[body].mass.map(|pair| pair.0[0])
+        self.bodies[body].auxiliary()
     }
 
     /// Those at t_n.
