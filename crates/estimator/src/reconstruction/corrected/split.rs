@@ -1,5 +1,6 @@
 //! The split of the mass term where there is no auxiliary solution: M ã = M_c ã + (M − M_c) ã.
 
+use crate::inertia::arms;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::problem::Problem;
@@ -15,16 +16,15 @@ pub(super) fn skew_acceleration<const D: usize, const N: usize>(
     let (mesh, mut skew) = (problem.mesh(), vec![[0.0; D]; w.len()]);
     for (e, nodes) in mesh.cells().iter().enumerate() {
         let id = ElementId::new(e);
-        let (points, gradients) = (mesh.cell_points(id), mesh.cell_geometry(id).gradients);
+        let (arms, gradients) = (arms(&mesh.cell_points(id)), mesh.cell_geometry(id).gradients);
         let half = 0.5 * problem.material(id).density() * problem.volume(id) / (D + 2) as f64;
         let mut stress = [[0.0; D]; D];
         for (i, node) in nodes.iter().enumerate() {
             for a in 0..D {
                 let change = half * (w[node.index()][a] - w[nodes[0].index()][a]);
                 for b in 0..D {
-                    let arm = points[i][b] - points.iter().map(|p| p[b]).sum::<f64>() / N as f64;
-                    stress[a][b] += change * arm;
-                    stress[b][a] -= change * arm;
+                    stress[a][b] += change * arms[i][b];
+                    stress[b][a] -= change * arms[i][b];
                 }
             }
         }
