@@ -69,9 +69,8 @@ impl Gaps {
 
     /// The nearest node at the last instant.
     pub(super) fn nearest(&self) -> Option<Nearest> {
-        let row = |(time, gaps): &(f64, Vec<f64>)| (*time, gaps.clone());
-        let ((time, gaps), before) = (row(self.now.as_ref()?), self.before.as_ref());
-        Nearest::new((time, &gaps), before.map(|(time, gaps)| (*time, &gaps[..])))
+        let [now, before] = [&self.now, &self.before].map(|row| row.as_ref().map(|(time, gaps)| (*time, &gaps[..])));
+        Nearest::new(now?, before)
     }
 }
 
