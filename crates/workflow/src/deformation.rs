@@ -71,11 +71,14 @@ pub struct Extreme {
 }
 
 impl Extreme {
+    /// The larger of two; the first of equal ones.
+    fn larger(self, other: Self) -> Self {
+        if other.value.abs() > self.value.abs() { other } else { self }
+    }
+
     /// Takes in a value; the first of equal ones stays.
     fn take(&mut self, value: f64, element: usize, time: f64) {
-        if value.abs() > self.value.abs() {
-            *self = Self { value, element, time };
-        }
+        *self = self.larger(Self { value, element, time });
     }
 }
 
@@ -83,8 +86,7 @@ impl Deformation {
     /// The largest principal strain of all bodies.
     #[must_use]
     pub fn strain(&self) -> Extreme {
-        let all = self.bodies.iter().map(|body| body.strain);
-        all.fold(Extreme::default(), |most, next| if next.value.abs() > most.value.abs() { next } else { most })
+        self.bodies.iter().map(|body| body.strain).fold(Extreme::default(), Extreme::larger)
     }
 }
 
