@@ -113,8 +113,7 @@ class RandomBody:
     @property
     def grading(self) -> float:
         """The longest edge of the mesh over the shortest."""
-        nodes = self.mesh.points[self.mesh.cells]
-        sides = np.linalg.norm(nodes - np.roll(nodes, 1, axis=1), axis=2)
+        sides = meshes.edges(self.mesh)
         return float(sides.max() / sides.min())
 
 

@@ -119,11 +119,17 @@ def _kept(shape: Shape, mesh: pc.Mesh, mirror: float) -> pc.Mesh:
     return pc.Mesh(points[used], cells.reshape(-1, 3))
 
 
+def edges(mesh: pc.Mesh) -> Floats:
+    """Give the lengths of the edges of each element (m)."""
+    nodes = mesh.points[mesh.cells]
+    found: Floats = np.linalg.norm(nodes - np.roll(nodes, 1, axis=1), axis=2)
+    return found
+
+
 def longest(mesh: pc.Mesh) -> Floats:
     """Give the longest edge of each element (m)."""
-    nodes = mesh.points[mesh.cells]
-    edges: Floats = np.linalg.norm(nodes - np.roll(nodes, 1, axis=1), axis=2).max(axis=1)
-    return edges
+    found: Floats = edges(mesh).max(axis=1)
+    return found
 
 
 def refined(mesh: pc.Mesh, sizes: Sizes, most: int) -> pc.Mesh:
@@ -142,12 +148,12 @@ def refined(mesh: pc.Mesh, sizes: Sizes, most: int) -> pc.Mesh:
 def delaunay(shape: Shape, sizes: Sizes, draws: Draws) -> pc.Mesh:
     """Triangulate the nodes of the outline, and jittered points inside it."""
     outlines = shape.outlines(sizes.parts)
-    edges, start = [], 0
+    pieces, start = [], 0
     for outline in outlines:
         numbers = start + np.arange(len(outline))
-        edges.append(np.stack([numbers, np.roll(numbers, -1)], axis=1))
+        pieces.append(np.stack([numbers, np.roll(numbers, -1)], axis=1))
         start += len(outline)
-    ring, boundary = np.concatenate(edges), np.concatenate(outlines)
+    ring, boundary = np.concatenate(pieces), np.concatenate(outlines)
     points = np.concatenate([boundary, _jittered(shape, sizes, boundary, ring, draws)])
     for _ in range(SMOOTHED):
         sums, counts = np.zeros_like(points), np.zeros(len(points))
@@ -234,8 +240,7 @@ def checked(mesh: pc.Mesh) -> pc.Mesh:
     """Give a mesh if it has not too many elements and no small angles."""
     if len(mesh.cells) > MOST:
         raise NoMesh("too many elements")
-    nodes = mesh.points[mesh.cells]
-    sides = np.linalg.norm(nodes - np.roll(nodes, 1, axis=1), axis=2)
+    sides = edges(mesh)
     cosines = [(sides[:, i] ** 2 + sides[:, j] ** 2 - sides[:, k] ** 2) / (2.0 * sides[:, i] * sides[:, j]) for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1))]
     if np.max(cosines) > math.cos(math.radians(LEAST_ANGLE)):
         raise NoMesh("an angle is too small")
