@@ -50,7 +50,8 @@ impl<const D: usize> ElementState<D> {
         (0.5 * squares + 3.0 * shears.map(|(i, j)| self.stress[i][j].powi(2)).sum::<f64>()).sqrt()
     }
 
-    /// The principal strain in the plane (a bar: ε) that is largest without its sign; of two equal ones, the elongation.
+    /// The principal strain in the plane (a bar: ε) that is largest without its sign; of two equal ones, the
+    /// elongation.
     #[must_use]
     pub fn principal_strain(&self) -> f64 {
         if D == 1 {

@@ -7,8 +7,8 @@ use crate::options::Acceleration;
 ///
 /// All choices balance the resultant and the moment of the equilibrated tractions. These do the lumped work
 /// ρ|E|/(D+1) Σ ã_i·u_i on every linear field u. With `split` they do the work ∫ρ a_c·u + ρ|E|/(D+1) Σ o_i·u_i on rigid
-/// motions u, o the acceleration of the skew part of the stress of lumping: ρ a_c lacks only the resultant and the moment
-/// of o. As the map is linear, it turns the time integrals of ã, or of a_c and o, into ∫Γ_DA/ρ dt as well.
+/// motions u, o the acceleration of the skew part of the stress of lumping: ρ a_c lacks only the resultant and the
+/// moment of o. As the map is linear, it turns the time integrals of ã, or of a_c and o, into ∫Γ_DA/ρ dt as well.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inertia<const D: usize, const N: usize> {
     choice: Acceleration,
@@ -161,7 +161,8 @@ impl<const D: usize, const N: usize> Rotation<D, N> {
 }
 
 /// Adds the symmetric part of the stress that lumping the mass of an element is: for a linear field w, the nodal forces
-/// (M − M_c) w of the element are |E| τ∇φ_i with τ = ρ/(D+2) Σ w_i ⊗ d_i, d_i the places of the nodes from the centroid.
+/// (M − M_c) w of the element are |E| τ∇φ_i with τ = ρ/(D+2) Σ w_i ⊗ d_i, d_i the places of the nodes from the
+/// centroid.
 #[inline(always)]
 pub(crate) fn add_lumping_stress<T: Value, const D: usize, const N: usize>(
     density: f64,

@@ -81,7 +81,8 @@ impl Smoothing {
         made
     }
 
-    /// The asymmetry Q of each body: the mean over its inner edges, within a material, of that of the pair of triangles.
+    /// The asymmetry Q of each body: the mean over its inner edges, within a material, of that of the pair of
+    /// triangles.
     fn asymmetry<const D: usize, const N: usize>(&self, problem: &Problem<D, N>) -> Vec<f64> {
         let (mesh, laws) = (problem.mesh(), problem.element_material());
         let mut sums = vec![[0.0; 2]; mesh.parts()];

@@ -6,8 +6,8 @@ use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How often a reader asks for its lock, and how long it waits before it asks again: a file that another process is about
-/// to replace is locked for a moment.
+/// How often a reader asks for its lock, and how long it waits before it asks again: a file that another process is
+/// about to replace is locked for a moment.
 const ASKED: usize = 40;
 const PAUSE: Duration = Duration::from_millis(5);
 

@@ -28,8 +28,8 @@ impl fmt::Display for Kind {
     }
 }
 
-/// Whether a path is that of a pipe with a name of its own: whoever opens it waits for a writer, perhaps for ever. A pipe
-/// that a shell has opened, as for `<(command)`, has a writer.
+/// Whether a path is that of a pipe with a name of its own: whoever opens it waits for a writer, perhaps for ever. A
+/// pipe that a shell has opened, as for `<(command)`, has a writer.
 #[must_use]
 pub fn is_named_pipe(path: &Path) -> bool {
     let opened = ["/dev", "/proc"].iter().any(|folder| path.starts_with(folder));

@@ -34,7 +34,8 @@ const SCENARIOS: [Scenario; 7] = [
         before: &[],
         command: "run case.toml --history h.vtkhdf --estimate e.vtkhdf --picture p.svg --csv t.csv --quiet",
         files: &["h.vtkhdf", "e.vtkhdf", "p.svg"],
-        after: "run case.toml --history h.vtkhdf --estimate e.vtkhdf --picture p.svg --csv t.csv --quiet --resume --force",
+        after: "run case.toml --history h.vtkhdf --estimate e.vtkhdf --picture p.svg --csv t.csv --quiet --resume \
+                --force",
     },
     Scenario {
         name: "estimate",

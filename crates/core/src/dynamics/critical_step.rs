@@ -110,8 +110,8 @@ fn largest_eigenvalue<const D: usize, const N: usize>(problem: &Problem<D, N>) -
     }
 }
 
-/// A nodal field without structure, of values between −½ and ½ and 0 on prescribed components, that is the same in every
-/// run (Knuth's MMIX generator).
+/// A nodal field without structure, of values between −½ and ½ and 0 on prescribed components, that is the same in
+/// every run (Knuth's MMIX generator).
 #[must_use]
 pub fn rough_field<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<[f64; D]> {
     let mut state = 1_u64;

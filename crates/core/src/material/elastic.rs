@@ -103,7 +103,8 @@ impl Elastic {
         self.young
     }
 
-    /// The same law with a yield stress (Pa), which it does not use: results say where the von Mises stress is above it.
+    /// The same law with a yield stress (Pa), which it does not use: results say where the von Mises stress is above
+    /// it.
     ///
     /// # Errors
     /// A value that is not positive and finite.

@@ -37,7 +37,8 @@ impl<const D: usize> Levers<D> {
         Self { levers, of_node, bodies }
     }
 
-    /// How far each body turns, counterclockwise, in a field of displacements (rad) or of velocities (rad/s); 0 on bars.
+    /// How far each body turns, counterclockwise, in a field of displacements (rad) or of velocities (rad/s); 0 on
+    /// bars.
     #[must_use]
     pub fn rotations(&self, field: &[[f64; D]]) -> Vec<f64> {
         let mut turned = vec![0.0; self.bodies];

@@ -2,11 +2,11 @@
 //!
 //! An exact normal contact force F_n acts only where the gap and the normal velocity are zero. Otherwise the energy
 //! ∫F_n gap is the misfit of the law at displacement level. It is finite, and zero if and only if the complementarity
-//! condition holds. ∫ΣF_n|w_n| dt is the work of the normal forces, which is zero in the exact solution. It accumulates,
-//! because the waves that carry this energy in the exact solution are missing afterwards. w_n is the gap rate of the node
-//! of each force: the far end of an edge moves freely under it and loses nothing. F_n is here the reaction of
-//! the simulation: a reaction that brings a node to rest within a step removes its kinetic energy, even where F_DA
-//! distributes the impulse over a time in which the node is at rest.
+//! condition holds. ∫ΣF_n|w_n| dt is the work of the normal forces, which is zero in the exact solution. It
+//! accumulates, because the waves that carry this energy in the exact solution are missing afterwards. w_n is the gap
+//! rate of the node of each force: the far end of an edge moves freely under it and loses nothing. F_n is here the
+//! reaction of the simulation: a reaction that brings a node to rest within a step removes its kinetic energy, even
+//! where F_DA distributes the impulse over a time in which the node is at rest.
 
 use super::{Densities, NarrowHat};
 use crate::kinematic::ContactTrack;

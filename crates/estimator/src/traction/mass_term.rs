@@ -42,9 +42,9 @@ mod tests {
     use percute_core::problem::Problem;
     use percute_testkit::{Random, random_rectangle};
 
-    /// M ã = M_c a_c + (M − M_c) w for any c: over each star, the elements with a_c = ã + c o, w = (1 − c)ã + c o, o the
-    /// lumping difference of ã, sum up to (M ã)_i, with the symmetric part of the stress of lumping and the acceleration
-    /// of the skew one.
+    /// M ã = M_c a_c + (M − M_c) w for any c: over each star, the elements with a_c = ã + c o, w = (1 − c)ã + c o, o
+    /// the lumping difference of ã, sum up to (M ã)_i, with the symmetric part of the stress of lumping and the
+    /// acceleration of the skew one.
     #[test]
     fn stars_sum_up_to_the_lumped_mass() {
         let problem = Problem::builder(random_rectangle(0.05, 0.04, 4, 1).unwrap())

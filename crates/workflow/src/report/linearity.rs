@@ -13,7 +13,8 @@ pub(super) const STRAIN: [f64; 2] = [0.02, 0.1];
 const ROTATION: [f64; 2] = [SMALL_ROTATION, 0.1];
 /// The growth θ²/2 of a body that turns is an error of its shape, and of its gaps, of this part of its largest strain.
 const OF_STRAIN: f64 = 0.1;
-/// Rotations below this (rad) do not count, whatever the strain: their growth is 5e-7, below what strain gauges resolve.
+/// Rotations below this (rad) do not count, whatever the strain: their growth is 5e-7, below what strain gauges
+/// resolve.
 const LEAST: f64 = 1e-3;
 /// A von Mises stress above this part of Young's modulus is beyond the law of a material without a stated yield stress.
 /// Metals yield below it: aluminium alloys at 0.1 to 0.8 % of their modulus, steels at 0.1 to 0.9, titanium at 0.9.
@@ -110,8 +111,8 @@ fn stress(materials: &[MaterialStress]) -> Option<String> {
         |of: &Extreme| format!("{} Pa in element {} at {} s", short(of.value, 3), of.element, trimmed(of.time, 4));
     if let Some((share, yielding, material)) = yields.max_by(|a, b| a.0.total_cmp(&b.0)) {
         return Some(format!(
-            "The law is linear, but the von Mises stress is above the yield stress of {} Pa in {} of {}, first at {} s; \
-             it is at most {}.",
+            "The law is linear, but the von Mises stress is above the yield stress of {} Pa in {} of {}, first at {} \
+             s; it is at most {}.",
             short(yielding.yield_stress, 3),
             percent(share),
             named(material),

@@ -98,7 +98,8 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
         ForcesBefore { forces, surface_force }
     }
 
-    /// ã under these nodal forces of F_DA (N), and the forces but these on the contact surface, where ã depends on them.
+    /// ã under these nodal forces of F_DA (N), and the forces but these on the contact surface, where ã depends on
+    /// them.
     fn acceleration(&self, inertia: Inertia<D>, pull: &[[f64; D]]) -> (NodalField<D>, Vec<[f64; D]>) {
         match inertia {
             Inertia::Forces(mut force) => {

@@ -86,8 +86,8 @@ impl<const D: usize> Own<D> {
         (force, costs.shape(force))
     }
 
-    /// The contact under a normal force (N) with a shape, after a part of the time τ: the traction sticks where it first
-    /// touched, or slides at Coulomb's limit.
+    /// The contact under a normal force (N) with a shape, after a part of the time τ: the traction sticks where it
+    /// first touched, or slides at Coulomb's limit.
     pub(super) fn contact(
         &self,
         costs: &NodeCosts<'_>,

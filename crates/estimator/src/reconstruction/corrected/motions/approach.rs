@@ -5,7 +5,7 @@ use super::blocks::Blocks;
 use super::lanes::Nodal;
 use super::pairs::{Around, Pair, Pairs};
 use super::patch::{Factors, Near, Operator, Patch};
-use super::response::{Neighbours, Response};
+use super::response::{Neighbours, Response, dot};
 use super::surface::SurfaceForces;
 use crate::smoothing::Smoothing;
 use percute_core::problem::Problem;
@@ -52,9 +52,9 @@ pub(in crate::reconstruction::corrected) struct FreeMotion<const D: usize> {
 }
 
 impl<const D: usize> Approach<D> {
-    /// The motion of the traction whose parts on the far nodes are these: its mean gap and displacement, and what a unit
-    /// force adds to them. A force that is the answer to the mean over its own density takes energy, whatever the scheme
-    /// is.
+    /// The motion of the traction whose parts on the far nodes are these: its mean gap and displacement, and what a
+    /// unit force adds to them. A force that is the answer to the mean over its own density takes energy, whatever the
+    /// scheme is.
     pub(in crate::reconstruction::corrected) fn of_traction(&self, far: [f64; 2]) -> Self {
         let mut mean = *self;
         // Parts on nodes that are not known stay with the node.
@@ -213,7 +213,8 @@ pub(super) struct NearElements<const D: usize> {
     neighbours: Neighbours,
     /// The place of each contact node in the patch.
     places: Vec<u32>,
-    /// Places and positions of the contact nodes whose forces are on nodes, ascending: not those of surfaces that slide.
+    /// Places and positions of the contact nodes whose forces are on nodes, ascending: not those of surfaces that
+    /// slide.
     loaded: Vec<(u32, u32)>,
     /// Made at first use.
     responses: Vec<OnceLock<Response<D>>>,
@@ -286,8 +287,4 @@ impl<const D: usize> NearElements<D> {
             FreeMotion { displacements: [now, next], mobility: step * length / problem.mass()[node] }
         }));
     }
-}
-
-pub(super) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -1,6 +1,5 @@
 //! How contact nodes move under contact forces.
 
-use super::approach::dot;
 use super::patch::{Acceleration, Factors, Operator, PARTS, Patch, RINGS};
 use std::collections::BTreeSet;
 
@@ -113,4 +112,8 @@ impl<const D: usize> Response<D> {
         }
         moved
     }
+}
+
+pub(super) fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

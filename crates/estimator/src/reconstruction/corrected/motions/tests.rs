@@ -253,8 +253,8 @@ fn wave_errors(kh: f64, shares: Shares) -> [f64; 2] {
     squares.map(f64::sqrt)
 }
 
-/// Waves of the auxiliary solution have errors of fourth order on squares cut in two, and coefficients of a hundredth of
-/// those of the simulation: with NumPy and the definitions of K_s and p(μ), 0.019 and 0.025 % of (kh)² at kh = 0.25,
+/// Waves of the auxiliary solution have errors of fourth order on squares cut in two, and coefficients of a hundredth
+/// of those of the simulation: with NumPy and the definitions of K_s and p(μ), 0.019 and 0.025 % of (kh)² at kh = 0.25,
 /// 0.0055 and 0.0071 % at half of it; the simulation has 2.8 and 4.3 % at both.
 #[test]
 fn waves_are_of_fourth_order() {

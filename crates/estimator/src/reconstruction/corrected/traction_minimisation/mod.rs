@@ -124,8 +124,8 @@ impl TractionMinimisation {
     }
 
     /// Solves the star problems of levels with these forces, and strains if they are smoothed, and improves their
-    /// moments; `then` is given each part of the mesh with the final ones. Returns the largest relative miss of the star
-    /// problems.
+    /// moments; `then` is given each part of the mesh with the final ones. Returns the largest relative miss of the
+    /// star problems.
     pub(in crate::reconstruction) fn equilibrate<const D: usize, const N: usize>(
         &self,
         of @ (problem, equilibration, _): (&Problem<D, N>, &Equilibration<'_, D, N>, Acceleration),
