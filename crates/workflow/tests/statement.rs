@@ -1,6 +1,7 @@
 //! Problems written down and read again: the same problems, bit by bit.
 
 use percute_core::contact::Obstacle;
+use percute_core::dynamics::critical_time_step;
 use percute_core::each_dimension;
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
@@ -32,6 +33,8 @@ fn again<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Opti
 /// bits, of what was stated and of all that follows from it.
 fn same<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) {
     let (problem_again, options_again) = again(problem, options);
+    // A problem keeps its critical step from the first use on.
+    assert_eq!(critical_time_step(problem).to_bits(), critical_time_step(&problem_again).to_bits());
     assert_eq!(format!("{problem:?}"), format!("{problem_again:?}"));
     assert_eq!(*options, options_again);
 }

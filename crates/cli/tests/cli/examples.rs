@@ -22,18 +22,18 @@ struct Example(&'static str, &'static str, f64);
 
 const EXAMPLES: [Example; 13] = [
     Example("bar", "result    sup 4.10 % (76.30 J^½ at 4.9912e-5 s), mean 3.31 %", 1.007),
-    Example("block", "result    sup 6.34 % (166.8 J^½ at 1.3e-5 s), mean 5.74 %", 1.066),
-    Example("corner", "result    sup 9.43 % (9.798 J^½ at 2e-5 s), mean 7.55 %", 1.1),
-    Example("drop", "result    sup 7.36 % (2.162 J^½ at 0.0025153 s), mean 6.53 %", 1.272),
-    Example("tilted", "result    sup 7.97 % (209.5 J^½ at 1.6e-5 s), mean 6.20 %", 1.114),
-    Example("two_blocks", "result    sup 9.30 % (6.142 J^½ at 2e-5 s), mean 7.06 %", 1.14),
-    Example("sliding_blocks", "result    sup 3.92 % (5.154 J^½ at 2e-5 s), mean 3.17 %", 1.17),
-    Example("block_on_two", "result    sup 6.83 % (7.033 J^½ at 2e-5 s), mean 5.49 %", 1.122),
-    Example("disc_on_plate", "result    sup 16.9 % (5.426 J^½ at 7.9397e-6 s), mean 12.1 %", 1.45),
+    Example("block", "result    sup 6.06 % (159.5 J^½ at 1.3e-5 s), mean 5.56 %", 1.019),
+    Example("corner", "result    sup 9.00 % (9.355 J^½ at 2e-5 s), mean 7.28 %", 1.058),
+    Example("drop", "result    sup 6.44 % (1.893 J^½ at 0.0025767 s), mean 5.50 %", 1.114),
+    Example("tilted", "result    sup 7.16 % (188.2 J^½ at 1.6e-5 s), mean 5.68 %", 1.0),
+    Example("two_blocks", "result    sup 8.86 % (5.853 J^½ at 2e-5 s), mean 6.87 %", 1.092),
+    Example("sliding_blocks", "result    sup 3.60 % (4.732 J^½ at 2e-5 s), mean 3.00 %", 1.074),
+    Example("block_on_two", "result    sup 6.85 % (7.056 J^½ at 2e-5 s), mean 5.41 %", 1.122),
+    Example("disc_on_plate", "result    sup 16.9 % (5.378 J^½ at 8.0402e-6 s), mean 13.3 %", 1.433),
     Example("two_bars", "result    sup 3.51 % (0.1997 J^½ at 2.4956e-4 s), mean 3.06 %", 1.028),
     Example("cradle", "result    sup 4.55 % (0.2114 J^½ at 2.5e-4 s), mean 3.67 %", 1.05),
-    Example("three_blocks", "result    sup 15.6 % (10.24 J^½ at 2e-5 s), mean 10.2 %", 1.111),
-    Example("beam", "result    sup 7.49 % (0.9032 J^½ at 2.9483e-4 s), mean 7.21 %", 0.807),
+    Example("three_blocks", "result    sup 14.7 % (9.684 J^½ at 2e-5 s), mean 9.94 %", 1.051),
+    Example("beam", "result    sup 9.06 % (1.091 J^½ at 2.9906e-4 s), mean 7.37 %", 0.974),
 ];
 
 /// Those with surfaces that slide, of which `corrected` alone has an estimate.
@@ -129,6 +129,7 @@ where
 
 #[test]
 fn as_far_from_the_truth_as_measured() {
+    let mut moved = Vec::new();
     for Example(name, _, effectivity) in EXAMPLES {
         let file = folder().join(format!("{name}.toml"));
         let text = std::fs::read_to_string(&file).unwrap();
@@ -149,6 +150,9 @@ fn as_far_from_the_truth_as_measured() {
             }
         };
         // The critical steps of case and reference are good to 1e-3, which moves the instants of impact.
-        assert!((ratio / effectivity - 1.0).abs() < 0.01, "{name}: estimated over true error {ratio}");
+        if (ratio / effectivity - 1.0).abs() >= 0.01 {
+            moved.push(format!("{name}: {ratio:.4}"));
+        }
     }
+    assert!(moved.is_empty(), "estimated over true error, {}", moved.join(", "));
 }

@@ -80,7 +80,7 @@ pub(crate) fn memory<const D: usize, const N: usize>(
     };
     levels
         .saturating_mul(bytes_of_level(problem, options))
-        .saturating_add(reconstruction::new(problem, times, options).memory())
+        .saturating_add(reconstruction::memory(problem, options))
         .saturating_add(element.saturating_mul(problem.mesh().element_count()))
         .saturating_add(link.saturating_mul(problem.mesh().stars().link_count()))
         .saturating_add(step.saturating_mul(steps))

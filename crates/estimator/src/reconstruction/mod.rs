@@ -80,11 +80,6 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
     /// Prepares the maps of the elements.
     fn prepare(&mut self, _elements: &[Element<D, N>]) {}
 
-    /// About how much memory it takes (bytes).
-    fn memory(&self) -> usize {
-        0
-    }
-
     /// Whether it can go on with a step.
     ///
     /// # Errors
@@ -175,6 +170,14 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         then: Then<'_, D>,
     ) -> f64 {
         equilibration.solve(forces, levels, None, then)
+    }
+}
+
+/// About how much memory the reconstruction takes (bytes) that the options name.
+pub(crate) fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> usize {
+    match options.reconstruction {
+        Reconstruction::Published | Reconstruction::Consistent => 0,
+        Reconstruction::Corrected => Corrected::memory(problem, options),
     }
 }
 

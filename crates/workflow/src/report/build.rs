@@ -4,6 +4,7 @@ use super::columns::{Columns, EnergiesOverTime, PARTS};
 use super::flat::FlatElements;
 use super::found::found;
 use super::linearity::Linearity;
+use super::symptoms::auxiliary_contact_energy;
 use super::varying_steps::varying_steps;
 use super::warnings::{Facts, Warning, few_samples, reported};
 use super::{
@@ -144,7 +145,7 @@ pub fn warnings_of<const D: usize, const N: usize>(
         kept_impulse: estimate.kept_impulse,
         touches: contact.total.iter().any(|sum| sum.force.iter().any(|f| *f != 0.0)),
         own_contacts: estimate.own_contacts,
-        auxiliary_contact_energy: estimate.auxiliary_contact_energy,
+        auxiliary_contact_energy: auxiliary_contact_energy(estimate, checked),
         slip: contact.slip,
         depth: contact.depth,
         common_slope: contact.lean.to_degrees(),

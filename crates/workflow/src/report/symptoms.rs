@@ -4,8 +4,9 @@ use super::flat::FlatElements;
 use super::linearity::{Linearity, STRAIN, Turned, growth};
 use super::warnings::{Facts, Warning};
 use crate::deformation::Extreme;
+use crate::foreign::{Checked, by_a_penalty};
 use crate::message::{percent, short, trimmed};
-use percute_estimator::Reconstruction;
+use percute_estimator::{Estimate, Reconstruction};
 
 /// Energy that appears or goes by more than this, relatively, is a warning.
 pub(crate) const DRIFT: f64 = 0.1;
@@ -112,6 +113,12 @@ fn given(part: f64) -> Option<Symptom> {
     symptom("contact_energy", format!("contact gives {shown} of the energy"), figure, remedy)
 }
 
+/// The part of the energy that contact gives the auxiliary solution. The springs of a penalty give back energy: 0.
+pub(super) fn auxiliary_contact_energy<const D: usize>(estimate: &Estimate<D>, checked: Option<&Checked>) -> f64 {
+    let springs = checked.is_some_and(|checked| by_a_penalty(&checked.consistency));
+    if springs { 0.0 } else { estimate.auxiliary_contact_energy }
+}
+
 /// Contact forces that give energy to the auxiliary solution alone.
 fn given_to_auxiliary(part: f64) -> Option<Symptom> {
     if part <= AUXILIARY_CONTACT_ENERGY {
@@ -119,8 +126,8 @@ fn given_to_auxiliary(part: f64) -> Option<Symptom> {
     }
     let shown = percent(part);
     let figure = format!(
-        "contact gives the auxiliary solution {shown} of the energy, which no contact can do: the estimate has failed \
-         and is too large"
+        "contact gives the auxiliary solution {shown} of the energy, which no contact can do: the estimate is \
+         probably too large"
     );
     let remedy = "halve the time step, or make elements at the contact more alike in size";
     symptom(

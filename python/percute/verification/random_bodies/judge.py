@@ -56,6 +56,8 @@ class Row:
     inside: str
     """yes or no; empty without a range."""
     touches: str
+    given: float
+    """Energy that contact has given to the auxiliary solution, over the largest energy of the simulation."""
     untested: str
     situation: str
     error: str = ""
@@ -116,10 +118,11 @@ def _judged(drawn: RandomBody, further: int) -> Row:
         estimate = pc.estimate(history, threads=1)
         (error,) = pc.true_errors([history], drawn.reference(further), end=drawn.end, courant=REFERENCE_COURANT)
     except pc.PercuteError as failed:
-        none = dict.fromkeys(("relative_sup", "sup", "mean", "low", "high"), math.nan)
+        none = dict.fromkeys(("relative_sup", "sup", "mean", "low", "high", "given"), math.nan)
         texts = dict.fromkeys(("trust", "inside", "touches", "untested", "situation"), "")
         return Row(**common, **none, **texts, steps=0, error=str(failed).replace("\n", " "))  # type: ignore[arg-type]
-    verdict = json.loads(estimate.to_json())["verdict"]
+    document = json.loads(estimate.to_json())
+    verdict = document["verdict"]
     low, high = verdict["effectivity"] or (math.nan, math.nan)
     index = estimate.effectivity(error)
     inside = low <= min(index.sup, index.mean) and max(index.sup, index.mean) <= high
@@ -134,6 +137,7 @@ def _judged(drawn: RandomBody, further: int) -> Row:
         trust=verdict["trust"],
         inside="" if math.isnan(low) else "yes" if inside else "no",
         touches=verdict["touches"],
+        given=document["auxiliary_contact_energy"],
         untested=", ".join(verdict["untested"]),
         situation=verdict["text"][0],
     )

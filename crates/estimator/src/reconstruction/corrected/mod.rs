@@ -68,21 +68,26 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     normal_work: f64,
 }
 
+/// Whether tractions of nodes are concentrated.
+fn concentrates<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> bool {
+    let possible = match problem.mesh().simplex().shape() {
+        Shape::Bar => false,
+        Shape::Triangle => true,
+    };
+    possible && options.ablation != Ablation::Concentration
+}
+
 impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
         let keeps = |part: Ablation| options.ablation != part;
         let shares = if keeps(Ablation::Correction) { Shares::ALL } else { Shares::NONE };
-        let concentrates = match problem.mesh().simplex().shape() {
-            Shape::Bar => false,
-            Shape::Triangle => true,
-        };
         let smoothing = Arc::new(Smoothing::new(problem));
         let motions = || Motions::new(problem, times, Arc::clone(&smoothing), shares);
         Self {
             problem,
             times,
             tributary: problem.surface().tributary_areas(),
-            concentration: (concentrates && keeps(Ablation::Concentration)).then(|| Concentration::new(problem)),
+            concentration: concentrates(problem, options).then(|| Concentration::new(problem)),
             own_forces: OwnForces::new(problem),
             moment_correction: keeps(Ablation::Moment).then(|| MomentCorrection::new(problem)),
             impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
@@ -100,6 +105,16 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
                 _ => 1.0,
             },
         }
+    }
+
+    /// About how much memory it takes (bytes), known before it is made.
+    pub(super) fn memory(problem: &Problem<D, N>, options: &Options) -> usize {
+        let mesh = problem.mesh();
+        let of_stars = || Concentration::new(problem).memory(problem);
+        let concentration = concentrates(problem, options).then(of_stars).unwrap_or(0);
+        TractionMinimisation::memory(mesh.simplex().shape(), mesh.element_count())
+            .saturating_add(Motions::<D, N>::memory(mesh.node_count(), mesh.element_count()))
+            .saturating_add(concentration)
     }
 
     /// Replaces the forces (N) at nodes that touch alone, from the foreseen motions of all contact nodes in the step n.
@@ -258,14 +273,6 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         if self.minimises {
             self.minimisation = TractionMinimisation::new(self.problem, elements);
         }
-    }
-
-    fn memory(&self) -> usize {
-        let mesh = self.problem.mesh();
-        let concentration = self.concentration.as_ref().map_or(0, |concentration| concentration.memory(self.problem));
-        TractionMinimisation::memory(mesh.simplex().shape(), mesh.element_count())
-            .saturating_add(Motions::<D, N>::memory(mesh.node_count(), mesh.element_count()))
-            .saturating_add(concentration)
     }
 
     fn check(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {

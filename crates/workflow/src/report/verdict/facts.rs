@@ -9,6 +9,7 @@ use crate::report::flat::FlatElements;
 use crate::report::linearity::Linearity;
 use crate::report::poor::{PoorElement, poor_elements};
 use crate::report::rebound::Rebound;
+use crate::report::symptoms::auxiliary_contact_energy;
 use percute_core::contact::{ContactResults, Nearest};
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
@@ -161,7 +162,7 @@ impl Facts {
             error: estimate.error,
             energy_drift: beside.drift,
             contact_energy: beside.contact_energy,
-            auxiliary_contact_energy: estimate.auxiliary_contact_energy,
+            auxiliary_contact_energy: auxiliary_contact_energy(estimate, beside.checked),
             admissible: beside.admissible,
             // A node with a contact of its own touches at other instants in the admissible fields.
             kept_impulse: estimate.kept_impulse.filter(|_| estimate.own_contacts == 0),

@@ -22,7 +22,7 @@ pub(super) struct Rule {
 /// other bodies.
 const SLENDER: f64 = 0.15;
 
-/// Wave passages until which the index of a flat impact stays below 1.6 and above 0.9.
+/// Wave passages until which the index of a flat impact stays below 1.6 and above 0.85.
 pub(super) const LONG: f64 = 5.0;
 /// The most passages, the smallest Courant number and the fewest edges in contact of flat impacts with an index up to
 /// 1.25.
@@ -55,7 +55,7 @@ pub(super) const RULES: [Rule; 28] = [
     // effectivity-turning.csv, closest.
     Rule {
         applies: |f| f.vibrates_with_closest(),
-        range: [1.3, 2.1],
+        range: [1.2, 2.1],
         situation: "bodies that vibrate without contact, with `closest`,",
         doubt: None,
     },
@@ -173,26 +173,26 @@ pub(super) const RULES: [Rule; 28] = [
     // effectivity.csv, flat; speeds.csv, flat.
     Rule {
         applies: |f| f.contact.touches == Touches::Edge && f.is_short(),
-        range: [0.91, 1.25],
+        range: [0.85, 1.25],
         situation: "flat impacts",
         doubt: None,
     },
     // The same with more passages, shorter steps or larger elements; effectivity-steps.csv, block.
     Rule {
         applies: |f| f.contact.touches == Touches::Edge && f.courant < SHORT.1,
-        range: [0.9, 1.6],
+        range: [0.85, 1.6],
         situation: "flat impacts with short steps",
         doubt: None,
     },
     Rule {
         applies: |f| f.contact.touches == Touches::Edge && f.elements_in_contact < SHORT.2,
-        range: [0.9, 1.6],
+        range: [0.85, 1.6],
         situation: "flat impacts on few elements",
         doubt: None,
     },
     Rule {
         applies: |f| f.contact.touches == Touches::Edge,
-        range: [0.9, 1.6],
+        range: [0.85, 1.6],
         situation: "flat impacts of up to 5 wave passages",
         doubt: None,
     },
@@ -214,7 +214,7 @@ pub(super) const RULES: [Rule; 28] = [
     // durations.py, short steps.
     Rule {
         applies: |f| f.contact.touches == Touches::Corner,
-        range: [0.89, 1.6],
+        range: [0.85, 1.6],
         situation: "impacts with a corner",
         doubt: None,
     },

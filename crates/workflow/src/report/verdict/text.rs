@@ -42,8 +42,9 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
     let given = facts.auxiliary_contact_energy;
     if given > AUXILIARY_CONTACT_ENERGY {
         let given = whole_percent(given);
-        doubts
-            .push(format!("contact gives the auxiliary solution {given} of the energy, and the estimate is too large"));
+        doubts.push(format!(
+            "contact gives the auxiliary solution {given} of the energy, and the estimate is probably too large"
+        ));
     }
     if facts.error.relative_mean > AS_LARGE {
         doubts.push("the error is as large as the solution".to_string());
