@@ -69,5 +69,6 @@ def rows(page: str) -> list[list[str]]:
 def test_the_verdict_knows_no_penalty(example: Any) -> None:
     problem = example.impact_problem()
     estimate = pc.estimate(example.history(problem, example.impact(1e14, 90)))
-    # The evidence has multipliers only.
-    assert estimate.trust == "limited" and "contact by a penalty" in estimate.verdict
+    # The evidence has multipliers only. Strains above 10 % make trust low, and the work of springs is no doubt.
+    assert estimate.trust == "low" and "contact by a penalty" in estimate.verdict
+    assert "strains" in estimate.verdict and "auxiliary solution" not in estimate.verdict
