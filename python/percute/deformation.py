@@ -1,4 +1,4 @@
-"""Strains, rotations and stresses beside an estimate, and elements to mend."""
+"""Strains, rotations and stresses beside an estimate, and elements to repair."""
 
 from __future__ import annotations
 

@@ -119,7 +119,7 @@ class Estimate(EstimateViews):
     def verdict(self) -> str | None:
         """Situation and effectivity index in tests of such cases, place of the error, and a recommendation.
 
-        It begins with whether nothing touched, and ends with elements to mend and with stress beyond the linear law, if there are any. None if the estimate comes from a file of an earlier version.
+        It begins with whether nothing touched, and ends with elements to repair and with stress beyond the linear law, if there are any. None if the estimate comes from a file of an earlier version.
         """
         verdict = self._verdict.get("verdict")
         return None if verdict is None else " ".join(verdict["text"])
@@ -151,9 +151,9 @@ class Estimate(EstimateViews):
         return Deformation._of(self._verdict.get("deformation"))
 
     @cached_property
-    def mend(self) -> tuple[PoorElement, ...]:
-        """The elements to mend, with the largest parts of the error first; empty where bad shapes do not matter."""
-        return PoorElement._all((self._verdict.get("verdict") or {}).get("mend", ()))
+    def poor_elements(self) -> tuple[PoorElement, ...]:
+        """The elements to repair, with the largest parts of the error first; empty where bad shapes do not matter."""
+        return PoorElement._all((self._verdict.get("verdict") or {}).get("poor_elements", ()))
 
     @cached_property
     def nearest(self) -> Nearest | None:

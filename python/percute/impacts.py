@@ -47,7 +47,9 @@ class InterfaceRebound:
     release: float | None
     """The last instant at which a pair touches (s); None if contact has not ended."""
     time_in_contact: float
-    """From the first touch to the release, or to the end of the run (s)."""
+    """For how long a pair touches: the sum of all phases (s)."""
+    span: float
+    """From the first touch to the release, or to the end of the run, with the flights between phases (s)."""
     ended: bool
     """Whether contact has ended."""
 
@@ -66,8 +68,9 @@ class Impacts:
         """Make it from its JSON object."""
         if found is None:
             return None
+        # Estimate files of earlier versions call the span time in contact.
         bodies = [BodyMotion(**{**body, **_vectors(body, "velocity_before", "velocity_after")}) for body in found["bodies"]]
-        interfaces = [InterfaceRebound(**{**each, **_vectors(each, "normal"), "groups": tuple(each["groups"])}) for each in found["interfaces"]]
+        interfaces = [InterfaceRebound(**{"span": each["time_in_contact"], **each, **_vectors(each, "normal"), "groups": tuple(each["groups"])}) for each in found["interfaces"]]
         return cls(bodies=tuple(bodies), interfaces=tuple(interfaces))
 
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
 from percute.bodies import Body, Interface, join
-from percute.checks import instance, items, numbers, table, transposed
+from percute.checks import instance, items, numbers, table, transposed, wrong
 from percute.errors import InputError
 from percute.immutable import Immutable
 from percute.mesh import Mesh
@@ -24,6 +24,16 @@ def _materials(material: Elastic | Mapping[str, Elastic] | None) -> list[tuple[s
         return [(None, material)]
     groups = table("material", material, "Elastic, or one Elastic")
     return [(group, instance(f"material[{group!r}]", each, Elastic)) for group, each in groups.items()]
+
+
+def _weights(gravity: ArrayLike | None, materials: Iterable[tuple[str | None, Elastic]], dimension: int) -> list[BodyForce]:
+    """Give the weight of each material."""
+    if gravity is None:
+        return []
+    acceleration = np.atleast_1d(numbers("gravity", gravity, most=1, finite=True))
+    if acceleration.shape != (dimension,):
+        raise wrong("gravity", gravity, f"{dimension} finite numbers in m/s²" if dimension > 1 else "a finite number in m/s²")
+    return [BodyForce(value=material.density * acceleration, group=group) for group, material in materials]
 
 
 def _contacts(contacts: Iterable[Interface], mesh: Mesh) -> list[Interface]:
@@ -69,6 +79,9 @@ class Problem(Immutable):
         Forces on the boundary, eq. [8].
     body_forces : sequence of BodyForce, default: ()
         Forces in the volume, eq. [8].
+    gravity : (dimension,) floats, optional
+        Acceleration of the weight of all bodies (m/s²), such as ``(0, -9.81)``: a `BodyForce` of density times gravity for each
+        material, which `body_forces` then has too.
     initial_velocity : (dimension,) or (nodes, dimension) floats, optional
         v₀ (m/s), eq. [7]: the same for all nodes, or one for each; zero unless given. A bar takes one number, or (nodes,).
     initial_displacement : (dimension,) or (nodes, dimension) floats, optional
@@ -94,6 +107,7 @@ class Problem(Immutable):
         supports: Iterable[Support] = (),
         tractions: Iterable[Traction] = (),
         body_forces: Iterable[BodyForce] = (),
+        gravity: ArrayLike | None = None,
         initial_velocity: ArrayLike | None = None,
         initial_displacement: ArrayLike | None = None,
     ) -> None:
@@ -106,14 +120,15 @@ class Problem(Immutable):
         mesh = instance("mesh", mesh, Mesh)
         self._mesh = mesh
         between = _contacts(contacts, mesh)
+        materials = _materials(material)
         self._data = _percute.ProblemData(
             mesh._data,
-            _materials(material),
+            materials,
             items("obstacles", obstacles, Plane),
             between,
             items("supports", supports, Support),
             items("tractions", tractions, Traction),
-            items("body_forces", body_forces, BodyForce),
+            items("body_forces", body_forces, BodyForce) + _weights(gravity, materials, mesh.dimension),
             _field("initial_velocity", initial_velocity, mesh),
             _field("initial_displacement", initial_displacement, mesh),
             bool(several),

@@ -30,13 +30,15 @@ class Rebound:
     restitution: float | None
     """Coefficient of restitution −V′·n / V·n, from 0 on."""
     no_restitution: str | None
-    """Why there is none: contact has not ended, supports change the velocity, or the body does not arrive, or still does."""
+    """Why there is none: contact has not ended, supports or loads change the velocity, or the body does not arrive, or still does."""
     first_touch: float
     """The first instant at which a node touches (s)."""
     release: float | None
     """The last instant at which a node touches (s); None if contact has not ended."""
     time_in_contact: float
-    """From the first touch to the release, or to the end of the run (s)."""
+    """For how long a node touches: the sum of all phases (s)."""
+    span: float
+    """From the first touch to the release, or to the end of the run, with the flights between phases (s)."""
     ended: bool
     """Whether contact has ended."""
 
@@ -45,8 +47,8 @@ class Rebound:
         """Make it from its JSON object."""
         if found is None:
             return None
-        # Estimate files of earlier versions have no reason.
-        found = {"no_restitution": None, **found}
+        # Estimate files of earlier versions have no reason, and call the span time in contact.
+        found = {"no_restitution": None, "span": found["time_in_contact"], **found}
         after = found["velocity_after"]
         vectors = {"velocity_before": np.array(found["velocity_before"]), "velocity_after": None if after is None else np.array(after)}
         return cls(**{name: vectors.get(name, found[name]) for name in cls.__dataclass_fields__})

@@ -1,5 +1,6 @@
 """Stating a problem: values, and every mistake with the name of its argument."""
 
+import pickle
 import re
 from typing import Any
 
@@ -52,6 +53,21 @@ def test_a_problem_tells_what_was_stated() -> None:
         "<percute.Problem: 8 triangles, 9 nodes, 1 obstacle, 1 support, 1 traction, 1 body force>"
     )
     assert "Plane(point=(0.0, -2e-05)" in repr(problem.obstacles)
+
+
+def test_gravity_is_the_weight_of_each_material() -> None:
+    """Added to other forces; the problem knows it as body forces, and pickles with them once."""
+    problem = stack()
+    pull = pc.BodyForce(value=(100.0, 0.0))
+    heavy = pc.Problem(problem.mesh, material=problem.material, body_forces=[pull], gravity=(0.0, -9.81))
+    weights = [pc.BodyForce(value=(0.0, -9.81 * density), group=group) for group, density in (("low", 2700.0), ("high", 7800.0))]
+    assert heavy.body_forces == (pull, *weights)
+    assert pickle.loads(pickle.dumps(heavy)).body_forces == heavy.body_forces
+    column = pc.Problem(pc.Mesh.bar(1.0, elements=2), material=pc.Elastic(young=1e9, density=1000.0, section=0.1), gravity=-10.0)
+    assert column.body_forces == (pc.BodyForce(value=[-1e4]),)
+    # A body that falls from rest: −g t²/2 at each node, at the instants of the scheme.
+    free = pc.simulate(pc.Problem(problem.mesh, material=problem.material, gravity=(0.0, -9.81)), end=1e-5, courant=0.5)
+    assert np.allclose(free.displacement[-1, :, 1], -9.81 * free.time[-1] ** 2 / 2, rtol=1e-9)
 
 
 def test_a_mesh_tells_what_it_is() -> None:

@@ -1,4 +1,4 @@
-//! Strains, rotations and stresses beside the estimate, runs without contact, and elements to mend.
+//! Strains, rotations and stresses beside the estimate, runs without contact, and elements to repair.
 
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
@@ -190,16 +190,16 @@ fn needles_are_named() {
     let plane = Obstacle::plane([0.0, -1e-6], [0.0, 1.0], 0.2, None).unwrap();
     let builder = TriangleProblem::builder(mesh.clone()).material(aluminium()).obstacle(plane);
     let found = report(&builder.initial_velocity(Initial::Uniform([0.0, -25.0])).build().unwrap(), 200);
-    let (mend, total) = (&found.verdict.mend, found.by_element.iter().map(|error| error * error).sum::<f64>());
-    assert!(mend.len() == 3 && mend.iter().map(|one| one.share).sum::<f64>() > 0.2, "{mend:?}");
-    for one in mend {
+    let (poor, total) = (&found.verdict.poor_elements, found.by_element.iter().map(|error| error * error).sum::<f64>());
+    assert!(poor.len() == 3 && poor.iter().map(|one| one.share).sum::<f64>() > 0.2, "{poor:?}");
+    for one in poor {
         let share = found.by_element[one.element].powi(2) / total;
         assert!((share / one.share - 1.0).abs() < 1e-12 && one.aspect > 3.0, "{one:?}");
         assert!((0.0..30.0).contains(&one.smallest_angle) && one.largest_angle < 150.0, "{one:?}");
     }
-    let told = found.verdict.text.iter().find(|line| line.starts_with("Mend first")).unwrap();
-    assert!(told.contains(&format!("element {} (", mend[0].element)) && told.contains("edges 1 to"), "{told}");
-    assert!(report(&spinning(1.0, [0.0, -5.0]), 20).verdict.mend.is_empty());
+    let told = found.verdict.text.iter().find(|line| line.starts_with("Repair first")).unwrap();
+    assert!(told.contains(&format!("element {} (", poor[0].element)) && told.contains("edges 1 to"), "{told}");
+    assert!(report(&spinning(1.0, [0.0, -5.0]), 20).verdict.poor_elements.is_empty());
 }
 
 /// From a history, strains and rotations are those of its run.

@@ -274,3 +274,24 @@ fn what_is_beside_a_statement_is_refused_with_its_line() {
     let error = problem_from(&Source::new("a", material), mesh, vec![[0.0]; 3], vec![[0.0]; 2]).unwrap_err();
     assert!(error.to_string().contains("has 2 values, but the mesh has 3 nodes"), "{error}");
 }
+
+#[test]
+fn gravity_is_the_weight_of_each_material() {
+    let text = include_str!("../../../tests/bases/arrays.toml");
+    let weight = |group: &str, density: f64| {
+        format!("[[body_force]]\ngroup = \"{group}\"\nvalue = [0.0, {:?}]\n", density * -9.81)
+    };
+    let stated = [text.to_string(), weight("left", 2700.0), weight("right", 7800.0)].join("\n");
+    let [Case::Plane(heavy), Case::Plane(stated)] =
+        [format!("gravity = [0.0, -9.81]\n{text}"), stated].map(|t| read(&t))
+    else {
+        panic!("plane bodies")
+    };
+    assert_eq!(format!("{:?}", heavy.problem), format!("{:?}", stated.problem));
+    same(&heavy.problem, &heavy.options);
+    // The force on all nodes is the weight.
+    let mut force = vec![[0.0; 2]; heavy.problem.mesh().node_count()];
+    heavy.problem.external_forces(0.0, &mut force);
+    let (mass, pull): (f64, f64) = (heavy.problem.mass().iter().sum(), force.iter().map(|f| f[1]).sum());
+    assert!((pull / (-9.81 * mass) - 1.0).abs() < 1e-14, "{pull} N on {mass} kg");
+}

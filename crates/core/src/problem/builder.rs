@@ -8,7 +8,7 @@ use super::sides::Bodies;
 use super::{Cause, InputError, Problem, sides, start_of_contact, symmetry};
 use crate::contact::{Interface, Obstacle};
 use crate::ids::{ElementId, FacetId};
-use crate::load::{BodyForce, Support, Traction};
+use crate::load::{BodyForce, Support, Table, Traction};
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
 use crate::message::axis;
@@ -128,6 +128,17 @@ impl<const D: usize, const N: usize> Builder<D, N> {
     #[must_use]
     pub fn body_force(mut self, force: BodyForce<D>) -> Self {
         self.stated.body_forces.push(force);
+        self
+    }
+
+    /// Adds the weight of the materials stated so far: a body force ρg on the elements of each, for an acceleration g
+    /// (m/s²), eq. \[8\].
+    #[must_use]
+    pub fn gravity(mut self, acceleration: [f64; D]) -> Self {
+        for (group, material) in &self.stated.materials {
+            let value = Table::constant(acceleration.map(|g| material.density() * g));
+            self.stated.body_forces.push(BodyForce { group: group.clone(), value });
+        }
         self
     }
 

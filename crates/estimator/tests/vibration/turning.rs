@@ -112,9 +112,8 @@ fn assert_steady(name: &str, meshes: &[[[f64; 2]; 2]], range: [f64; 2]) {
     }
 }
 
-/// Measured with `split` on 6² to 48² cells: largest error 1.20, 1.09, 1.05, 1.03 and mean 1.18, 1.09, 1.06, 1.03;
-/// unstructured 1.21, 1.12, 1.08, 1.06 and 1.29, 1.19, 1.13, 1.11. The rotation in Γ_DA of `closest` is an error of the
-/// order of the true one: its index tends to about 2.1, unstructured 2.5.
+/// With `split`, 1.00 to 1.02 on 6² to 48² cells (docs/verification.md). The rotation in Γ_DA of `closest` is an error
+/// of the order of the true one: its index tends to about 2.1, unstructured 2.5.
 #[test]
 fn lame_mode() {
     const CELLS: [usize; 4] = [6, 12, 24, 48];
@@ -129,8 +128,7 @@ fn lame_mode() {
     assert!(structured.windows(2).all(|pair| pair[1][0][0] > pair[0][0][0]), "{structured:?}");
 }
 
-/// Measured with `split`: largest error 1.24, 1.12, 1.10, mean 1.10, 1.08, 1.09; with `closest` 1.47, 1.39, 1.40 and
-/// 1.53, 1.48, 1.48.
+/// With `split` 1.00 to 1.01; with `closest` 1.27 to 1.39 (docs/verification.md).
 #[test]
 fn bending_mode() {
     assert_steady("bending", &[0, 1, 2].map(bending), [0.95, 1.35]);

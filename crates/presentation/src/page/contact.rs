@@ -151,7 +151,7 @@ fn impacts(document: &Document) -> String {
 }
 
 /// The rebound; V is the velocity of the centre of mass, n the normal of the plane.
-const REBOUND: [Named; 9] = [
+const REBOUND: [Named; 10] = [
     ("velocity_before", "velocity V of the centre of mass before contact", "m/s"),
     ("velocity_after", "velocity V′ after contact", "m/s"),
     ("normal_before", "normal component V·n", "m/s"),
@@ -160,5 +160,6 @@ const REBOUND: [Named; 9] = [
     ("first_touch", "first touch", "s"),
     ("release", "release", "s"),
     ("time_in_contact", "time in contact", "s"),
+    ("span", "from first touch to release", "s"),
     ("ended", "contact has ended", ""),
 ];

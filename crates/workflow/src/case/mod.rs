@@ -20,6 +20,7 @@
 //!   one component, else a list in the order of `components`;
 //! - `[[traction]]`: `group`, `value`, or `time` and as many values, `profile = { value, gradient }`;
 //!   `[[body_force]]`: the same without `profile`, the group of elements may be left out;
+//! - `gravity`, above the tables: the acceleration of the weight of all bodies;
 //! - `[time]`: `end` and one of `courant` and `step`; or `steps`, with or without `end`;
 //! - `[estimate]`: `reconstruction`, `acceleration`, `every`;
 //! - `[output]`: `history` and `estimate`, names of files, relative to the working directory; `instants` of
@@ -78,8 +79,8 @@ use toml::de::DeTable;
 use value::table;
 use value::table::Table;
 
-/// The tables of a case file.
-const TABLES: [&str; 12] = [
+/// The tables of a case file, and `gravity`.
+const TABLES: [&str; 13] = [
     "mesh",
     "body",
     "material",
@@ -89,6 +90,7 @@ const TABLES: [&str; 12] = [
     "support",
     "traction",
     "body_force",
+    "gravity",
     "time",
     "estimate",
     "output",

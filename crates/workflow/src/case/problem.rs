@@ -80,7 +80,7 @@ pub(super) fn stated<const D: usize, const N: usize>(
     surroundings(root, builder)
 }
 
-/// Reads planes, contacts of bodies, supports and loads.
+/// Reads planes, contacts of bodies, supports, loads and weight.
 fn surroundings<const D: usize, const N: usize>(
     root: &Table<'_>,
     mut builder: Builder<D, N>,
@@ -101,7 +101,10 @@ fn surroundings<const D: usize, const N: usize>(
     for force in load::body_forces(root)? {
         builder = builder.body_force(force);
     }
-    Ok(builder)
+    match root.get("gravity") {
+        Some(gravity) => Ok(builder.gravity(gravity.vector("m/s²")?)),
+        None => Ok(builder),
+    }
 }
 
 /// Has the core check the problem as a whole.

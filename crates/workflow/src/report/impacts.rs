@@ -1,5 +1,6 @@
 //! What contact did to several bodies: the velocity of each before and after, and the rebound at each interface.
 
+use super::rebound::time_of_phases;
 use percute_core::contact::{ContactResults, Frame};
 use percute_core::problem::Problem;
 use serde::Serialize;
@@ -47,8 +48,10 @@ pub struct InterfaceRebound {
     pub first_touch: Option<f64>,
     /// Last instant at which a pair touches (s); none if contact has not ended.
     pub release: Option<f64>,
-    /// From the first touch to the release, or to the end of the run (s).
+    /// For how long a pair touches: the sum of all phases (s).
     pub time_in_contact: f64,
+    /// From the first touch to the release, or to the end of the run, with the flights between phases (s).
+    pub span: f64,
     /// Whether contact has ended.
     pub ended: bool,
 }
@@ -175,6 +178,7 @@ fn rebound<const D: usize, const N: usize>(
             first_touch: None,
             release: None,
             time_in_contact: 0.0,
+            span: 0.0,
             ended: false,
         };
     };
@@ -202,7 +206,8 @@ fn rebound<const D: usize, const N: usize>(
         no_restitution,
         first_touch: Some(time(first + 1)),
         release: ended.then(|| time(last + 1)),
-        time_in_contact: time(last + 1) - time(first + 1),
+        time_in_contact: time_of_phases(acting, [first, last], time),
+        span: time(last + 1) - time(first + 1),
         ended,
     }
 }

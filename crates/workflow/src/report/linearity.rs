@@ -19,6 +19,8 @@ const LEAST: f64 = 1e-3;
 /// A von Mises stress above this part of Young's modulus is beyond the law of a material without a stated yield stress.
 /// Metals yield below it: aluminium alloys at 0.1 to 0.8 % of their modulus, steels at 0.1 to 0.9, titanium at 0.9.
 const OF_YOUNG: f64 = 0.01;
+/// Materials of a smaller modulus (Pa) are no metals: polymers and rubber bear more.
+const METALS: f64 = 1e10;
 
 /// How far a run is from what the linear theory supposes.
 #[derive(Clone, Debug)]
@@ -121,7 +123,8 @@ fn stress(materials: &[MaterialStress]) -> Option<String> {
         ));
     }
     let ratio = |material: &MaterialStress| material.von_mises.value / material.young;
-    let unstated = materials.iter().filter(|material| material.yielding.is_none() && ratio(material) > OF_YOUNG);
+    let is_stiff = |material: &&MaterialStress| material.yielding.is_none() && material.young > METALS;
+    let unstated = materials.iter().filter(is_stiff).filter(|material| ratio(material) > OF_YOUNG);
     let worst = unstated.max_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
     Some(format!(
         "The law is linear, but a von Mises stress of {} is {} of Young's modulus, and metals yield below 1 %.",

@@ -1,12 +1,12 @@
-//! The elements of bad shape that have most of an error: those to mend.
+//! The elements of bad shape that have most of an error: those to repair.
 
-use super::flat;
+use super::flat::{self, angles};
 use percute_core::ids::ElementId;
 use percute_core::mesh::Mesh;
 use serde::Serialize;
 
 /// Elements whose longest edge is more than so many times as long as the shortest one are long. The evidence has up to
-/// 2.9, a trapezoid; python/percute/verification/beyond.py has indices of 1.2 at 3.0, 1.4 at 4.1 and 7.0 at 12.5.
+/// 2.9, a trapezoid; python/percute/verification/beyond.py has indices of 1.2 at 3.0, 1.3 at 4.1 and 4.2 at 13.
 pub(super) const LONG: f64 = 3.0;
 /// So many are named.
 const NAMED: usize = 3;
@@ -56,14 +56,4 @@ pub(super) fn aspect<const D: usize, const N: usize>(mesh: &Mesh<D, N>, element:
     let between = |a: usize, b: usize| (0..D).map(|c| (points[a][c] - points[b][c]).powi(2)).sum::<f64>().sqrt();
     let edges = || (0..N).flat_map(|b| (0..b).map(move |a| (a, b))).map(|(a, b)| between(a, b));
     edges().fold(0.0, f64::max) / edges().fold(f64::INFINITY, f64::min)
-}
-
-/// The angles of a triangle (degrees).
-pub(super) fn angles<const D: usize, const N: usize>(mesh: &Mesh<D, N>, element: usize) -> [f64; 3] {
-    let points = mesh.cell_points(ElementId::new(element));
-    std::array::from_fn(|k| {
-        let side = |to: usize| -> [f64; D] { std::array::from_fn(|c| points[(k + to) % N][c] - points[k % N][c]) };
-        let (a, b) = (side(1), side(2));
-        (a[0] * b[1 % D] - a[1 % D] * b[0]).abs().atan2((0..D).map(|c| a[c] * b[c]).sum()).to_degrees()
-    })
 }

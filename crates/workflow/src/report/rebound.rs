@@ -28,14 +28,20 @@ pub struct Rebound {
     pub first_touch: f64,
     /// Last instant at which a node touches (s); none if contact has not ended.
     pub release: Option<f64>,
-    /// From the first touch to the release, or to the end of the run (s).
+    /// For how long a node touches: the sum of all phases (s).
     pub time_in_contact: f64,
+    /// From the first touch to the release, or to the end of the run, with the flights between phases (s).
+    pub span: f64,
     /// Whether contact has ended.
     pub ended: bool,
 }
 
 /// The velocity along the normal of one plane is not its alone.
 const SEVERAL_PLANES: &str = "several planes change the velocity";
+/// Loads change the velocity in contact.
+const LOADED: &str = "loads change the velocity during contact, too";
+/// Loads with more than this part of the impulse of contact are named.
+const OF_IMPULSE: f64 = 0.01;
 /// The reason that a longer run takes away.
 const NOT_ENDED: &str = "contact has not ended";
 
@@ -74,6 +80,9 @@ impl Rebound {
         let no_restitution = match normal_after {
             _ if !problem.prescribed().is_empty() => Some("supports change the velocity, too"),
             None => Some(NOT_ENDED),
+            _ if problem.is_loaded() && loaded(contact, &balance[first.saturating_sub(1)], &balance[last + 1]) => {
+                Some(LOADED)
+            }
             _ if normal_before >= 0.0 => Some("the body does not fly towards the plane"),
             Some(after) if after < 0.0 => Some("the body still moves towards the plane, which it will touch again"),
             _ if planes > 1 => Some(SEVERAL_PLANES),
@@ -90,10 +99,39 @@ impl Rebound {
             no_restitution,
             first_touch,
             release: ended.then_some(release),
-            time_in_contact: release - first_touch,
+            time_in_contact: time_of_phases(acting, [first, last], time),
+            span: release - first_touch,
             ended,
         })
     }
+}
+
+/// Whether loads have more than a hundredth of the impulse between two instants, before contact and after it.
+fn loaded<const D: usize>(contact: &ContactResults<D>, before: &Balance, after: &Balance) -> bool {
+    let Some(given) = contact.total.last().map(|sum| sum.impulse) else { return false };
+    let norm = |x: [f64; D]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    norm(std::array::from_fn(|c| after.momentum[c] - before.momentum[c] - given[c])) > OF_IMPULSE * norm(given)
+}
+
+/// How long the phases last between the first and the last instant at which contact acts (s). The reaction R_n holds a
+/// node to the plane at t_{n+1}.
+pub(super) fn time_of_phases(
+    acting: impl Fn(&usize) -> bool,
+    [first, last]: [usize; 2],
+    time: impl Fn(usize) -> f64,
+) -> f64 {
+    let (mut sum, mut begun) = (0.0, None);
+    for n in first..=last + 1 {
+        match (n <= last && acting(&n), begun) {
+            (true, None) => begun = Some(time(n + 1)),
+            (false, Some(from)) => {
+                sum += time(n) - from;
+                begun = None;
+            }
+            _ => {}
+        }
+    }
+    sum
 }
 
 /// The rebound of one body and the impacts of several as a JSON document; `null` where there is none.

@@ -238,18 +238,28 @@ fn contact(report: &Report) -> Option<String> {
 
 /// Velocities before and after contact, along the normal.
 fn returned(rebound: &Rebound) -> String {
-    let (before, time) = (trimmed(rebound.normal_before, 4), trimmed(rebound.time_in_contact, 4));
+    let before = trimmed(rebound.normal_before, 4);
+    let time = in_contact(rebound.time_in_contact, rebound.span);
     match (rebound.normal_after, rebound.restitution) {
         (Some(after), Some(restitution)) => {
             let (after, restitution) = (trimmed(after, 4), trimmed(restitution, 3));
-            format!("from {before} to {after} m/s, restitution {restitution}, {time} s in contact")
+            format!("from {before} to {after} m/s, restitution {restitution}, {time}")
         }
         (Some(after), None) => {
             let (after, reason) = (trimmed(after, 4), rebound.no_restitution.unwrap_or_default());
-            format!("from {before} to {after} m/s, {time} s in contact; no restitution: {reason}")
+            format!("from {before} to {after} m/s, {time}; no restitution: {reason}")
         }
-        _ => format!("contact has not ended after {time} s; it began with {before} m/s"),
+        _ => {
+            let span = trimmed(rebound.span, 4);
+            format!("contact has not ended after {span} s; it began with {before} m/s")
+        }
     }
+}
+
+/// How long contact lasts, and within which time if it has breaks.
+fn in_contact(time: f64, span: f64) -> String {
+    let (time, within) = (trimmed(time, 4), trimmed(span, 4));
+    if time == within { format!("{time} s in contact") } else { format!("{time} s in contact within {within} s") }
 }
 
 /// The rebound at each interface: two at most, and how many more.
@@ -257,12 +267,12 @@ fn impacts(report: &Report) -> Vec<(&'static str, String)> {
     let interfaces = report.impacts.as_ref().map_or(&[][..], |impacts| &impacts.interfaces);
     let line = |interface: &InterfaceRebound| {
         let [first, second] = &interface.groups;
-        let time = trimmed(interface.time_in_contact, 4);
+        let time = in_contact(interface.time_in_contact, interface.span);
         let [before, after] = [interface.normal_before, interface.normal_after].map(|v| v.map(|v| trimmed(v, 4)));
         let told = match (before, after, interface.restitution) {
             (Some(before), Some(after), Some(restitution)) => {
                 let restitution = trimmed(restitution, 3);
-                format!("from {before} to {after} m/s, restitution {restitution}, {time} s in contact")
+                format!("from {before} to {after} m/s, restitution {restitution}, {time}")
             }
             _ => format!("no restitution: {}", interface.no_restitution.unwrap_or_default()),
         };

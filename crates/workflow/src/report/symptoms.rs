@@ -167,7 +167,7 @@ fn flat_elements(facts: &Facts<'_>) -> Option<Symptom> {
     };
     let figure = format!(
         "the mesh has elements that are nearly flat, with an angle above 150°: {named}{more}. They and the elements \
-         around them have {share} of the squared mean error, and in tests the estimate was then 1.4 to 45 times the \
+         around them have {share} of the squared mean error, and in tests the estimate was then up to 5.6 times the \
          true error{step}"
     );
     let remedy = "move their nodes, or mesh again";

@@ -1,5 +1,6 @@
 //! Values of a case file, read as what they should be.
 
+mod absent;
 pub(super) mod table;
 
 use super::source::{At, CaseError, Source};

@@ -1,6 +1,7 @@
 //! Tables of a case file: which keys they may have, and which they must.
 
 use super::Value;
+use super::absent::absent;
 use crate::case::source::{At, CaseError, Source};
 use crate::message::{hint, list};
 use toml::de::DeTable;
@@ -35,8 +36,13 @@ impl<'a> Table<'a> {
         let name = key.get_ref().as_ref();
         let at = At { path: self.path_of(name), span: key.span() };
         let what = if self.joint.is_empty() { "table" } else { "key" };
-        let hint = hint(name, known.iter().copied());
-        let message = format!("there is no {what} `{name}` here; allowed are {}{hint}", list(known.iter().copied()));
+        let message = absent(name, &self.at.path).map_or_else(
+            || {
+                let hint = hint(name, known.iter().copied());
+                format!("there is no {what} `{name}` here; allowed are {}{hint}", list(known.iter().copied()))
+            },
+            str::to_string,
+        );
         Err(self.source.error(&at, message))
     }
 

@@ -128,16 +128,16 @@ impl Facts {
         let (size, slenderness) = (size_of_bodies(problem.mesh()), slenderness(problem.mesh()));
         // Nodes bounce on the springs of a penalty: a release ends when a wave could not cross the body meanwhile.
         let shortest_release = if figures.is_some_and(by_a_penalty) { slenderness * size / wave_speed } else { 0.0 };
-        let bodies = !problem.statement().interfaces.is_empty();
-        let by_element = &estimate.by_element;
-        let (flat, uneven) = (FlatElements::new(problem, by_element).is_some(), Uneven::new(problem, by_element));
+        let (bodies, by_element) = (!problem.statement().interfaces.is_empty(), &estimate.by_element);
+        let uneven = Uneven::new(problem, by_element, results);
+        let flat = FlatElements::new(problem, by_element).is_some();
         let speed = if bodies { approach(problem) } else { beside.rebound.map(|rebound| -rebound.normal_before) };
         Self {
             dimension: D,
             reconstruction: beside.options.reconstruction,
             acceleration: other_acceleration(beside.options, D),
             contact: Contact::new(problem, results),
-            speed_ratio: speed.map(|speed| speed / wave_speed),
+            speed_ratio: speed.map(|speed| without_rounding(speed / wave_speed)),
             courant: beside.courant,
             elements_in_contact: if D == 1 { most } else { most.saturating_sub(1).max(most.min(1)) },
             phases: phases(results, APART * size / wave_speed, shortest_release),
@@ -295,4 +295,9 @@ fn at_contact<const D: usize, const N: usize>(
     };
     let total = sum(true);
     if total > 0.0 { sum(false) / total } else { 0.0 }
+}
+
+/// A ratio of speeds, 0 where it is rounding, as that of a body that only spins.
+fn without_rounding(ratio: f64) -> f64 {
+    if ratio.abs() < 1e-12 { 0.0 } else { ratio }
 }

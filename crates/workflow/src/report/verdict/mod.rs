@@ -48,7 +48,7 @@ pub struct Verdict {
     /// How far the estimate can be trusted.
     pub trust: Trust,
     /// Sentences: first that nothing touched, if that is so; situation and effectivity index; place and parts of the
-    /// error; recommendation; elements to mend; stress beyond the linear law.
+    /// error; recommendation; elements to repair; stress beyond the linear law.
     pub text: Vec<String>,
     /// Smallest and largest effectivity index (estimate over true error, sup and mean) of such cases in the evidence;
     /// none where such cases are outside the range of all others.
@@ -76,7 +76,7 @@ pub struct Verdict {
     /// Strains and rotations that are not small.
     pub not_small: Vec<String>,
     /// The elements of bad shape with the largest parts of the squared mean error, if such elements matter.
-    pub mend: Vec<PoorElement>,
+    pub poor_elements: Vec<PoorElement>,
 }
 
 /// Parts of η at its largest value, over η, eq. \[14\].
@@ -118,7 +118,7 @@ impl Verdict {
             at_contact: facts.at_contact,
             untested,
             not_small,
-            mend: facts.poor.clone(),
+            poor_elements: facts.poor.clone(),
         }
     }
 }

@@ -51,7 +51,7 @@ pub(super) const RULES: [Rule; 28] = [
         doubt: Some("`published` drops forces; estimate with `corrected`"),
     },
     // See `report/flat.rs`; python/percute/verification/flat_elements.py.
-    Rule { applies: |f| f.flat, range: [1.4, 45.0], situation: "meshes with nearly flat elements", doubt: None },
+    Rule { applies: |f| f.flat, range: [0.95, 10.0], situation: "meshes with nearly flat elements", doubt: None },
     // effectivity-turning.csv, closest.
     Rule {
         applies: |f| f.vibrates_with_closest(),
@@ -59,18 +59,18 @@ pub(super) const RULES: [Rule; 28] = [
         situation: "bodies that vibrate without contact, with `closest`,",
         doubt: None,
     },
-    // effectivity-turning.csv, time-steps-mass.csv: bodies that vibrate freely. Random bodies over 1 to 30 periods have
-    // 0.88 to 1.22 (python/percute/verification/random_bodies, vibration).
+    // effectivity-turning.csv, time-steps-mass.csv: bodies that vibrate freely. 90 random bodies over 1 to 30 periods
+    // have 0.81 to 1.39 (python/percute/verification/random_bodies, vibration).
     Rule {
         applies: |f| f.contact.touches == Touches::None,
-        range: [0.85, 1.3],
+        range: [0.8, 1.4],
         situation: "bodies that vibrate without contact",
         doubt: None,
     },
     // The time from the first touch counts for both planes together.
     Rule {
         applies: |f| f.is_cornered() && f.has_just_begun(),
-        range: [0.9, 3.5],
+        range: [0.7, 3.5],
         situation: "impacts just after the first touch",
         doubt: None,
     },
@@ -97,10 +97,10 @@ pub(super) const RULES: [Rule; 28] = [
         doubt: None,
     },
     // speeds.csv, frame; examples/beam.toml (test `as_far_from_the_truth_as_measured`). Random frames, rings and beams
-    // have 0.92 to 1.31.
+    // have 0.92 to 1.46.
     Rule {
         applies: |f| f.is_thin() && f.contact.touches != Touches::Edge,
-        range: [0.8, 1.45],
+        range: [0.8, 1.6],
         situation: "thin parts that bend",
         doubt: None,
     },
@@ -143,24 +143,24 @@ pub(super) const RULES: [Rule; 28] = [
     },
     // bar-maps.csv, effectivity-steps.csv.
     Rule { applies: |f| f.dimension == 1, range: [0.85, 1.26], situation: "bars that strike a wall", doubt: None },
-    // speeds.csv, trapezoid 45° with a corner of one element.
+    // speeds.csv, trapezoid 45° with a corner of one element, has 1.61 to 1.88; random bodies have 0.97 to 1.35.
     Rule {
         applies: |f| f.contact.single_element,
-        range: [1.6, 2.0],
+        range: [0.95, 2.0],
         situation: "obtuse corners that one element fills",
         doubt: None,
     },
     // speeds.csv, L tilted by 10°: its second corner arrives at another instant than that of the reference.
     Rule {
         applies: |f| f.contact.zones > 1,
-        range: [0.49, 1.4],
+        range: [0.49, 1.8],
         situation: "bodies that touch at several places",
         doubt: Some("where a second place touches, a small error of its instant is a large error of the motion"),
     },
     // python/percute/verification/durations.py: the index falls in the first passage, and grows slowly after it.
     Rule {
         applies: Facts::has_just_begun,
-        range: [0.9, 3.5],
+        range: [0.7, 3.5],
         situation: "impacts just after the first touch",
         doubt: None,
     },
@@ -199,7 +199,7 @@ pub(super) const RULES: [Rule; 28] = [
     // speeds.csv, trapezoid, flat.
     Rule {
         applies: |f| f.contact.touches == Touches::End,
-        range: [0.95, 1.35],
+        range: [0.9, 1.35],
         situation: "edges beside an inclined side",
         doubt: None,
     },

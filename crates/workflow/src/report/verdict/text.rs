@@ -68,7 +68,7 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
     doubts
 }
 
-/// The sentences: that nothing touched, situation, place, recommendation, elements to mend, stress.
+/// The sentences: that nothing touched, situation, place, recommendation, elements to repair, stress.
 pub(super) fn sentences(
     facts: &Facts,
     rule: &Rule,
@@ -81,7 +81,7 @@ pub(super) fn sentences(
         return nothing_touched(facts).into_iter().chain([exact]).collect();
     }
     let usual = [situation(facts, rule, untested), place(facts, shares), recommendation(facts, doubts)];
-    let beside = [mend(&facts.poor), facts.linearity.stress.clone()];
+    let beside = [repair(&facts.poor), facts.linearity.stress.clone()];
     nothing_touched(facts).into_iter().chain(usual).chain(beside.into_iter().flatten()).collect()
 }
 
@@ -96,8 +96,8 @@ fn nothing_touched(facts: &Facts) -> Option<String> {
     Some(format!("Nothing touched: at the end, at {end} s, the least gap is {gap} m, and {when}."))
 }
 
-/// The elements to mend.
-fn mend(poor: &[PoorElement]) -> Option<String> {
+/// The elements to repair.
+fn repair(poor: &[PoorElement]) -> Option<String> {
     let each = |one: &PoorElement| {
         let angle = match one.largest_angle > flat::ANGLE {
             true => format!("an angle of {}°", trimmed(one.largest_angle, 4)),
@@ -107,7 +107,7 @@ fn mend(poor: &[PoorElement]) -> Option<String> {
         format!("{} ({angle}, at ({place}) m, {})", one.element, whole_percent(one.share))
     };
     let named = poor.iter().map(each).collect::<Vec<_>>().join(", ");
-    let told = || format!("Mend first, each with its part of the squared mean error: element {named}.");
+    let told = || format!("Repair first, each with its part of the squared mean error: element {named}.");
     (!poor.is_empty()).then(told)
 }
 

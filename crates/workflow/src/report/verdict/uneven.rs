@@ -1,10 +1,11 @@
-//! Meshes and materials that are more uneven than those of the evidence: long elements, elements of very different
-//! sizes, and materials of very different impedance beside each other.
+//! Meshes and materials beyond those of the evidence: long elements, elements of very different sizes, materials of very
+//! different impedance beside each other, and nearly incompressible ones.
 
 use crate::report::poor::{LONG, aspect};
+use percute_core::contact::ContactResults;
 use percute_core::dynamics::time_step_of_element;
 use percute_core::ids::ElementId;
-use percute_core::material::{Elastic, Law};
+use percute_core::material::{Elastic, Hypothesis, Law};
 use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
 
@@ -12,7 +13,7 @@ use percute_core::problem::Problem;
 /// smaller by 5 %.
 const SHARE: f64 = 0.1;
 
-/// How uneven mesh and materials are.
+/// How uneven mesh and materials are, and how incompressible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Uneven {
     /// The longest edge over the shortest one of an element, at most, where long elements have much of the error; 1 for
@@ -20,16 +21,35 @@ pub(super) struct Uneven {
     pub(super) longest: f64,
     /// The largest of the critical steps of the elements alone over the smallest one: their sizes, in times of waves.
     pub(super) sizes: f64,
-    /// The largest ratio of the impedances, with thickness or section, of two elements that share a facet.
+    /// The same of all elements over the smallest of those with a node that touches; 1 without contact.
+    pub(super) at_contact: f64,
+    /// The largest ratio of the impedances, with thickness or section, of two elements that share a facet, or of two
+    /// bodies at their interface.
     pub(super) impedances: f64,
+    /// The largest Poisson's ratio in plane strain; 0 without plane strain.
+    pub(super) poisson: f64,
 }
 
 impl Uneven {
     /// `by_element` has the contribution of each element to the mean error.
-    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, by_element: &[f64]) -> Self {
-        let steps = || (0..by_element.len()).map(|e| time_step_of_element(problem, ElementId::new(e)));
-        let sizes = steps().fold(0.0, f64::max) / steps().fold(f64::INFINITY, f64::min);
-        Self { longest: longest(problem.mesh(), by_element), sizes, impedances: impedances(problem) }
+    pub(super) fn new<const D: usize, const N: usize>(
+        problem: &Problem<D, N>,
+        by_element: &[f64],
+        results: &ContactResults<D>,
+    ) -> Self {
+        let mesh = problem.mesh();
+        let step = |element: ElementId| time_step_of_element(problem, element);
+        let steps = || (0..by_element.len()).map(|e| step(ElementId::new(e)));
+        let largest = steps().fold(0.0, f64::max);
+        let touched = results.nodes.iter().zip(&results.summary).filter(|(_, summary)| summary.first_touch.is_some());
+        let elements = touched.flat_map(|(point, _)| mesh.stars().star(point.node).elements.iter().copied());
+        Self {
+            longest: longest(mesh, by_element),
+            sizes: largest / steps().fold(f64::INFINITY, f64::min),
+            at_contact: largest / elements.map(step).fold(largest, f64::min),
+            impedances: impedances(problem),
+            poisson: poisson(problem),
+        }
     }
 }
 
@@ -46,11 +66,28 @@ fn longest<const D: usize, const N: usize>(mesh: &Mesh<D, N>, by_element: &[f64]
     if of_long > SHARE * total { most } else { 1.0 }
 }
 
-/// The largest ratio of the impedances of two elements that share a facet.
+/// The largest ratio of the impedances of two elements that share a facet, or of two bodies at their interface.
 fn impedances<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
     let impedance = |law: &Elastic| law.density() * law.wave_speed() * law.extent();
     let each: Vec<f64> = problem.materials().iter().map(impedance).collect();
     let of = |element: ElementId| each[usize::from(problem.element_material()[element.index()])];
     let inner = problem.mesh().facets().iter().filter_map(|facet| Some((of(facet.owner), of(facet.neighbour?))));
-    inner.map(|(a, b)| a.max(b) / a.min(b)).fold(1.0, f64::max)
+    let inner = inner.map(|(a, b)| a.max(b) / a.min(b)).fold(1.0, f64::max);
+    let sides: Vec<usize> =
+        (0..problem.obstacles().len()).filter(|&k| problem.obstacles()[k].as_plane().is_none()).collect();
+    let ends = |side: usize| {
+        let facets = problem.surface().facets().iter().filter(|facet| facet.obstacle == side);
+        let owners = facets.map(|facet| of(problem.mesh().facets()[facet.facet.index()].owner));
+        owners.fold([f64::INFINITY, 0.0], |[least, most], each| [least.min(each), most.max(each)])
+    };
+    sides.chunks_exact(2).map(|sides| (ends(sides[0]), ends(sides[1]))).fold(inner, |most, (a, b)| {
+        // A side without facets has no impedance.
+        most.max(a[1] / b[0]).max(b[1] / a[0])
+    })
+}
+
+/// The largest Poisson's ratio in plane strain; 0 without plane strain.
+fn poisson<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+    let strained = problem.materials().iter().filter(|law| law.hypothesis() == Hypothesis::PlaneStrain);
+    strained.map(Elastic::poisson).fold(0.0, f64::max)
 }

@@ -56,7 +56,7 @@ use crate::smoothing::Smoothing;
 pub(super) use approach::{Approach, Foreseen, FreeMotion, Mobility};
 use approach::{BeforePass, NearElements};
 use blocks::Blocks;
-use contact_work::{ContactWork, half_work};
+use contact_work::{ContactWork, FreeDirections, half_work};
 use energies::Energies;
 use lanes::{FirstPair, Gradient, Nodal};
 use pairs::{Around, Pair, Pairs};
@@ -96,6 +96,9 @@ pub(super) struct Motions<'p, const D: usize, const N: usize> {
     due: f64,
     /// Largest kinetic and strain energy of the simulation so far (J).
     peak_energy: f64,
+    /// The same without that of the common velocity along `free` (J).
+    peak_relative: f64,
+    free: FreeDirections<D>,
     /// ½ v·M v of the auxiliary solution half a step after the last level (J).
     kinetic: f64,
     contact_work: ContactWork,
@@ -228,6 +231,8 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
             external: if problem.is_loaded() { vec![[0.0; D]; problem.mesh().node_count()] } else { Vec::new() },
             due: 0.0,
             peak_energy: 0.0,
+            peak_relative: 0.0,
+            free: FreeDirections::new(problem),
             kinetic: 0.0,
             contact_work: ContactWork::default(),
             differences: Vec::new(),
@@ -291,7 +296,9 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         let kinetic = for_all((&self.plan, &start), View::new(&mut fields, level), &work);
         self.fields = fields;
         let sum = |of: fn(&Kinetic) -> f64| 0.5 * kinetic.iter().map(of).sum::<f64>();
-        self.peak_energy = self.peak_energy.max(simulated.strain + sum(|k| k.simulated));
+        let energy = simulated.strain + sum(|k| k.simulated);
+        self.peak_energy = self.peak_energy.max(energy);
+        self.peak_relative = self.peak_relative.max(energy - self.free.energy(self.problem, simulated.velocity));
         self.kinetic = sum(|k| k.auxiliary);
         self.due = self.times.step(n);
         self.contact_work.add(before + half_work(self.problem, &self.surface, &self.fields, pull, self.due));
@@ -332,9 +339,10 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         &self.differences
     }
 
-    /// The largest energy that contact has given the auxiliary solution so far, over that of the simulation.
+    /// The largest energy that contact has given the auxiliary solution so far, over that of the simulation without
+    /// the common velocity that no plane stops.
     pub(super) fn contact_energy(&self) -> f64 {
-        ratio(self.contact_work.most(), self.peak_energy)
+        ratio(self.contact_work.most(), self.peak_relative)
     }
 
     /// Whether the auxiliary solution has become unstable, as it does where a history of another scheme takes steps
