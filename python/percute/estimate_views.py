@@ -60,6 +60,9 @@ class EstimateViews(Views):
     ) -> Axes:
         """Draw √η over time, with the square roots of its parts or of its sources (J^½).
 
+        A curve with many samples that goes up and down from one to the next is drawn as a band from the least to the largest of
+        some samples, with their mean as a line.
+
         Parameters
         ----------
         by : {"parts", "sources"}, default: "parts"

@@ -10,7 +10,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 import percute as pc
 import pytest
-from conftest import block
+from conftest import bar, block
+from matplotlib.colors import to_rgb
 
 
 @pytest.fixture(autouse=True)
@@ -77,6 +78,24 @@ def test_over_time_shows_the_sup(block_history: pc.History) -> None:
     figure, axes = plt.subplots()
     assert estimate.plot_over_time(axes=axes) is axes and axes.figure is figure
     assert axes.get_xlabel() == "t (µs)" and axes.lines[0].get_ydata().max() == pytest.approx(estimate.sup)  # type: ignore[union-attr]
+
+
+def test_parts_that_alternate_are_a_range_and_a_mean() -> None:
+    """The parts of a bar go up and down with each sample: as lines, they are solid blocks."""
+    estimate = pc.estimate(pc.simulate(bar(100), end=50e-6, courant=0.9))
+    axes = estimate.plot_over_time()
+    time, elastic = 1e6 * estimate.over_time.time, np.sqrt(np.maximum(estimate.over_time.elastic, 0.0))
+    mean = {line.get_label(): line for line in axes.lines}["elastic part"]
+    (band,) = [each for each in axes.collections if each.get_facecolor()[0, :3].tolist() == list(to_rgb(mean.get_color()))]
+    outline = band.get_paths()[0].vertices
+    # The first and the last sample lie on the outline itself.
+    assert np.all(band.get_paths()[0].contains_points(np.column_stack([time, elastic])[1:-1], radius=1e-9))
+    assert outline[:, 1].max() == pytest.approx(elastic.max()) and outline[:, 0].max() == pytest.approx(time.max())
+    turns = [np.count_nonzero(np.diff(values)[1:] * np.diff(values)[:-1] < 0.0) for values in (elastic, mean.get_ydata())]
+    assert turns[0] > 500 and turns[1] < 50
+    assert np.interp(30.0, mean.get_xdata(), mean.get_ydata()) == pytest.approx(elastic[abs(time - 30.0) < 1.0].mean(), rel=0.01)  # type: ignore[arg-type]
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert labels == ["error √η", "kinetic part", "elastic part", "contact part", "mean error", "sup", "range of the samples"]
 
 
 @pytest.mark.parametrize(

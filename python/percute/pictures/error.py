@@ -25,6 +25,7 @@ from percute.pictures.canvas import (
     typeset,
     writable,
 )
+from percute.pictures.curves import draw_curve, mark_of_range
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -103,16 +104,18 @@ def plot_over_time(estimate: Estimate, by: str, axes: Axes | None, save: object,
     axes = new_axes(axes, (7.2, 4.0))
     samples = estimate.over_time
     time = samples.time / (seconds := over_time(axes, samples.time))
-    axes.plot(time, np.sqrt(np.maximum(samples.total, 0.0)), color=COLOURS["total"], linewidth=1.6, label="error √η")
+    bands = [draw_curve(axes, time, np.sqrt(np.maximum(samples.total, 0.0)), colour=COLOURS["total"], width=1.6, label="error √η")]
     values = samples if by == "parts" else estimate.sources.over_time  # type: ignore[union-attr]
     for name in PARTS if by == "parts" else SOURCES:
         # A part may be below zero by rounding, a source a little more.
         part = np.sqrt(np.maximum(getattr(values, name), 0.0))
-        axes.plot(time, part, color=COLOURS[name], linewidth=1.1, label=f"{name} part" if by == "parts" else name)
+        label = f"{name} part" if by == "parts" else name
+        bands.append(draw_curve(axes, time, part, colour=COLOURS[name], width=1.1, label=label))
     axes.axhline(estimate.mean, color="black", linestyle=":", linewidth=1, label="mean error")
     axes.plot(estimate.time_of_sup / seconds, estimate.sup, "ko", markersize=4, label="sup")
     axes.set_ylabel("error (J$^{1/2}$)")
     axes.set_ylim(bottom=0.0)
-    legend_beside(axes)
+    marks = [mark_of_range()] if any(bands) else []
+    legend_beside(axes, handles=[*axes.get_legend_handles_labels()[0], *marks])
     save_figure(root(axes), file)
     return axes
