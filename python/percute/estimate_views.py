@@ -34,7 +34,7 @@ class EstimateViews(Views):
         Parameters
         ----------
         scale : float, default: 0.0
-            By how much the displacement at the time of the sup is exaggerated; 0 draws the undeformed mesh.
+            By how much the displacement at the time of the sup, rigid motion included, is exaggerated; 0 draws the undeformed mesh.
         outline : bool, default: True
             Whether the outline of a plane body at the end is drawn over the undeformed mesh: its rigid motion as it is, its deformation
             times a round factor that makes it visible.

@@ -133,7 +133,7 @@ class HistoryViews(HistoryFields, Views):
         step : int, default: -1
             Which instant; negative ones count from the end.
         scale : float, default: 1.0
-            By how much the displacement is exaggerated.
+            By how much the displacement, rigid motion included, is exaggerated; the title of a plane body tells it.
         axes, save, overwrite
             As for `plot_energies`.
 
@@ -173,7 +173,7 @@ class HistoryViews(HistoryFields, Views):
         rate : float, default: 15
             Frames per second, from 0.1 to 100.
         scale : float, default: 1.0
-            By how much the displacement is exaggerated.
+            By how much the displacement, rigid motion included, is exaggerated; the title of a plane body tells it.
         overwrite : bool, default: False
             Whether a file that exists already is replaced.
         progress : bool or callable, optional

@@ -104,7 +104,17 @@ def test_parts_that_alternate_are_a_range_and_a_mean() -> None:
 )
 def test_fields_on_the_deformed_body(quantity: str, label: str, block_history: pc.History) -> None:
     axes = block_history.plot(quantity, step=15)
-    assert axes.child_axes[0].get_ylabel() == label and axes.get_title().startswith("t = ")
+    assert axes.child_axes[0].get_ylabel() == label and axes.get_title() == "t = 10.83 µs, displacement × 1"
+
+
+def test_titles_tell_what_a_factor_is_of(block_history: pc.History, bar_history: pc.History) -> None:
+    """A map and a field exaggerate the whole displacement, an outline the deformation alone."""
+    estimate = pc.estimate(block_history)
+    assert block_history.plot(scale=20.0).get_title().endswith(", displacement × 20, rigid motion included")
+    assert "\ndisplacement × 2.5, rigid motion included, at t = " in estimate.plot_map(scale=2.5).get_title()
+    assert "rigid" not in block_history.plot().get_title() and "rigid" not in estimate.plot_map().get_title()
+    # A bar is drawn along its undeformed axis.
+    assert "×" not in bar_history.plot("stress", scale=20.0).get_title()
 
 
 def test_stresses_are_those_of_the_law() -> None:
@@ -158,7 +168,7 @@ def test_a_map_on_the_deformed_body(block_history: pc.History, tmp_path: Path) -
     estimate.save(tmp_path / "with.vtkhdf")
     pc.estimate(block_history).save(tmp_path / "without.vtkhdf")
     stored = pc.open(tmp_path / "with.vtkhdf")
-    assert isinstance(stored, pc.Estimate) and "× 1 at t = 13" in stored.plot_map(scale=1.0).get_title()
+    assert isinstance(stored, pc.Estimate) and "displacement × 1, at t = 13" in stored.plot_map(scale=1.0).get_title()
     without = pc.open(tmp_path / "without.vtkhdf")
     assert isinstance(without, pc.Estimate) and without.plot_map().get_title()
     with pytest.raises(pc.InputError, match="`scale` needs displacements"):

@@ -76,6 +76,11 @@ def prefixed(values: Floats) -> tuple[float, str]:
     return 1000.0**power, {-3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G"}[power]
 
 
+def exaggerated(scale: float) -> str:
+    """Tell the factor of a displacement: in an outline, that of the deformation alone."""
+    return f"displacement × {scale:.4g}" + ("" if scale == 1.0 else ", rigid motion included")
+
+
 SYMBOL = re.compile(r"(?<!\w)(Δ?)([A-Za-z])(?:_([A-Za-z]+)|(?=(?:/| − )Δ?[A-Za-z]_))")
 """A letter with an index, or beside one: e_E, Δt_c, and both in Δt/Δt_c."""
 POWER = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e([+-]?\d+)(?!\w)")

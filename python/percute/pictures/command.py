@@ -57,7 +57,7 @@ def _parser() -> argparse.ArgumentParser:
     quantities = [*MOTION, *SCALARS, "stress", *STRESSES]
     parser.add_argument("--quantity", choices=quantities, metavar="NAME", help=f"the field: {', '.join(quantities)} [default: von_mises, of a bar stress]")
     parser.add_argument("--step", type=int, metavar="N", help="the instant of a field; negative ones count from the end [default: -1]")
-    parser.add_argument("--scale", type=float, metavar="X", help="by how much the displacement is exaggerated [default: 1; of a map 0, undeformed]")
+    parser.add_argument("--scale", type=float, metavar="X", help="by how much the displacement, rigid motion included, is exaggerated [default: 1; of a map 0, undeformed]")
     parser.add_argument("--plane", type=int, metavar="K", help="the plane of a pressure [default: the one with the largest force]")
     parser.add_argument("--frames", type=int, metavar="N", help="number of frames of an animation [default: 60]")
     parser.add_argument("--accept-inconsistent", action="store_true", help="estimate a history of another program although it contradicts itself or its problem")

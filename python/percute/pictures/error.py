@@ -16,6 +16,7 @@ from percute.pictures.canvas import (
     COLOURS,
     FIELD,
     Floats,
+    exaggerated,
     legend_beside,
     new_axes,
     over_time,
@@ -75,7 +76,7 @@ def plot_map(estimate: Estimate, scale: float, outline: bool, axes: Axes | None,
         moved, time = _displacement(estimate)
         places = places + factor * moved
         seconds, prefix = prefixed(np.array([time]))
-        told = f"\ndisplacement × {factor:.3g} at t = {time / seconds:.4g} {prefix}s"
+        told = f"\n{exaggerated(factor)}, at t = {time / seconds:.4g} {prefix}s"
     axes = new_axes(axes)
     planes = planes_of(estimate)
     if mesh.dimension == 1:

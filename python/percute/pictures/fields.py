@@ -16,6 +16,7 @@ from percute.pictures.canvas import (
     FIELD,
     SIGNED,
     Floats,
+    exaggerated,
     legend_beside,
     new_axes,
     over_time,
@@ -103,7 +104,8 @@ def draw_field(
         places = mesh.points + scale * history._displacement_at(np.array([step]))[0]
         draw_body(axes, places, mesh.cells, values / factor, label, colours=colours, scale=limits, planes=planes, extent=extent)
     seconds, small = prefixed(history.time[step : step + 1])
-    axes.set_title(f"t = {history.time[step] / seconds:.4g} {small}s", fontsize="medium")
+    told = "" if mesh.dimension == 1 else f", {exaggerated(scale)}"
+    axes.set_title(f"t = {history.time[step] / seconds:.4g} {small}s{told}", fontsize="medium")
 
 
 def plot_energies(subject: History | Estimate, axes: Axes | None, save: object, overwrite: object) -> Axes:
