@@ -54,6 +54,19 @@ impl Rigid {
         Self { from, to, turn }
     }
 
+    /// The one that supports leave to a body. Fixed nodes have not moved at all: if several have not moved along an axis,
+    /// the body neither turns nor moves along it.
+    fn left_by_supports(points: &[Moved]) -> Self {
+        let mut motion = Self::nearest(points);
+        for axis in [0, 1] {
+            if points.iter().filter(|(p, q)| p[axis] == q[axis]).count() > 1 {
+                motion.to[axis] = motion.from[axis];
+                motion.turn = [1.0, 0.0];
+            }
+        }
+        motion
+    }
+
     fn place(&self, point: [f64; 2]) -> [f64; 2] {
         let ([x, y], [c, s]) = ([0, 1].map(|c| point[c] - self.from[c]), self.turn);
         [self.to[0] + c * x - s * y, self.to[1] + s * x + c * y]
@@ -76,7 +89,7 @@ impl Deformed {
         let mut bodies: BTreeMap<usize, Vec<Moved>> = BTreeMap::new();
         nodes.iter().zip(&points).for_each(|(&node, &moved)| bodies.entry(body.part[node]).or_default().push(moved));
         let motions: BTreeMap<usize, Rigid> =
-            bodies.into_iter().map(|(part, points)| (part, Rigid::nearest(&points))).collect();
+            bodies.into_iter().map(|(part, points)| (part, Rigid::left_by_supports(&points))).collect();
         let motion = |node: usize| &motions[&body.part[node]];
         let mut at = BTreeMap::new();
         let [low, high] = body.bounds();
@@ -167,6 +180,19 @@ mod tests {
         assert!(wide.label.ends_with("deformation × 200"), "{}", wide.label);
         assert!(moved(|[x, y]| [1.1 * x, y]).label.ends_with("deformation × 1"));
         assert_eq!([0.02, 1e-3, 0.008, 1e-14, 0.0].map(factor), [1.0, 20.0, 5.0, 1.0, 1.0]);
+    }
+
+    /// Fixed below and sheared: a motion of its own would lift the fixed corners from their places.
+    #[test]
+    fn a_body_that_supports_hold_does_not_float() {
+        let sheared = moved(|[x, y]| [x + 1e-3 * y, y]);
+        // The upper corners move by 1e-3, of which 4 % is a factor of 40; 20 is the next round one.
+        let wanted = [[0.0, 0.0], [1.0, 0.0], [1.02, 1.0], [0.02, 1.0]];
+        assert!(near(&sheared.lines[0][..4], &wanted), "{sheared:?}");
+        assert!(sheared.label.ends_with("deformation × 20"), "{}", sheared.label);
+        // Rollers below leave the motion along x.
+        let rolled = moved(|[x, y]| [x + 0.1, y * (1.0 + 1e-3)]);
+        assert!(near(&rolled.lines[0][..4], &[[0.1, 0.0], [1.1, 0.0], [1.1, 1.02], [0.1, 1.02]]), "{rolled:?}");
     }
 
     #[test]
