@@ -24,6 +24,7 @@ from percute.errors import (
     PercuteError,
     StorageError,
 )
+from percute.mesh_losses import checked, lost_in, refused
 from percute.words import counted
 
 if TYPE_CHECKING:
@@ -85,8 +86,15 @@ def read_foreign(kind: type[Mesh], file: str, scale: float) -> tuple[Mesh, list[
     if no_mesh := NO_MESH.get(os.path.splitext(file)[1].lower()):
         raise InputError(f"`path`: {name!r} {no_mesh}")
     meshlane = _meshlane(file)
-    found = _quietly(lambda: meshlane.read(file), FileFormatError, f"cannot read {name}")
+    told, abaqus = checked(file)
+    said: list[str] = []
+
+    def read() -> Any:
+        return meshlane.read(file) if abaqus is None else meshlane.read(io.StringIO(abaqus), "abaqus")
+
+    found = _quietly(read, FileFormatError, f"cannot read {name}", said=said)
     reader = _Reader(name, found)
+    reader.import_warnings += told + lost_in(said, name)
     points, cells, groups, elements = reader.arrays(scale)
     try:
         mesh = kind(points, cells, groups, elements)
@@ -97,15 +105,21 @@ def read_foreign(kind: type[Mesh], file: str, scale: float) -> tuple[Mesh, list[
     return mesh, reader.import_warnings
 
 
-def _quietly(work: Callable[[], Any], kind: type[PercuteError], what: str, draft: str = "") -> Any:
-    """Run meshlane, which prints errors and may end the process; messages do not show the folder ``draft``."""
-    said = io.StringIO()
+def _quietly(work: Callable[[], Any], kind: type[PercuteError], what: str, draft: str = "", said: list[str] | None = None) -> Any:
+    """Run meshlane, which prints warnings and errors and may end the process; messages do not show the folder ``draft``.
+
+    ``said`` gets the warnings, each in a line.
+    """
+    printed = io.StringIO()
     try:
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), warnings.catch_warnings():
+        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed), warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return work()
+            done = work()
+        if said is not None:
+            said += [" ".join(part.split()) for part in printed.getvalue().split("Warning: ")[1:]]
+        return done
     except (SystemExit, Exception) as error:
-        told = " ".join(f"{said.getvalue()} {'' if isinstance(error, SystemExit) else error}".split())
+        told = " ".join(f"{printed.getvalue()} {'' if isinstance(error, SystemExit) else error}".split())
         told = told.replace(f"{os.path.basename(draft)}{os.sep}", "") if draft else told
         told = (told or type(error).__name__).rstrip(".")
         known = "the ending of the name selects the format: " if "deduce file format" in told else ""
@@ -122,14 +136,15 @@ class _Reader:
         self.blocks = [(block.type, np.asarray(block.data)) for block in found.cells]
         for kind, data in self.blocks:
             if kind not in KINDS:
-                raise FileFormatError(
-                    f"{name}: {len(data)} elements are of the kind {kind!r}; percute takes 3-node triangles (a bar: 2-node lines): "
-                    "mesh again with these"
-                )
+                raise refused(name, len(data), kind)
         self.dimension = max((KINDS[kind] for kind, data in self.blocks if len(data)), default=0)
         if self.dimension == 0:
             raise FileFormatError(f"{name}: the file has neither triangles nor lines; it must have the mesh of a body")
         self.sets = _sets(found)
+        self.points_of = {str(name): np.asarray(nodes, np.int64) for name, nodes in found.point_sets.items() if str(name) not in self.sets}
+        if self.dimension == 2 and self.points_of:
+            groups = f"{'group' if len(self.points_of) == 1 else 'groups'} of points {', '.join(map(repr, self.points_of))}"
+            self.import_warnings.append(f"{groups} left out: in a plane mesh, groups of edges are sets of 2-node lines")
 
     def _of(self, dimension: int) -> tuple[_Integers, dict[str, _Integers]]:
         """Give all cells of a dimension, and the members of each set."""
@@ -147,6 +162,11 @@ class _Reader:
         """Give points, cells and groups as arguments of `Mesh`."""
         cells, elements = self._of(self.dimension)
         facets, members = self._of(self.dimension - 1)
+        for name, nodes in self.points_of.items() if self.dimension == 1 else ():
+            # The ends of a bar are points.
+            ends = np.intersect1d(nodes, cells)
+            members[name] = len(facets) + np.arange(len(ends))
+            facets = np.concatenate([facets, ends[:, None]])
         points = self.points.reshape(len(self.points), -1) * scale
         if cells.min() < 0 or cells.max() >= len(points):
             raise FileFormatError(f"{self.name}: an element names a node that is not there")

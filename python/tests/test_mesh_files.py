@@ -179,6 +179,73 @@ def test_what_meshlane_finds_is_checked(tmp_path: Path) -> None:
             read(points, cells)
 
 
+FOUR = "*NODE\n1,0,0\n2,1,0\n3,1,1\n4,0,1\n"
+NODES = f"{FOUR}5,2,0\n6,2,1\n"
+GRID = "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nCTRIA3,1,1,1,2,3\n"
+ZONE = "ZONE N=3, E=1, F=FEPOINT, ET=TRIANGLE\n0 0\n1 0\n0 1\n1 2 3\n"
+PIECE = """<VTKFile type="UnstructuredGrid" version="0.1"><UnstructuredGrid><Piece NumberOfPoints="4" NumberOfCells="2">
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 1 1 0 0 1 0</DataArray></Points>
+<Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 0 2 3</DataArray><DataArray type="Int64" Name="offsets" format="ascii">3 6
+</DataArray><DataArray type="UInt8" Name="types" format="ascii">5 63</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>"""
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "phrase"),
+    [
+        ("a.inp", f"{NODES}*ELEMENT, TYPE=CPS3\n1,1,2,3\n*Element, type=CPS6\n2,1,2,3,\n4,5,6\n3,2,1,3,4,5,6\n", "2 elements are of the kind 'CPS6'; percute takes"),
+        ("a.inp", f"{NODES}*ELEMENT, TYPE=CPS3\n1,1,2,3\n*ELEMENT, TYPE=CAX3\n2,1,3,4\n", "1 element is of the kind 'CAX3'; percute has no axisymmetric"),
+        ("a.inp", "*INCLUDE, INPUT=a.inp\n", "includes itself"),
+        ("a.inp", "*INCLUDE, INPUT=b.inp\n", "includes 'b.inp', which is not beside it"),
+        ("a.bdf", f"{GRID}CPLSTN3,2,1,1,3,4\nENDDATA\n", "1 element is of the kind 'CPLSTN3'; percute takes"),
+        ("a.nas", f"{GRID}ctria3,2,1,1,3,4\nENDDATA\n", "'ctria3'; meshlane reads these in capitals"),
+        ("a.bdf", f"{GRID}INCLUDE 'b.bdf'\nENDDATA\n", "includes another file"),
+        ("a.dat", f'VARIABLES = "X", "Y"\n{ZONE}{ZONE}{ZONE}', "has 3 zones, of which meshlane reads the first: 2 elements would be lost"),
+        ("a.vtu", PIECE, r"meshlane loses elements: File contains cells that meshlane cannot handle \(type 63\)"),
+    ],
+)
+def test_elements_that_meshlane_would_lose_are_refused(name: str, content: str, phrase: str, tmp_path: Path) -> None:
+    pytest.importorskip("meshlane")
+    (tmp_path / name).write_text(content)
+    with pytest.raises(pc.FileFormatError, match=phrase):
+        pc.Mesh.read(tmp_path / name)
+
+
+def test_triangles_of_abaqus_have_several_names(tmp_path: Path) -> None:
+    """Plane strain and thermal ones are triangles, too; those of an included file are in its sets."""
+    pytest.importorskip("meshlane")
+    (tmp_path / "more.txt").write_text("*ELEMENT, TYPE=CPE3, ELSET=more\n2, 1, 3,\n4\n")
+    (tmp_path / "a.inp").write_text(f"{FOUR}*Element, type=cps3t\n1,1,2,3\n*INCLUDE, INPUT=more.txt\n")
+    mesh = pc.Mesh.read(tmp_path / "a.inp")
+    assert mesh.cells.tolist() == [[0, 1, 2], [0, 2, 3]]
+    assert {name: each.tolist() for name, each in mesh.element_groups.items()} == {"more": [1]}
+
+
+def test_what_is_no_part_of_a_mesh_is_told(tmp_path: Path) -> None:
+    pytest.importorskip("meshlane")
+    more = "*ELEMENT, TYPE=SPRINGA\n7,1,3\n*NSET,NSET=low\n1,2\n*SURFACE,NAME=side\nb,S1\n"
+    files = {
+        "a.inp": (f"{FOUR}*ELEMENT, TYPE=S3\n1,1,2,3\n2,1,3,4\n{more}", ["group of points 'low' left out", "1 element of the kind 'SPRINGA' left out", "surface 'side' left out"]),
+        "a.bdf": (f"{GRID}CTRIA3,2,1,1,3,4\nCONM2,9,1,,3.\nENDDATA\n", ["1 element of the kind 'CONM2' left out"]),
+        "a.su2": (
+            "NDIME= 2\nNELEM= 2\n5 0 1 2\n5 0 2 3\nNPOIN= 4\n0 0\n1 0\n1 1\n0 1\nNMARK= 1\nMARKER_TAG= low\nMARKER_ELEMS= 1\n3 0 1\n",
+            ["the reader says: meshlane does not support tags of string type. Surface tag low will be replaced by 1"],
+        ),
+    }
+    for name, (content, told) in files.items():
+        (tmp_path / name).write_text(content)
+        with pytest.warns(pc.MeshWarning) as caught:
+            mesh = pc.Mesh.read(tmp_path / name)
+        assert len(mesh.cells) == 2 and len(caught) == len(told)
+        assert all(str(each.message).startswith(start) for each, start in zip(caught, told, strict=True))
+
+
+def test_sets_of_points_are_ends_of_bars(tmp_path: Path) -> None:
+    pytest.importorskip("meshlane")
+    (tmp_path / "a.inp").write_text("*NODE\n1,0\n2,1\n3,2\n*ELEMENT, TYPE=T2D2\n1,1,2\n2,2,3\n*NSET,NSET=right\n3\n")
+    mesh = pc.Mesh.read(tmp_path / "a.inp")
+    assert {name: ends.tolist() for name, ends in mesh.edge_groups.items()} == {"right": [[2]]}
+
+
 def test_what_meshlane_cannot_read_is_an_exception(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("meshlane")
     for name, content in [("a.vtu", "<VTKFile>"), ("a.inp", "*NODE\n1, x"), ("a.foo", ""), ("a.xdmf", "no")]:
