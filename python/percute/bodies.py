@@ -13,7 +13,7 @@ from percute import _percute
 from percute.checks import flag, instance, number, text
 from percute.errors import InputError
 from percute.mesh import Mesh
-from percute.statement import Elastic, Vector, vector
+from percute.statement import Elastic, Vector, vector_of
 
 __all__ = ["Body", "Interface"]
 
@@ -56,12 +56,7 @@ class Body:
             raise InputError(f"`rotation` is {self.rotation}; it does not apply to a bar")
         for name, unit in (("origin", "m"), ("velocity", "m/s")):
             given = getattr(self, name)
-            made = (0.0,) * dimension if given is None else vector(name, given)
-            if not np.isfinite(made).all():
-                raise InputError(f"`{name}` is {made}; it must be finite ({unit})")
-            if len(made) != dimension:
-                needed = "one number for a bar" if dimension == 1 else "two numbers, x and y"
-                raise InputError(f"`{name}` has {len(made)} numbers; it must have {needed} ({unit})")
+            made = (0.0,) * dimension if given is None else vector_of(name, given, dimension, unit)
             object.__setattr__(self, name, made)
 
     def _placed(self) -> Mesh:

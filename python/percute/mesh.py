@@ -17,6 +17,7 @@ from percute.checks import path as file_name
 from percute.errors import InputError
 from percute.immutable import Immutable
 from percute.mesh_files import is_gmsh, read_foreign, tell_of_mesh, write_foreign
+from percute.statement import Vector, vector_of
 from percute.words import counted
 
 __all__ = ["Mesh"]
@@ -143,6 +144,54 @@ class Mesh(Immutable):
         if count != 1:
             raise InputError(f"`times` is {count}, but `where` names elements of this mesh only; leave `times` out and refine the result again")
         return Mesh._of(self._data.refined_where(flags("where", where, len(self.cells), "element")))
+
+    def moved(self, by: ArrayLike) -> Mesh:
+        """Move the mesh.
+
+        Parameters
+        ----------
+        by : (2,) floats or, of a bar, float
+            By how much (m).
+
+        Returns
+        -------
+        Mesh
+            With the same elements and groups.
+        """
+        way = vector_of("by", by, self.dimension, "m")
+        return self._placed("by", way, way, 0.0)
+
+    def rotated(self, degrees: float, about: ArrayLike = (0.0, 0.0)) -> Mesh:
+        """Turn a plane mesh.
+
+        Parameters
+        ----------
+        degrees : float
+            By how much, counterclockwise.
+        about : (2,) floats, default: (0, 0)
+            The point that stays in its place (m).
+
+        Returns
+        -------
+        Mesh
+            With the same elements and groups.
+        """
+        angle = number("degrees", degrees, finite=True, unit="degrees")
+        if self.dimension == 1:
+            raise InputError(f"`degrees` is {angle}; a bar cannot be turned")
+        x, y = centre = vector_of("about", about, 2, "m")
+        cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+        return self._placed("about", centre, (x - cos * x + sin * y, y - sin * x - cos * y), angle)
+
+    def _placed(self, name: str, given: Vector, origin: Vector, degrees: float) -> Mesh:
+        """Give the mesh with its origin in another place (m), turned about it; errors name the argument."""
+        try:
+            return Mesh._of(self._data.placed(origin, degrees))
+        except InputError as error:
+            _, far, from_what = str(error).partition(" m, so far")
+            if not far:
+                raise
+            raise InputError(f"`{name}` is {given}{far}{from_what.partition(';')[0]}; give metres") from None
 
     def part(self, group: str) -> Mesh:
         """Make a mesh of the elements of a group alone, such as one of several bodies in a file.

@@ -25,6 +25,17 @@ def vector(name: str, value: object) -> Vector:
     return tuple(np.atleast_1d(numbers(name, value, most=1)).tolist())
 
 
+def vector_of(name: str, value: object, dimension: int, unit: str) -> Vector:
+    """Give a finite vector with a component for each axis."""
+    made = vector(name, value)
+    if not np.isfinite(made).all():
+        raise InputError(f"`{name}` is {made}; it must be finite ({unit})")
+    if len(made) != dimension:
+        needed = "one number for a bar" if dimension == 1 else "two numbers, x and y"
+        raise InputError(f"`{name}` has {len(made)} numbers; it must have {needed} ({unit})")
+    return made
+
+
 def _table(name: str, value: object, time: object, columns: int | None) -> tuple[Vector | Rows, Vector | None]:
     """Check a value that is constant or has a row for each instant."""
     if time is None:

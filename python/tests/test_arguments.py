@@ -37,6 +37,12 @@ class Calls:
     def mesh(self, **wrong: Any) -> object:
         return pc.Mesh(**({"points": POINTS, "cells": CELLS} | wrong))
 
+    def moved(self, **wrong: Any) -> object:
+        return pc.Mesh.rectangle(1.0, 1.0, nx=1, ny=1).moved(**({"by": (1.0, 0.0)} | wrong))
+
+    def rotated(self, **wrong: Any) -> object:
+        return pc.Mesh.rectangle(1.0, 1.0, nx=1, ny=1).rotated(**({"degrees": 3.0, "about": (1.0, 0.0)} | wrong))
+
     def rectangle(self, **wrong: Any) -> object:
         return pc.Mesh.rectangle(**({"width": 1.0, "height": 1.0, "nx": 1, "ny": 1} | wrong))
 
@@ -143,6 +149,9 @@ TABLE: list[tuple[Callable[..., object], str, tuple[Any, ...]]] = [
     (Calls.mesh, "cells", (None, *NO_ARRAYS, [[0.0, 1.0, 2.0]], [[0, 1, HUGE]], np.array([[0, 1, 2**63]], np.uint64))),
     (Calls.mesh, "edge_groups", (3, [], "x", {3: [[0, 1]]}, {"a": None}, {"a": [[0.5, 1.0]]}, {"\ud800": [[0, 1]]})),
     (Calls.mesh, "element_groups", (3, [], "x", {3: [0]}, {"a": None}, {"a": [0.5]}, {"a": 0}, {None: [0]})),
+    (Calls.moved, "by", (None, *NO_ARRAYS, 1.0, NAN)),
+    (Calls.rotated, "degrees", (None, *NO_NUMBERS, NAN)),
+    (Calls.rotated, "about", (None, *NO_ARRAYS, 1.0, NAN)),
     (Calls.rectangle, "width", (None, *NO_NUMBERS, NAN, 0, -1.0)),
     (Calls.rectangle, "height", (None, *NO_NUMBERS, NAN, 0, -1.0)),
     (Calls.rectangle, "nx", (None, *NO_WHOLES, 0, 10**9)),

@@ -21,6 +21,33 @@ def test_meshes_with_the_same_contents_are_equal() -> None:
     assert len({mesh, triangle(), mesh.refine(0), mesh.refine()}) == 2
 
 
+def test_a_mesh_is_moved_and_turned() -> None:
+    mesh = triangle()
+    moved = mesh.moved((2.0, -1.0))
+    assert moved == triangle(points=[[2, -1], [3, -1], [2, 0]]) and mesh.moved([0, 0]) == mesh
+    # A quarter about (1, 2): (x, y) becomes (3 − y, 1 + x), to rounding of numbers up to 3.
+    turned = mesh.rotated(90.0, about=(1, 2))
+    np.testing.assert_allclose(turned.points, [[3, 1], [3, 2], [2, 1]], atol=1e-15)
+    assert turned == mesh.__class__(turned.points, mesh.cells, dict(mesh.edge_groups), dict(mesh.element_groups))
+    np.testing.assert_allclose(mesh.rotated(-30.0).rotated(30.0).points, mesh.points, atol=1e-15)
+    assert pc.Mesh.bar(1.0, elements=2).moved(0.5).points.tolist() == [[0.5], [1.0], [1.5]]
+
+
+def test_a_mesh_is_not_moved_to_nowhere() -> None:
+    for call, phrase in [
+        (lambda: triangle().moved(1.0), "`by` has 1 numbers; it must have two numbers, x and y"),
+        (lambda: triangle().moved((1.0, np.nan)), "`by` is .*; it must be finite"),
+        (lambda: pc.Mesh.bar(1.0, elements=2).moved((1.0, 2.0)), "`by` has 2 numbers; it must have one number for a bar"),
+        (lambda: triangle().rotated(np.inf), "`degrees`"),
+        (lambda: triangle().rotated(3.0, about=0.0), "`about` has 1 numbers"),
+        (lambda: pc.Mesh.bar(1.0, elements=2).rotated(3.0), "`degrees` is 3.0; a bar cannot be turned"),
+        (lambda: triangle().moved((1e20, 0.0)), r"`by` is \(1e\+20, 0.0\) m, so far from a mesh of 1.41 m that .*; give metres"),
+        (lambda: triangle().rotated(3.0, about=(1e20, 0.0)), r"`about` is \(1e\+20, 0.0\) m, so far from"),
+    ]:
+        with pytest.raises(pc.InputError, match=phrase):
+            call()
+
+
 @pytest.mark.parametrize(
     "changed",
     [
