@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -79,7 +79,7 @@ class Mesh(Immutable):
         return mesh
 
     @classmethod
-    def rectangle(cls, width: float, height: float, *, nx: int, ny: int) -> Mesh:
+    def rectangle(cls, width: float, height: float, *, nx: int, ny: int, diagonals: Literal["right", "alternating", "crossed"] = "right") -> Mesh:
         """Make the rectangle [0, width] × [0, height] of triangles.
 
         Parameters
@@ -87,7 +87,11 @@ class Mesh(Immutable):
         width, height : float
             Lengths of the sides (m).
         nx, ny : int
-            Number of cells along x and y; each is cut into two triangles from its lower left to its upper right corner.
+            Number of cells along x and y.
+        diagonals : {"right", "alternating", "crossed"}, default: "right"
+            How a cell is cut: into two triangles, from its lower left to its upper right corner, or in turn from there and from its
+            upper left to its lower right corner; or into four, by both diagonals. Diagonals of one direction push a symmetric body
+            aside; ``"crossed"`` is symmetric, and so is ``"alternating"`` with even ``nx`` and ``ny``.
 
         Returns
         -------
@@ -95,7 +99,13 @@ class Mesh(Immutable):
             Its sides are the groups ``left``, ``right``, ``bottom`` and ``top``.
         """
         sides = number("width", width), number("height", height)
-        return cls._of(_percute.MeshData.rectangle(*sides, whole("nx", nx, most=MOST), whole("ny", ny, most=MOST)))
+        columns, rows = whole("nx", nx, most=MOST), whole("ny", ny, most=MOST)
+        if text("diagonals", diagonals) not in ("right", "alternating", "crossed"):
+            raise wrong("diagonals", diagonals, '"right", "alternating" or "crossed"')
+        if diagonals == "crossed" and 4 * columns * rows > MOST:
+            raise InputError(f"`nx` and `ny` are {columns} and {rows}, {4 * columns * rows} elements; there must be at most {MOST}")
+        mesh = cls._of(_percute.MeshData.rectangle(*sides, columns, rows))
+        return mesh if diagonals == "right" else cls(*_cut_again(mesh, columns, diagonals == "crossed"), mesh.edge_groups)
 
     @classmethod
     def disc(cls, radius: float, *, rings: int) -> Mesh:
@@ -360,6 +370,22 @@ class Mesh(Immutable):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Mesh, (self.points.copy(), self.cells.copy(), dict(self.edge_groups), dict(self.element_groups))
+
+
+def _cut_again(mesh: Mesh, columns: int, crossed: bool) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Give the nodes and elements of a rectangle whose cells are cut by both diagonals, or by them in turn."""
+    first, second = mesh.cells[::2].astype(np.int64), mesh.cells[1::2].astype(np.int64)
+    a, b, c, d = *first.T, second[:, 2]
+    if crossed:
+        centres = len(mesh.points) + np.arange(len(first))
+        points = np.concatenate([mesh.points, 0.5 * (mesh.points[a] + mesh.points[c])])
+        sides = [np.column_stack([start, end, centres]) for start, end in ((a, b), (b, c), (c, d), (d, a))]
+        return points, np.stack(sides, axis=1).reshape(-1, 3)
+    row, column = np.divmod(np.arange(len(first)), columns)
+    other = ((row + column) % 2 == 1)[:, None]
+    lower = np.where(other, np.column_stack([a, b, d]), first)
+    upper = np.where(other, np.column_stack([b, c, d]), second)
+    return mesh.points, np.stack([lower, upper], axis=1).reshape(-1, 3)
 
 
 def _same_groups(first: Mapping[str, NDArray[np.int64]], second: Mapping[str, NDArray[np.int64]]) -> bool:

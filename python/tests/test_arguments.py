@@ -154,6 +154,7 @@ TABLE: list[tuple[Callable[..., object], str, tuple[Any, ...]]] = [
     (Calls.rotated, "about", (None, *NO_ARRAYS, 1.0, NAN)),
     (Calls.rectangle, "width", (None, *NO_NUMBERS, NAN, 0, -1.0)),
     (Calls.rectangle, "height", (None, *NO_NUMBERS, NAN, 0, -1.0)),
+    (Calls.rectangle, "diagonals", (None, *NO_TEXTS, "left")),
     (Calls.rectangle, "nx", (None, *NO_WHOLES, 0, 10**9)),
     (Calls.rectangle, "ny", (None, *NO_WHOLES, 0, 10**9)),
     (Calls.disc, "radius", (None, *NO_NUMBERS, NAN, 0, -1.0)),

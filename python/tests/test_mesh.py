@@ -21,6 +21,28 @@ def test_meshes_with_the_same_contents_are_equal() -> None:
     assert len({mesh, triangle(), mesh.refine(0), mesh.refine()}) == 2
 
 
+def elements(mesh: pc.Mesh, mirrored: bool = False) -> set[frozenset[tuple[float, float]]]:
+    """The elements by the places of their nodes, of the mesh or of its mirror image at x = 1.5."""
+    points = [(3.0 - x if mirrored else x, y) for x, y in mesh.points.tolist()]
+    return {frozenset(points[node] for node in cell) for cell in mesh.cells.tolist()}
+
+
+def test_diagonals_of_a_rectangle_are_symmetric() -> None:
+    base = pc.Mesh.rectangle(3.0, 2.0, nx=4, ny=2)
+    assert pc.Mesh.rectangle(3.0, 2.0, nx=4, ny=2, diagonals="right") == base and elements(base) != elements(base, mirrored=True)
+    for diagonals, count in (("alternating", 16), ("crossed", 32)):
+        mesh = pc.Mesh.rectangle(3.0, 2.0, nx=4, ny=2, diagonals=diagonals)  # type: ignore[arg-type]
+        assert len(mesh.cells) == count and elements(mesh) == elements(mesh, mirrored=True)
+        corners = mesh.points[mesh.cells]
+        sides = corners[:, 1:] - corners[:, :1]
+        assert np.linalg.det(sides).sum() == pytest.approx(2 * 6.0, rel=1e-14) and mesh.reoriented_elements == 0
+        assert {name: each.tolist() for name, each in mesh.edge_groups.items()} == {name: each.tolist() for name, each in base.edge_groups.items()}
+    with pytest.raises(pc.InputError, match='`diagonals` is .left.; it must be "right", "alternating" or "crossed"'):
+        pc.Mesh.rectangle(3.0, 2.0, nx=4, ny=2, diagonals="left")  # type: ignore[arg-type]
+    with pytest.raises(pc.InputError, match="at most 20000000"):
+        pc.Mesh.rectangle(1.0, 1.0, nx=6_000_000, ny=1, diagonals="crossed")
+
+
 def test_a_mesh_is_moved_and_turned() -> None:
     mesh = triangle()
     moved = mesh.moved((2.0, -1.0))
