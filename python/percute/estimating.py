@@ -29,7 +29,6 @@ def estimate(
     fields: bool = False,
     force: bool = False,
     progress: ProgressOption = None,
-    _ablation: str = "none",
 ) -> Estimate:
     """Estimate the constitutive relation error of a history.
 
@@ -84,21 +83,52 @@ def estimate(
     StorageError
         The temporary file of a long flight cannot be written: no space in the folder ``TMPDIR`` or in ``/var/tmp``.
     """
-    stated = instance("history", history, History)._data.options()
-    options = (
-        stated[0] if reconstruction is None else text("reconstruction", reconstruction),
-        stated[1] if acceleration is None else text("acceleration", acceleration),
-        # The default without one of its parts, for the evidence on each part.
-        text("_ablation", _ablation),
-        stated[2] if every is None else sampling(every),
-    )
+    options = _options(history, reconstruction, acceleration, every)
     work = pace(threads, window)
     wanted = _wanted(instants, history)
     if flag("fields", fields) and wanted is None:
         raise InputError("`fields` needs `instants`: give the number of instants, or their times (s)")
-    accept = flag("force", force)
+    return _estimate(history, options, "none", work, (wanted, bool(fields), flag("force", force)), progress)
+
+
+def ablated(
+    history: History,
+    *,
+    ablation: str = "none",
+    reconstruction: str | None = None,
+    acceleration: str | None = None,
+    every: int | None = None,
+    threads: int | None = None,
+    progress: ProgressOption = None,
+) -> Estimate:
+    """Estimate without one part of the method, for the evidence on each part; otherwise as `estimate`."""
+    options = _options(history, reconstruction, acceleration, every)
+    return _estimate(history, options, ablation, pace(threads, None), (None, False, False), progress)
+
+
+def _options(history: History, reconstruction: str | None, acceleration: str | None, every: object) -> tuple[str, str | None, int | str]:
+    """Give the options that are stated with the history where the caller gives none."""
+    stated = instance("history", history, History)._data.options()
+    return (
+        stated[0] if reconstruction is None else text("reconstruction", reconstruction),
+        stated[1] if acceleration is None else text("acceleration", acceleration),
+        stated[2] if every is None else sampling(every),
+    )
+
+
+def _estimate(
+    history: History,
+    options: tuple[str, str | None, int | str],
+    ablation: str,
+    work: tuple[int | None, int | None],
+    kept: tuple[int | list[float] | None, bool, bool],
+    progress: ProgressOption,
+) -> Estimate:
+    """Estimate with options that have been checked."""
+    reconstruction, acceleration, every = options
+    instants, fields, accept = kept
     with shown(progress) as tell:
-        data = _percute.estimate(history._data, *options, *work, wanted, bool(fields), accept, tell)
+        data = _percute.estimate(history._data, reconstruction, acceleration, ablation, every, *work, instants, fields, accept, tell)
     # `simulate` has given the warnings about its problem; those about a file, or about arrays, have not been given.
     warn_of_result(data.warnings(True, history.path is not None or history._data.derived is not None))
     return Estimate._of(data, history, history._name)

@@ -1,5 +1,6 @@
 """Every wrong argument is told by its name, before any work is done and any file is made."""
 
+import inspect
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -323,3 +324,11 @@ def test_an_interruption_before_the_first_step_has_no_history(monkeypatch: pytes
     with pytest.raises(KeyboardInterrupt) as raised:
         pc.simulate(block(), end=1e-6, courant=0.9)
     assert raised.value.history is None  # type: ignore[attr-defined]
+
+
+def test_public_functions_have_no_private_arguments() -> None:
+    for name in pc.__all__:
+        public = getattr(pc, name)
+        members = [each for key, each in vars(public).items() if not key.startswith("_")] if inspect.isclass(public) else [public]
+        for member in filter(inspect.isfunction, members):
+            assert not [key for key in inspect.signature(member).parameters if key.startswith("_")], (name, member)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 import percute as pc
+from percute.estimating import ablated
 from percute.verification import figures
 from percute.verification.bar import Outcome, Setting
 from percute.verification.choices import RECONSTRUCTIONS
@@ -18,22 +19,22 @@ from percute.verification.parallel import Resolution, Stop
 ATTEMPTS: dict[str, tuple[dict[str, Any], str]] = {
     "corrected": ({}, "the default with all its parts"),
     "no auxiliary solution": (
-        {"_ablation": "auxiliary solution"},
+        {"ablation": "auxiliary solution"},
         "the balance of the simulation's own displacements: the difference between the nodal forces of the density and the reactions "
         "becomes acceleration [55] and drifts; the accumulated dispersion is not seen",
     ),
     "auxiliary solution as dispersive": (
-        {"_ablation": "correction"},
+        {"ablation": "correction"},
         "an auxiliary solution without its two corrections: nothing drifts, but the waves of simulation and balance are late together, and "
         "the estimate loses them on fine meshes with small steps",
     ),
     "no concentration": (
-        {"_ablation": "concentration"},
+        {"ablation": "concentration"},
         "tractions over whole edges, however far these leave the plane: at a corner the index is 1.5 times larger at 400 m/s, 8 times at "
         "4 m/s",
     ),
     "tractions of the stars": (
-        {"_ablation": "least energy"},
+        {"ablation": "least energy"},
         "no descent to tractions of least energy: where contact begins, and around corners, the elastic part is several times too large",
     ),
     "lumped mass": (
@@ -41,24 +42,24 @@ ATTEMPTS: dict[str, tuple[dict[str, Any], str]] = {
         "tractions that balance the lumped mass of an element: Γ_DA turns where the motion turns the elements; on bars this is the default",
     ),
     "no moment": (
-        {"_ablation": "moment"},
+        {"ablation": "moment"},
         "the densities R_k/ℓ_k without the moment of the reactions: of little weight during an impact, but a sliding body turns ever "
         "faster (below)",
     ),
     "no normal work": (
-        {"_ablation": "normal work"},
+        {"ablation": "normal work"},
         "the normal law at displacement level alone: the loss when a node is brought to rest enters at that instant only; the waves that "
         "it causes are missing afterwards",
     ),
     "twice the normal work": (
-        {"_ablation": "doubled work"},
+        {"ablation": "doubled work"},
         "the weight that [14] gives to the work of friction: an estimate from above everywhere on the bar, but farther from the true error "
         "elsewhere",
     ),
     "consistent": ({"reconstruction": "consistent"}, "forces on touching edges only"),
     "published": ({"reconstruction": "published"}, "the paper's forces"),
 }
-"""Name, arguments of `percute.estimate`, and description of each attempt."""
+"""Name, arguments of `percute.estimating.ablated`, and description of each attempt."""
 CHOICES = [choice for choice, _ in ATTEMPTS.values()]
 ELEMENTS, RATIOS, FRACTIONS = (10, 40, 160), (0.5, 0.8, 1.0), (0.1, 0.3, 0.5, 0.7, 0.9)
 """Part of the grid of the bar maps: N_s, α, fraction; up to the end of contact."""
@@ -172,7 +173,7 @@ def _slide(section: Section, resolution: Resolution) -> None:
     def errors(run: tuple[int, dict[str, Any]], stop: Stop) -> float:
         count, choice = run
         first = pc.simulate(problem, end=float(history.time[count]), step=float(history.time[count]) / count, progress=stop)
-        return 100.0 * pc.estimate(first, every=1, threads=1, progress=stop, **choice).relative_mean
+        return 100.0 * ablated(first, every=1, threads=1, progress=stop, **choice).relative_mean
 
     found = iter(resolution.map(errors, [(count, choice) for choice in CHOICES for count in lengths], lambda run: run[0]))
     columns = [Column("attempt"), *(Column(f"T = {short(part * times['end'], 2)} s", "%", "[22]", digits=3) for part in SLIDE)]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import percute as pc
+from percute.estimating import ablated
 from percute.verification.impacts import holds
 from percute.verification.parallel import Stop
 
@@ -54,7 +55,7 @@ class Setting:
         return self.ratio * BAR["length"] / self.elements / math.sqrt(BAR["young"] / BAR["density"])
 
     def run(self, choices: Sequence[Mapping[str, Any]], stop: Stop | None = None) -> Outcome:
-        """Simulate, estimate with each choice of arguments of `percute.estimate`, and compare with the exact solution."""
+        """Simulate, estimate with each choice of arguments of `ablated`, and compare with the exact solution."""
         exact = pc.exact.BarImpact(gap=(WHOLE + self.fraction) * self.step * BAR["speed"], **BAR)
         problem = pc.Problem(
             pc.Mesh.bar(BAR["length"], elements=self.elements),
@@ -65,7 +66,7 @@ class Setting:
         # Where a whole number of steps is due, rounding must not add one.
         count = math.ceil(WHOLE + self.fraction + self.after_impact * self.elements / self.ratio - 1e-6)
         history = pc.simulate(problem, end=count * self.step, step=self.step, progress=stop)
-        estimates = [pc.estimate(history, every=1, threads=1, progress=stop, **choice) for choice in choices]
+        estimates = [ablated(history, every=1, threads=1, progress=stop, **choice) for choice in choices]
         true = exact.error(history)
         errors: list[tuple[float, ...]] = [(each.sup, each.mean, each.relative_sup, each.relative_mean) for each in estimates]
         indices = [each.effectivity(true) for each in estimates]

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import percute as pc
 from numpy.typing import NDArray
+from percute.estimating import ablated
 from percute.verification import figures
 from percute.verification.block import ALUMINIUM
 from percute.verification.bodies import BODIES, corners, elastic, graded
@@ -165,7 +166,7 @@ class Case:
                     raise
                 found.append(None)
                 continue
-            estimates = [pc.estimate(history, every=1, threads=1, progress=stop, **choice) for choice in choices]
+            estimates = [ablated(history, every=1, threads=1, progress=stop, **choice) for choice in choices]
             count = history.touching.sum(axis=1)
             during = history.time[np.flatnonzero(count)]
             touching = (float(during[0]), float(during[-1])) if len(during) else None

@@ -16,7 +16,7 @@ RATIOS = (0.9, 0.5, 0.2, 0.1, 0.05, 0.02)
 ELEMENTS, FRACTIONS = 40, (0.1, 0.3, 0.5, 0.7, 0.9)
 """The bar, and the fractions of a step at which its impact falls."""
 ATTEMPTS: dict[str, dict[str, Any]] = {options["reconstruction"]: options for options in RECONSTRUCTION_OPTIONS}
-ATTEMPTS["corrected, not spread"] = {"_ablation": "impulse smoothing"}
+ATTEMPTS["corrected, not spread"] = {"ablation": "impulse smoothing"}
 """The reconstructions, and the default with reactions that are not spread in time."""
 KNOWN = len(RECONSTRUCTION_OPTIONS)
 """Attempts that have verdicts."""
