@@ -213,13 +213,22 @@ class Estimate(EstimateViews):
 
     @cached_property
     def contact(self) -> Contact | None:
-        """Contact results from the history or the file; None after unpickling, or if the file has none."""
+        """Contact results from the history or the file; None after unpickling, or if the file has none: `no_contact` tells why."""
         if self._history is not None:
             return self._history.contact
         if not isinstance(self._data, StoredEstimate):
             return None
         found = self._data.contact()
         return None if found is None else Contact._of(found, self.mesh, self._data.surfaces())
+
+    @property
+    def no_contact(self) -> str | None:
+        """Why `contact` is None; None if it is not."""
+        if self.contact is not None:
+            return None
+        if isinstance(self._data, StoredEstimate):
+            return "the file has no contact results: nothing could touch, or the estimate had been unpickled without its history"
+        return "the estimate was unpickled without its history, which has the contact results; pickle both, or save the estimate to a file"
 
     @property
     def given(self) -> Mapping[str, bool]:

@@ -70,7 +70,7 @@ class Views(Immutable):
         """
         from percute.pictures import contact
 
-        return contact.plot_force(self.contact, axes, save, overwrite)
+        return contact.plot_force(self, axes, save, overwrite)
 
     def plot_pressure(  # type: ignore[misc]
         self: History | Estimate,
@@ -101,7 +101,7 @@ class Views(Immutable):
         """
         from percute.pictures import contact
 
-        return contact.plot_pressure(self.contact, plane, axes, save, overwrite)
+        return contact.plot_pressure(self, plane, axes, save, overwrite)
 
 
 class HistoryViews(HistoryFields, Views):

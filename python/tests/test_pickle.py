@@ -63,6 +63,19 @@ def test_a_pickled_estimate_is_the_same(fields: bool, block_history: pc.History)
         assert (first.stress is not None) == fields
 
 
+def test_an_estimate_without_contact_says_why(block_history: pc.History, tmp_path: Path) -> None:
+    estimate = pc.estimate(block_history)
+    assert estimate.contact is not None and estimate.no_contact is None
+    again = pickle.loads(pickle.dumps(estimate))
+    assert again.contact is None and again.no_contact is not None and "unpickled without its history" in again.no_contact
+    for call in (again.plot_force, again.plot_pressure):
+        with pytest.raises(pc.InputError, match="there is nothing to draw: the estimate was unpickled without its history, .*; pickle both"):
+            call()
+    again.save(tmp_path / "again.vtkhdf")
+    stored = pc.open(tmp_path / "again.vtkhdf")
+    assert isinstance(stored, pc.Estimate) and stored.contact is None and (stored.no_contact or "").startswith("the file has no contact results")
+
+
 def test_copies_need_no_room(block_history: pc.History) -> None:
     estimate = pc.estimate(block_history)
     for each in (block_history.problem.mesh, block_history.problem, block_history, estimate):

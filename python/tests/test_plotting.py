@@ -210,7 +210,7 @@ def test_force_and_pressure(block_history: pc.History, bar_history: pc.History, 
     rod = pc.Problem(pc.Mesh.bar(1.0, elements=2), material=pc.Elastic(young=1.0, density=1.0, section=1.0), initial_velocity=0.1)
     free = pc.simulate(rod, end=1.0, courant=0.9)
     for call in (free.plot_force, free.plot_pressure, pickle.loads(pickle.dumps(pc.estimate(block_history))).plot_force):
-        with pytest.raises(pc.InputError, match="there is nothing to draw: (the problem has no planes|there are no contact results)"):
+        with pytest.raises(pc.InputError, match="there is nothing to draw: (the problem has no planes|the estimate was unpickled)"):
             call()
 
 

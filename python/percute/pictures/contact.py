@@ -17,6 +17,9 @@ from percute.pictures.canvas import FIELD, Floats, legend_beside, new_axes, over
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from percute.estimation import Estimate
+    from percute.history import History
+
 COLOURS = {ContactStatus.STICK: "#1f5fa8", ContactStatus.SLIP: "#e8862e"}
 MOST_COLUMNS = 2000
 """Largest number of drawn steps; more are thinned out."""
@@ -40,9 +43,9 @@ def plot_contact(contact: Contact, colour: str, axes: Sequence[Axes] | None, sav
     return panels
 
 
-def plot_force(contact: Contact | None, axes: Axes | None, save: object, overwrite: object) -> Axes:
+def plot_force(subject: History | Estimate, axes: Axes | None, save: object, overwrite: object) -> Axes:
     """Draw the resultant forces of each plane over time."""
-    file, results = writable("save", save, overwrite), _check(contact)
+    file, results = writable("save", save, overwrite), _results(subject)
     axes = new_axes(axes, (7.2, 4.0))
     over_time(axes, results.time)
     _draw_forces(axes, results)
@@ -50,9 +53,9 @@ def plot_force(contact: Contact | None, axes: Axes | None, save: object, overwri
     return axes
 
 
-def plot_pressure(contact: Contact | None, plane: int | None, axes: Axes | None, save: object, overwrite: object) -> Axes:
+def plot_pressure(subject: History | Estimate, plane: int | None, axes: Axes | None, save: object, overwrite: object) -> Axes:
     """Draw the pressure along the surface over time; of a bar, the pressure of its end."""
-    file, results = writable("save", save, overwrite), _check(contact)
+    file, results = writable("save", save, overwrite), _results(subject)
     if plane is None:
         chosen = max(results._names, key=lambda k: results.obstacles[k].normal_force.max(initial=0.0))
     else:
@@ -78,11 +81,18 @@ def _draw_ends(axes: Axes, contact: Contact, plane: int) -> None:
     legend_beside(axes)
 
 
-def _check(contact: Contact | None) -> Contact:
+def _results(subject: History | Estimate) -> Contact:
+    """Give the contact results of a history or an estimate."""
+    if subject.contact is None:
+        # A history always has them.
+        raise InputError(f"there is nothing to draw: {getattr(subject, 'no_contact', None)}")
+    return _check(subject.contact)
+
+
+def _check(contact: Contact) -> Contact:
     """Make sure that there is something to draw."""
-    if contact is None or not contact.obstacles or len(contact.time) < 2:
-        none = "there are no contact results" if contact is None else "the problem has no planes and no interfaces"
-        what = none if contact is None or not contact.obstacles else "the history has one instant only"
+    if not contact.obstacles or len(contact.time) < 2:
+        what = "the history has one instant only" if contact.obstacles else "the problem has no planes and no interfaces"
         raise InputError(f"there is nothing to draw: {what}")
     return contact
 
