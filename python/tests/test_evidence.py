@@ -246,18 +246,19 @@ def test_the_verdict_states_the_ranges_of_each_kind_on_the_page(reconstruction: 
         low, high = json.loads(estimate.to_json())["verdict"]["effectivity"]
         indices = page[case.kind, reconstruction]
         assert low <= min(indices) and max(indices) <= high, (case.name, indices, low, high)
-        assert (estimate.trust == "low") == (reconstruction != "corrected"), case.name
+        # Strains above 10 % at 400 m/s are another doubt.
+        assert ("drops forces" in str(estimate.verdict)) == (reconstruction != "corrected"), case.name
 
 
 def test_the_page_holds_the_aims_of_the_default() -> None:
-    """0.89 to 1.7 in a first contact at each speed; free vibrations 0.95 to 1.35, Lamé's not rising; flat impacts below 1.2."""
+    """0.89 to 1.7 in a first contact at each speed; free vibrations 0.95 to 1.35, Lamé's 0.98 to 1.02; flat impacts below 1.2."""
     for name, values in families().items():
         if name not in OTHERWISE:
             assert 0.89 <= min(values) and max(values) <= (1.2 if name == "flat" else 1.7), name
     for name, _, *cells in of_page("body", "split, mesh 1", "closest, mesh 4"):
         split = ends(cells[:4])
         assert 0.95 <= min(split) and max(split) <= 1.35
-        assert "Lamé" not in name or split == sorted(split, reverse=True)
+        assert "Lamé" not in name or max(abs(index - 1.0) for index in split) < 0.0205
 
 
 def test_what_cannot_be_is_refused(folder: Path, tmp_path: Path) -> None:

@@ -27,8 +27,8 @@ QUICK = {"impact": 1, "vibration": 1, "graded": 1}
 def test_a_body_has_an_index_beside_its_range(kind: str, seed: int) -> None:
     row = judge.judged(kind, seed)
     assert row.error == "" and row.kind == kind and row.steps > 10 and row.trust in ("high", "limited", "low")
-    # Any sound estimate: twice as wide as any range of these bodies.
-    assert 0.4 < row.sup < 3.0 and 0.4 < row.mean < 3.0
+    # The estimate is between 0.8 and 1.4 times the true error in these bodies, and the verdict holds.
+    assert 0.8 < row.sup < 1.4 and 0.8 < row.mean < 1.4 and row.inside == "yes"
     assert row.inside == ("yes" if row.low <= min(row.sup, row.mean) and max(row.sup, row.mean) <= row.high else "no")
     assert row.touches == "none" if kind == "vibration" else row.touches != "none"
     assert Row.of_cells(row.cells) == row

@@ -54,7 +54,10 @@ def replaced(name: str, value: Callable[[Any], Any]) -> Change:
 
 
 def removed(name: str) -> Change:
+    """With the checksum of the names of its group, as by somebody who removes it on purpose."""
+
     def change(file: h5py.File) -> None:
+        file[name].parent.attrs.pop("checksum", None)
         del file[name]
 
     return change

@@ -96,6 +96,23 @@ def test_the_mode_of_a_square_has_the_known_effectivities() -> None:
         assert (spinning[name].sup, spinning[name].mean) == pytest.approx((lame[name].sup, lame[name].mean), rel=1e-9)
 
 
+def test_bending_keeps_its_index_over_time() -> None:
+    """A free beam of four elements over 20 wave passages: 0.55 and 0.66 of the true error without smoothed strains."""
+    length = 0.1
+    mesh = pc.Mesh.rectangle(length, 0.02, nx=20, ny=4)
+    steel = pc.Elastic(young=210e9, poisson=0.3, density=7800.0, plane="stress")
+
+    def problem(mesh: pc.Mesh) -> pc.Problem:
+        across = (mesh.points[:, 0] / length - 0.5) ** 2 - 1.0 / 12.0
+        return pc.Problem(mesh, material=steel, initial_velocity=np.column_stack((np.zeros_like(across), across)))
+
+    history = pc.simulate(problem(mesh), end=4e-4, courant=0.9)
+    (error,) = pc.true_errors([history], problem(mesh.refine(2)), end=4e-4, courant=0.9)
+    index = pc.estimate(history).effectivity(error)
+    # 1.014 and 1.021; a fourth of the reference's own error may move them by 0.02.
+    assert (index.sup, index.mean) == pytest.approx((1.014, 1.021), abs=0.03)
+
+
 def test_sources_say_what_half_the_size_changes() -> None:
     """Within 20 % of the change in a run: a front, a corner at 4 m/s, a smooth mode; and half the step of a bar that vibrates."""
     of = {(subject.name, subject.level): subject for subject in sources.subjects()}
@@ -117,7 +134,7 @@ def test_refinement_at_the_contact_helps_corners_not_fronts() -> None:
     runs = [(name, of[name]) for name in ("flat", "corner, 4 m/s")]
     # Tractions that are wider than the small elements give some energy, above the limit of the guard (docs/reconstructions.md).
     with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "contact gives the auxiliary solution 1[01].* % of the energy", pc.SimulationWarning)
+        warnings.filterwarnings("ignore", "contact gives the auxiliary solution 1[0-3].* % of the energy", pc.SimulationWarning)
         flat, corner = Resolution(threads=1).map(sources._locally, runs)
     # The front is split in another way, but most of it is away from the contact: 0.80 of the total are left.
     assert flat[1].front < 0.7 * flat[0].front and flat[1].total > 0.77 * flat[0].total

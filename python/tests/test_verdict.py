@@ -77,7 +77,7 @@ def test_a_disc_that_stands_on_one_of_its_edges_is_a_curve() -> None:
 
 def test_a_corner_of_one_element_and_a_thin_body() -> None:
     corner = struck(BODIES["trapezoid 45° with a corner of one element"]().refine())
-    assert corner.trust == "limited" and facts(corner)["effectivity"][0] > 1.5 and "two elements" in str(corner.verdict)
+    assert corner.trust == "limited" and facts(corner)["effectivity"] == [0.95, 2.0] and "two elements" in str(corner.verdict)
     thin = struck(BODIES["frame"]().refine(), tilt=10.0, speed=100.0)
     assert thin.trust == "limited" and facts(thin)["slenderness"] < 0.15
 
@@ -190,6 +190,43 @@ def test_the_number_is_not_trusted_for_a_reason() -> None:
     problem = pc.Problem(mesh, material=material, obstacles=[plane], initial_velocity=(0, -40), body_forces=[gravity])
     bounces = pc.estimate(pc.simulate(problem, end=300e-6, courant=0.9))
     assert facts(bounces)["phases"] > 1 and bounces.trust == "low" and "several contacts" in str(bounces.verdict)
+
+
+@pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
+@pytest.mark.parametrize(("friction", "along"), [(0.0, 0.0), (0.0, 10.0), (0.3, 2.0)])
+def test_small_elements_along_a_flat_contact_are_not_tested(friction: float, along: float) -> None:
+    """There the auxiliary solution gains energy, which neither friction nor a velocity along the plane hides: the index is 1.3 to 1.6 for 8."""
+    mesh = pc.Mesh.rectangle(0.05, 0.05, nx=5, ny=5)
+    for halvings in (2, 3):
+        lowest = mesh
+        for _ in range(halvings):
+            lowest = lowest.refine(where=lowest.points[lowest.cells][:, :, 1].min(axis=1) < 1e-9)
+        plane = pc.Plane(point=(0, -2e-6), normal=(0, 1), friction=friction)
+        problem = pc.Problem(lowest, material=pc.Elastic(**ALUMINIUM, plane="stress"), obstacles=[plane], initial_velocity=(along, -1))
+        estimate = pc.estimate(pc.simulate(problem, end=27e-6, courant=0.8))
+        named = [text for text in facts(estimate)["untested"] if text.startswith("elements along a flat contact that are smaller")]
+        # 4 and 8 times smaller; the limit is 5.
+        assert len(named) == (halvings == 3) and (estimate.trust == "high") == (halvings == 2)
+    assert json.loads(estimate.to_json())["auxiliary_contact_energy"] > 0.1
+
+
+@pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
+def test_what_locks_and_what_is_much_softer_is_not_tested() -> None:
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=10, ny=8)
+    plane = pc.Plane(point=(0, -1e-6), normal=(0, 1), friction=0.0)
+    for poisson, named in ((0.49, []), (0.495, ["plane strain with a Poisson's ratio above 0.49"])):
+        rubber = pc.Elastic(young=70e9, poisson=poisson, density=2700.0, plane="strain")
+        problem = pc.Problem(mesh, material=rubber, obstacles=[plane], initial_velocity=(0, -5))
+        assert facts(pc.estimate(pc.simulate(problem, end=2e-6, courant=0.9)))["untested"] == named
+    # √(ρE) of two bodies: 8.6 and 94 times.
+    hard = pc.Elastic(**ALUMINIUM, plane="stress")
+    for young, count in ((1e9, 0), (8e6, 1)):
+        soft = pc.Elastic(young=young, poisson=0.3, density=2700.0, plane="stress")
+        lower, upper = (pc.Mesh.rectangle(0.05, 0.04, nx=4, ny=4) for _ in range(2))
+        bodies = [pc.Body(name="lower", mesh=lower, material=hard), pc.Body(name="upper", mesh=upper, material=soft, origin=(0, 0.04 + 5e-6), velocity=(0, -0.5))]
+        pair = pc.Problem(bodies=bodies, contacts=[pc.Interface(friction=0.0)])
+        untested = facts(pc.estimate(pc.simulate(pair, end=2e-5, courant=0.9)))["untested"]
+        assert sum(text.startswith("impedances that differ by a factor of") for text in untested) == count, untested
 
 
 def test_shorter_steps_help_where_they_do() -> None:

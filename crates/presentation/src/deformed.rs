@@ -54,8 +54,8 @@ impl Rigid {
         Self { from, to, turn }
     }
 
-    /// The one that supports leave to a body. Fixed nodes have not moved at all: if several have not moved along an axis,
-    /// the body neither turns nor moves along it.
+    /// The one that supports leave to a body. Fixed nodes have not moved at all: if several have not moved along an
+    /// axis, the body neither turns nor moves along it.
     fn left_by_supports(points: &[Moved]) -> Self {
         let mut motion = Self::nearest(points);
         for axis in [0, 1] {

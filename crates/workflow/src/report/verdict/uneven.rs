@@ -1,5 +1,5 @@
-//! Meshes and materials beyond those of the evidence: long elements, elements of very different sizes, materials of very
-//! different impedance beside each other, and nearly incompressible ones.
+//! Meshes and materials beyond those of the evidence: long elements, elements of very different sizes, materials of
+//! very different impedance beside each other, and nearly incompressible ones.
 
 use crate::report::poor::{LONG, aspect};
 use percute_core::contact::ContactResults;
@@ -21,7 +21,8 @@ pub(super) struct Uneven {
     pub(super) longest: f64,
     /// The largest of the critical steps of the elements alone over the smallest one: their sizes, in times of waves.
     pub(super) sizes: f64,
-    /// The same of all elements over the smallest of those with a node that touches; 1 without contact.
+    /// The size of the largest element over that of the smallest one with a node that touches; 1 without contact. A size
+    /// is the way of a wave in the critical step of the element alone.
     pub(super) at_contact: f64,
     /// The largest ratio of the impedances, with thickness or section, of two elements that share a facet, or of two
     /// bodies at their interface.
@@ -40,13 +41,14 @@ impl Uneven {
         let mesh = problem.mesh();
         let step = |element: ElementId| time_step_of_element(problem, element);
         let steps = || (0..by_element.len()).map(|e| step(ElementId::new(e)));
-        let largest = steps().fold(0.0, f64::max);
+        let size = |element: ElementId| step(element) * problem.material(element).wave_speed();
+        let largest = (0..by_element.len()).map(|e| size(ElementId::new(e))).fold(0.0, f64::max);
         let touched = results.nodes.iter().zip(&results.summary).filter(|(_, summary)| summary.first_touch.is_some());
         let elements = touched.flat_map(|(point, _)| mesh.stars().star(point.node).elements.iter().copied());
         Self {
             longest: longest(mesh, by_element),
-            sizes: largest / steps().fold(f64::INFINITY, f64::min),
-            at_contact: largest / elements.map(step).fold(largest, f64::min),
+            sizes: steps().fold(0.0, f64::max) / steps().fold(f64::INFINITY, f64::min),
+            at_contact: largest / elements.map(size).fold(largest, f64::min),
             impedances: impedances(problem),
             poisson: poisson(problem),
         }

@@ -13,7 +13,8 @@ pub(super) const STEPS: [f64; 2] = [0.02, 0.9];
 /// Largest friction of the evidence.
 pub(super) const FRICTION: f64 = 0.5;
 
-/// Wave passages that the evidence has after a flat impact.
+/// Wave passages that the evidence has after a flat impact. Random bodies with a corner or a curve have 0.8 to 1.7 before
+/// them, and up to 1.94 after 12 and 13.
 const LONGEST: f64 = 10.0;
 /// The fewest wave passages after the first touch that the evidence has: runs of 0.1 passages and whole steps in
 /// python/percute/verification/durations.py, of 0.084 at least.
@@ -76,7 +77,7 @@ pub(super) fn untested(facts: &Facts) -> Vec<String> {
 /// How long after the first touch no case of the evidence ends.
 fn untested_durations(facts: &Facts) -> Vec<String> {
     let mut untested = Vec::new();
-    if facts.dimension == 2 && facts.contact.touches == Touches::Edge && facts.passages > LONGEST {
+    if facts.dimension == 2 && facts.contact.touches != Touches::None && facts.passages > LONGEST {
         untested.push(format!("{} wave passages", short(facts.passages, 2)));
     }
     if facts.has_just_begun() && facts.passages < SHORTEST {
@@ -146,7 +147,7 @@ fn of_uneven_meshes(facts: &Facts) -> impl Iterator<Item = String> {
     let small = plane && flat && more(uneven.at_contact, AT_FLAT_CONTACT);
     let named = [
         (small, "elements along a flat contact that are smaller than others by a factor of", uneven.at_contact, ""),
-        (more(uneven.poisson, POISSON), "plane strain with a Poisson's ratio of", uneven.poisson, ""),
+        (more(uneven.poisson, POISSON), "plane strain with a Poisson's ratio above", POISSON, ""),
         (long, "elements", uneven.longest, "times as long as their shortest edge"),
         (plane && more(uneven.impedances, IMPEDANCES), "impedances that differ by a factor of", uneven.impedances, ""),
         (!plane && more(uneven.sizes, SIZES), "elements of a bar that differ by a factor of", uneven.sizes, ""),

@@ -166,16 +166,20 @@ mod tests {
         let energy = |normals: &[[f64; 2]]| {
             let mut builder = TriangleProblem::builder(random_rectangle(1.0, 0.8, 5, 3).unwrap())
                 .material(Elastic::plane_strain(70.0, 0.3, 2.0, 0.5).unwrap());
-            for normal in normals {
-                builder = builder.obstacle(Obstacle::plane(normal.map(|x| -10.0 * x), *normal, 0.0, None).unwrap());
+            for (normal, group) in normals.iter().zip(["bottom", "top"]) {
+                let point = normal.map(|x| -10.0 * x);
+                builder = builder.obstacle(Obstacle::plane(point, *normal, 0.0, Some(group.into())).unwrap());
             }
             let problem = builder.build().unwrap();
             FreeDirections::new(&problem).energy(&problem, &vec![[3.0, 4.0]; problem.mesh().node_count()])
         };
         // The mass is 0.8 kg.
-        for (normals, free) in
-            [(&[][..], 25.0), (&[[0.0, 1.0]], 9.0), (&[[0.0, 1.0], [0.0, -1.0]], 9.0), (&[[0.0, 1.0], [0.6, 0.8]], 0.0)]
-        {
+        for (normals, free) in [
+            (&[][..], 25.0),
+            (&[[0.0, 1.0]], 9.0),
+            (&[[0.0, 1.0], [0.0, -1.0]], 9.0),
+            (&[[0.0, 1.0], [-0.6, -0.8]], 0.0),
+        ] {
             assert!((energy(normals) - 0.4 * free).abs() < 1e-12, "{normals:?}");
         }
     }

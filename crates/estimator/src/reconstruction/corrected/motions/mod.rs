@@ -340,9 +340,11 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
     }
 
     /// The largest energy that contact has given the auxiliary solution so far, over that of the simulation without
-    /// the common velocity that no plane stops.
+    /// the common velocity that no plane stops. Loads and supports may give that velocity and take back what contact
+    /// gives: with them it counts.
     pub(super) fn contact_energy(&self) -> f64 {
-        ratio(self.contact_work.most(), self.peak_relative)
+        let driven = self.problem.is_loaded() || !self.problem.prescribed().is_empty();
+        ratio(self.contact_work.most(), if driven { self.peak_energy } else { self.peak_relative })
     }
 
     /// Whether the auxiliary solution has become unstable, as it does where a history of another scheme takes steps
