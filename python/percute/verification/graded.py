@@ -61,7 +61,7 @@ class Corner:
             estimates = [pc.estimate(history) for history in histories]
         given = [json.loads(estimate.to_json())["auxiliary_contact_energy"] for estimate in estimates]
         each = zip(estimates, errors, given, strict=True)
-        return [(found.sup / error.sup, found.mean / error.mean, energy, found.trust) for found, error, energy in each]
+        return [(found.sup / error.sup, found.mean / error.mean, energy, str(found.trust)) for found, error, energy in each]
 
 
 def structured(grading: int) -> pc.Mesh:

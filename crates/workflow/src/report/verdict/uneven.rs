@@ -21,8 +21,8 @@ pub(super) struct Uneven {
     pub(super) longest: f64,
     /// The largest of the critical steps of the elements alone over the smallest one: their sizes, in times of waves.
     pub(super) sizes: f64,
-    /// The size of the largest element over that of the smallest one with a node that touches; 1 without contact. A size
-    /// is the way of a wave in the critical step of the element alone.
+    /// The size of the largest element over that of the smallest one with a node that touches; 1 without contact. A
+    /// size is the way of a wave in the critical step of the element alone.
     pub(super) at_contact: f64,
     /// The largest ratio of the impedances, with thickness or section, of two elements that share a facet, or of two
     /// bodies at their interface.

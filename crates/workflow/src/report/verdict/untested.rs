@@ -13,8 +13,8 @@ pub(super) const STEPS: [f64; 2] = [0.02, 0.9];
 /// Largest friction of the evidence.
 pub(super) const FRICTION: f64 = 0.5;
 
-/// Wave passages that the evidence has after a flat impact. Random bodies with a corner or a curve have 0.8 to 1.7 before
-/// them, and up to 1.94 after 12 and 13.
+/// Wave passages that the evidence has after a flat impact. Random bodies that touch with a corner or a curve have
+/// indices up to 1.94 after 12 and 13.
 const LONGEST: f64 = 10.0;
 /// The fewest wave passages after the first touch that the evidence has: runs of 0.1 passages and whole steps in
 /// python/percute/verification/durations.py, of 0.084 at least.
