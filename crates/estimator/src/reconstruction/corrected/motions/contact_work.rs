@@ -8,7 +8,8 @@ use std::array::from_fn;
 
 /// The work of the normal forces of F_DA, Σf_n·(u_{n+1} − u_{n−1})/2. With equal steps, this is what they add to an
 /// energy that the corrected scheme keeps. Planes have none to give, and bodies that strike each other only their own:
-/// a sum that becomes large is that of forces that do not fit the motion. Friction takes energy, and is left out.
+/// a sum that becomes large is that of forces that do not fit the motion. Friction takes energy, and is left out, unless
+/// loads or supports give what it takes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ContactWork {
     sum: f64,
@@ -28,8 +29,13 @@ impl ContactWork {
     }
 }
 
+/// Whether loads or supports may give and take energy, too.
+pub(super) fn is_driven<const D: usize, const N: usize>(problem: &Problem<D, N>) -> bool {
+    problem.is_loaded() || !problem.prescribed().is_empty()
+}
+
 /// The work (J) of the normal parts of forces (N) on the contact nodes over half of this time (s), at the velocities of
-/// the half step. Forces along supports act on these.
+/// the half step; of whole forces where the problem is driven. Forces along supports act on these.
 pub(super) fn half_work<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     surface: &SurfaceForces,
@@ -37,11 +43,12 @@ pub(super) fn half_work<const D: usize, const N: usize>(
     forces: &[[f64; D]],
     time: f64,
 ) -> f64 {
+    let whole = is_driven(problem);
     let of = |node: usize, obstacle: usize, force: &[f64; D]| {
         let mut velocity: [f64; D] = fields.half_step[node].of(0);
         surface.prescribed(&(node..node + 1)).for_each(|(_, c)| velocity[c] = 0.0);
         let frame = problem.obstacles()[obstacle].flat_frame();
-        frame.split(&velocity).0 * frame.split(force).0
+        if whole { dot(&velocity, force) } else { frame.split(&velocity).0 * frame.split(force).0 }
     };
     let nodes = problem.surface().nodes().iter().zip(forces).filter(|(_, force)| **force != [0.0; D]);
     0.5 * time * nodes.map(|(contact, force)| of(contact.node.index(), contact.obstacle, force)).sum::<f64>()

@@ -56,7 +56,7 @@ use crate::smoothing::Smoothing;
 pub(super) use approach::{Approach, Foreseen, FreeMotion, Mobility};
 use approach::{BeforePass, NearElements};
 use blocks::Blocks;
-use contact_work::{ContactWork, FreeDirections, half_work};
+use contact_work::{ContactWork, FreeDirections, half_work, is_driven};
 use energies::Energies;
 use lanes::{FirstPair, Gradient, Nodal};
 use pairs::{Around, Pair, Pairs};
@@ -343,8 +343,7 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
     /// the common velocity that no plane stops. Loads and supports may give that velocity and take back what contact
     /// gives: with them it counts.
     pub(super) fn contact_energy(&self) -> f64 {
-        let driven = self.problem.is_loaded() || !self.problem.prescribed().is_empty();
-        ratio(self.contact_work.most(), if driven { self.peak_energy } else { self.peak_relative })
+        ratio(self.contact_work.most(), if is_driven(self.problem) { self.peak_energy } else { self.peak_relative })
     }
 
     /// Whether the auxiliary solution has become unstable, as it does where a history of another scheme takes steps
