@@ -8,8 +8,8 @@ use std::array::from_fn;
 
 /// The work of the normal forces of F_DA, Σf_n·(u_{n+1} − u_{n−1})/2. With equal steps, this is what they add to an
 /// energy that the corrected scheme keeps. Planes have none to give, and bodies that strike each other only their own:
-/// a sum that becomes large is that of forces that do not fit the motion. Friction takes energy, and is left out, unless
-/// loads or supports give what it takes.
+/// a sum that becomes large is that of forces that do not fit the motion. Friction takes energy, and is left out,
+/// unless loads or supports give what it takes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ContactWork {
     sum: f64,
