@@ -20,7 +20,7 @@ from percute._percute import Progress, __version__
 from percute.balance import Balance
 from percute.bodies import Body, Interface
 from percute.contact import Contact, ContactStatus, Resultants
-from percute.deformation import BodyDeformation, Deformation, Extreme, MaterialStress, Nearest, PoorElement, Yielding
+from percute.deformation import BodyDeformation, ContactPeak, Deformation, Extreme, MaterialStress, Nearest, PoorElement, Yielding
 from percute.errors import (
     EstimateError,
     ExistingFileError,

@@ -66,8 +66,18 @@ _TrueError = tuple[float, float, dict[str, _Floats]]
 class _Measures(TypedDict):
     sup: float
     mean: float
+    mean_from_touch: float
+    energy: float
+    strain_energy: float
+    kinetic_energy: float
     relative_sup: float
     relative_mean: float
+    relative_stress_sup: float
+    relative_stress_mean: float
+    relative_velocity_sup: float
+    relative_velocity_mean: float
+    published_relative_sup: float
+    published_relative_mean: float
     reference_sup: float
     reference_mean: float
     time_of_sup: float
@@ -134,6 +144,7 @@ class ProblemData:
     ) -> ProblemData: ...
     def mesh(self) -> MeshData: ...
     critical_time_step: Final[float]
+    per_metre: Final[bool]
     mass: Final[_Floats]
     initial_displacement: Final[_Floats]
     initial_velocity: Final[_Floats]
@@ -269,6 +280,7 @@ def hint(given: str, known: Sequence[str]) -> str: ...
 def close_files() -> None: ...
 def check_run(problem: ProblemData, times: _Times, long: bool) -> None: ...
 def meaning() -> str: ...
+def unit(name: str, per_metre: bool) -> str: ...
 def rebound_end(
     problem: ProblemData,
     pace: tuple[float | None, float | None],

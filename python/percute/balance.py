@@ -39,6 +39,8 @@ class Balance:
     """Largest error of the energy balance so far, over the largest energy or work."""
     impulse_drift: NDArray[np.float64]
     """The same for momentum and impulses."""
+    per_metre: bool = False
+    """Whether forces and energies are per metre of thickness."""
 
     def to_pandas(self) -> _pandas.DataFrame:
         """Make a table over time (extra ``pandas``): one row for each instant; ``attrs["units"]`` has the units of the columns."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from percute._percute import unit
 from percute.mesh import Mesh
 from percute.words import counted
 
@@ -54,10 +55,12 @@ class Resultants:
     """Energy dissipated by friction up to t_n (J), shape (instants,)."""
     centre: NDArray[np.float64]
     """Centre of pressure at t_n (m), NaN without contact, shape (instants, dimension)."""
+    per_metre: bool = False
+    """Whether forces and energies are per metre of thickness."""
 
     def __repr__(self) -> str:
         peak = self.normal_force.max(initial=0.0)
-        return f"<percute.Resultants: {counted(len(self.area), 'instant')}, at most {peak:.4g} N on {counted(int(self.in_contact.max(initial=0)), 'node')}>"
+        return f"<percute.Resultants: {counted(len(self.area), 'instant')}, at most {peak:.4g} {unit('N', self.per_metre)} on {counted(int(self.in_contact.max(initial=0)), 'node')}>"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -111,12 +114,14 @@ class Contact:
     """For each of ``obstacles`` None if it is a plane, or the group of edges of this side of an interface of bodies."""
     mesh: Mesh = field()
     """The mesh."""
+    per_metre: bool = False
+    """Whether forces and energies are per metre of thickness."""
 
     @classmethod
-    def _of(cls, arrays: dict[str, Any], mesh: Mesh, surfaces: Sequence[str | None]) -> Contact:
-        resultants = Resultants(**arrays.pop("resultants"))
-        obstacles = tuple(Resultants(**each) for each in arrays.pop("obstacles"))
-        return cls(**arrays, resultants=resultants, obstacles=obstacles, mesh=mesh, surfaces=tuple(surfaces))
+    def _of(cls, arrays: dict[str, Any], mesh: Mesh, surfaces: Sequence[str | None], per_metre: bool) -> Contact:
+        resultants = Resultants(**arrays.pop("resultants"), per_metre=per_metre)
+        obstacles = tuple(Resultants(**each, per_metre=per_metre) for each in arrays.pop("obstacles"))
+        return cls(**arrays, resultants=resultants, obstacles=obstacles, mesh=mesh, surfaces=tuple(surfaces), per_metre=per_metre)
 
     @cached_property
     def _names(self) -> dict[int, str]:
@@ -202,7 +207,7 @@ class Contact:
 
     def __repr__(self) -> str:
         peak = self.resultants.normal_force.max(initial=0.0)
-        return f"<percute.Contact: {counted(len(self.nodes), 'node')}, {counted(len(self.time), 'instant')}, at most {peak:.4g} N>"
+        return f"<percute.Contact: {counted(len(self.nodes), 'node')}, {counted(len(self.time), 'instant')}, at most {peak:.4g} {unit('N', self.per_metre)}>"
 
 
 def _read_only(array: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from percute._percute import unit
 from percute.checks import wrong
 from percute.element_fields import OF_ELEMENTS, element_field
 
@@ -45,6 +46,10 @@ class Contents(NamedTuple):
     quantities: dict[str, Quantity]
     facts: dict[str, Any]
     """Single values."""
+
+    def per_metre(self, per_metre: bool) -> Contents:
+        """Give those of a body whose forces and energies may be per metre of thickness."""
+        return self._replace(quantities={name: q._replace(unit=unit(q.unit, per_metre)) for name, q in self.quantities.items()})
 
 
 BALANCE = {
@@ -120,7 +125,24 @@ MAPS = {
     "stress": (("instant", "element", "component", "component2"), "admissible_stress", "Pa", "statically admissible stress"),
     "compatible_stress": (("instant", "element", "component", "component2"), "compatible_stress", "Pa", "stress of the admissible displacement"),
 }
-MEASURES = ("sup", "mean", "relative_sup", "relative_mean", "reference_sup", "reference_mean", "time_of_sup", "end")
+MEASURES = (
+    "sup",
+    "mean",
+    "mean_from_touch",
+    "energy",
+    "strain_energy",
+    "kinetic_energy",
+    "relative_sup",
+    "relative_mean",
+    "relative_stress_sup",
+    "relative_stress_mean",
+    "relative_velocity_sup",
+    "relative_velocity_mean",
+    "published_relative_sup",
+    "published_relative_mean",
+    "reference_sup",
+    "reference_mean",
+)
 
 
 def _time(name: str, time: NDArray[np.float64]) -> dict[str, Quantity]:
@@ -143,7 +165,7 @@ def _places(dimension: str, points: NDArray[np.float64], numbers: NDArray[Any], 
 def of_balance(balance: Balance) -> Contents:
     """Give the energies over time."""
     quantities = {name: Quantity(("time",), getattr(balance, name), *told) for name, told in BALANCE.items()}
-    return Contents(_time("time", balance.time), quantities, {})
+    return Contents(_time("time", balance.time), quantities, {}).per_metre(balance.per_metre)
 
 
 def _resultants(resultants: Resultants, prefix: str) -> dict[str, Quantity]:
@@ -165,7 +187,7 @@ def of_contact(contact: Contact) -> Contents:
         values = getattr(contact, name)
         # Names of quantities at nodes and instants are taken.
         quantities[f"node_{name}"] = Quantity(("contact_node", "component")[: values.ndim], values, *told)
-    return Contents(coordinates, quantities, {})
+    return Contents(coordinates, quantities, {}).per_metre(contact.per_metre)
 
 
 def of_history(history: History, fields: Iterable[str], steps: NDArray[np.intp] | None = None, *, over_time: bool = True) -> Contents:
@@ -188,7 +210,7 @@ def of_history(history: History, fields: Iterable[str], steps: NDArray[np.intp] 
         quantities |= of_balance(history.balance).quantities
         if history.problem.obstacles:
             quantities |= _resultants(history.contact.resultants, "total_")
-    return Contents(coordinates | _components(mesh), quantities, {"complete": int(history.complete)})
+    return Contents(coordinates | _components(mesh), quantities, {"complete": int(history.complete)}).per_metre(history.problem.per_metre)
 
 
 def of_estimate(estimate: Estimate) -> Contents:
@@ -209,7 +231,8 @@ def of_estimate(estimate: Estimate) -> Contents:
         quantities |= _maps(estimate.maps)
     if any("node" in quantity.dims for quantity in quantities.values()):
         coordinates |= _places("node", mesh.points, np.arange(len(mesh.points)), "node_")
-    return Contents(coordinates, quantities, {name: getattr(estimate, name) for name in MEASURES} | dict(estimate.options))
+    facts = {name: getattr(estimate, name) for name in (*MEASURES, "time_of_sup", "end")} | dict(estimate.options)
+    return Contents(coordinates, quantities, facts).per_metre(estimate.per_metre)
 
 
 def at_one_instant(contents: Contents) -> Contents:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["BodyDeformation", "Deformation", "Extreme", "MaterialStress", "Nearest", "PoorElement", "Yielding"]
+__all__ = ["BodyDeformation", "ContactPeak", "Deformation", "Extreme", "MaterialStress", "Nearest", "PoorElement", "Yielding"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,6 +110,23 @@ class PoorElement:
     def _all(cls, found: Sequence[Mapping[str, Any]]) -> tuple[PoorElement, ...]:
         """Make them from their JSON objects."""
         return tuple(cls(**{**each, "centroid": tuple(each["centroid"])}) for each in found)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactPeak:
+    """The largest contact force, averaged over the time 2m/(ρcℓ) in which a wave crosses the struck element.
+
+    The force of a single step is the larger, the shorter the step: it stops the mass of a node within it.
+    """
+
+    force: float
+    """The largest sum of the normal forces of all nodes (N)."""
+    time: float
+    """Its instant (s), at the end of the average."""
+    pressure: float
+    """The largest pressure of a node (Pa), its normal force over its area."""
+    node: int
+    """This node."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,7 +16,7 @@ from percute import _percute
 from percute.checks import flag, instance, vtkhdf, whole, words
 from percute.checks import path as file_name
 from percute.contact import Contact
-from percute.deformation import Deformation, Nearest, PoorElement
+from percute.deformation import ContactPeak, Deformation, Nearest, PoorElement
 from percute.errors import InputError
 from percute.estimate_views import EstimateViews
 from percute.history import History
@@ -92,8 +92,18 @@ class Estimate(EstimateViews):
 
     sup = _measure("sup", "e_sup = √(sup η) (J^½), eq. [15].")
     mean = _measure("mean", "e_mean = √((1/T)∫η dt) (J^½), eq. [16].")
-    relative_sup = _measure("relative_sup", "``sup`` over ``reference_sup``, eq. [22].")
-    relative_mean = _measure("relative_mean", "``mean`` over ``reference_mean``.")
+    mean_from_touch = _measure("mean_from_touch", "The same mean from the first touch on (J^½); from the start without contact.")
+    energy = _measure("energy", "Largest energy of deformation and vibration (J): strain energy plus kinetic energy relative to the rigid motion of each body.")
+    strain_energy = _measure("strain_energy", "Largest strain energy (J).")
+    kinetic_energy = _measure("kinetic_energy", "Largest kinetic energy relative to the rigid motion of each body (J).")
+    relative_sup = _measure("relative_sup", "``sup`` over √``energy``.")
+    relative_mean = _measure("relative_mean", "``mean_from_touch`` over √``energy``.")
+    relative_stress_sup = _measure("relative_stress_sup", "Error of the stresses: √sup of the elastic part of η over √``strain_energy``.")
+    relative_stress_mean = _measure("relative_stress_mean", "The same with the mean from the first touch on.")
+    relative_velocity_sup = _measure("relative_velocity_sup", "Error of the velocities: √sup of the kinetic part of η over √``kinetic_energy``.")
+    relative_velocity_mean = _measure("relative_velocity_mean", "The same with the mean from the first touch on.")
+    published_relative_sup = _measure("published_relative_sup", "``sup`` over ``reference_sup``, eq. [22].")
+    published_relative_mean = _measure("published_relative_mean", "``mean`` over ``reference_mean``.")
     reference_sup = _measure("reference_sup", "D = √(sup d) (J^½), eq. [23].")
     reference_mean = _measure("reference_mean", "√((1/T)∫d dt) (J^½).")
     time_of_sup = _measure("time_of_sup", "Time of the largest η (s).")
@@ -104,6 +114,11 @@ class Estimate(EstimateViews):
         return self._measures["steps"]
 
     end = _measure("end", "Its time T (s).")
+
+    @property
+    def per_metre(self) -> bool:
+        """Whether forces and energies are per metre of thickness; errors are then in (J/m)^½."""
+        return bool((self._verdict.get("problem") or {}).get("per_metre", False))
 
     @property
     def meaning(self) -> str:
@@ -149,6 +164,12 @@ class Estimate(EstimateViews):
     def deformation(self) -> Deformation | None:
         """The largest strains, rotations and stresses; None if the estimate comes from a file of an earlier version."""
         return Deformation._of(self._verdict.get("deformation"))
+
+    @cached_property
+    def contact_peak(self) -> ContactPeak | None:
+        """The largest contact force and pressure, averaged over the time in which a wave crosses the struck element; None without contact."""
+        found = (self._verdict.get("contact") or {}).get("averaged_peak")
+        return None if found is None else ContactPeak(**found)
 
     @cached_property
     def poor_elements(self) -> tuple[PoorElement, ...]:
@@ -219,7 +240,7 @@ class Estimate(EstimateViews):
         if not isinstance(self._data, StoredEstimate):
             return None
         found = self._data.contact()
-        return None if found is None else Contact._of(found, self.mesh, self._data.surfaces())
+        return None if found is None else Contact._of(found, self.mesh, self._data.surfaces(), self.per_metre)
 
     @property
     def no_contact(self) -> str | None:
@@ -376,9 +397,10 @@ class Estimate(EstimateViews):
         _percute.present(self._data, page, file, replace, self._name, history)
 
     def __repr__(self) -> str:
+        norm = _percute.unit("J^½", self.per_metre)
         return (
-            f"<percute.Estimate: sup {self.sup:.4g} J^½ ({self.relative_sup:.3%}) at {self.time_of_sup:.4g} s, "
-            f"mean {self.mean:.4g} J^½ ({self.relative_mean:.3%}), {counted(len(self.by_element), 'element')}, {counted(self.steps, 'step')}>"
+            f"<percute.Estimate: sup {self.sup:.4g} {norm} ({self.relative_sup:.3%}) at {self.time_of_sup:.4g} s, "
+            f"mean {self.mean_from_touch:.4g} {norm} ({self.relative_mean:.3%}), {counted(len(self.by_element), 'element')}, {counted(self.steps, 'step')}>"
         )
 
     def __str__(self) -> str:

@@ -283,13 +283,13 @@ class History(HistoryViews):
     @cached_property
     def balance(self) -> Balance:
         """Energies and works over time (J)."""
-        return Balance(time=self.time, **self._data.balance())
+        return Balance(time=self.time, per_metre=self.problem.per_metre, **self._data.balance())
 
     @cached_property
     def contact(self) -> Contact:
         """Contact results at each node, and their resultants; computed on first access."""
         surfaces = [None] * len(self.problem.obstacles) + [group for each in self.problem.contacts for group in each.groups or ()]
-        return Contact._of(self._data.contact(), self.problem.mesh, surfaces)
+        return Contact._of(self._data.contact(), self.problem.mesh, surfaces, self.problem.per_metre)
 
     @cached_property
     def rebound(self) -> Rebound | None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from percute._percute import unit
 from percute.element_fields import boundary
 from percute.pictures.body import Scale, scale_of
 from percute.pictures.canvas import prefixed
@@ -64,21 +65,22 @@ def of_history(history: History) -> str:
 
 def of_estimate(estimate: Estimate) -> str:
     """Show an estimate."""
+    norm = unit("J^½", estimate.per_metre).replace("^½", "½")
     rows = [
-        ("largest error", f"{100 * estimate.relative_sup:.3g} %, {estimate.sup:.4g} J½ at {_time(estimate.time_of_sup)}"),
-        ("mean error", f"{100 * estimate.relative_mean:.3g} %, {estimate.mean:.4g} J½"),
+        ("largest error", f"{100 * estimate.relative_sup:.3g} %, {estimate.sup:.4g} {norm} at {_time(estimate.time_of_sup)}"),
+        ("mean error", f"{100 * estimate.relative_mean:.3g} %, {estimate.mean_from_touch:.4g} {norm}, from the touch"),
         ("steps", f"{estimate.steps} to {_time(estimate.end)}"),
         ("reconstruction", str(estimate.options["reconstruction"])),
     ]
     if estimate.trust is not None:
         rows += [("trust", estimate.trust), ("verdict", str(estimate.verdict))]
-    rows += [("worst element", f"{each.element} at {_vector(each.centroid)} m, {each.error:.3g} J½") for each in estimate.worst_elements(1)]
+    rows += [("worst element", f"{each.element} at {_vector(each.centroid)} m, {each.error:.3g} {norm}") for each in estimate.worst_elements(1)]
     return _page("Estimate", rows + _mesh_rows(estimate.mesh)[:2], _map(estimate.mesh, estimate.by_element))
 
 
 def _page(kind: str, rows: Rows, picture: str) -> str:
     cell = '<td style="text-align:left;padding:0 0.8em 0 0">'
-    shown = [(html.escape(name), html.escape(text).replace("J½", "J<sup>½</sup>")) for name, text in rows]
+    shown = [(html.escape(name), html.escape(text).replace("½", "<sup>½</sup>")) for name, text in rows]
     cells = "".join(f"<tr>{cell}{name}</td>{cell}{text}</td></tr>" for name, text in shown)
     table = f'<table style="display:inline-block;vertical-align:top;margin:0 0 0 1em">{cells}</table>'
     return f'<div><b>percute.{kind}</b><br>{picture}{table}</div>'

@@ -192,6 +192,11 @@ class Problem(Immutable):
         """u₀ at the nodes (m), shape (nodes, dimension), eq. [6]; a read-only view."""
         return self._data.initial_displacement
 
+    @property
+    def per_metre(self) -> bool:
+        """Whether forces, energies and masses are per metre of thickness: those of plane bodies whose thickness is 1 m, as it is unless given."""
+        return self._data.per_metre
+
     @cached_property
     def mass(self) -> NDArray[np.float64]:
         """Lumped mass of each node (kg), shape (nodes,), eq. [35]; a read-only view."""

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percute import _percute
+from percute.contents import MEASURES
 from percute.errors import FileFormatError
 from percute.mesh import Mesh
 
-MEASURES = ("sup", "mean", "relative_sup", "relative_mean", "reference_sup", "reference_mean")
 SOURCES = ("surface", "front", "dispersion", "mesh")
 FIELDS = {
     "accumulated": "error",
@@ -70,7 +70,7 @@ class StoredEstimate:
         self.path = path
         self._data = _percute.EstimateFileData(path)
         report = _Report(path, self._data.report())
-        self._measures: dict[str, Any] = {name: report.number("error", name) for name in MEASURES}
+        self._measures = self._read_measures(report)
         self._measures |= {name: report.number(name) for name in ("time_of_sup", "end")}
         self._measures["steps"] = report.of(int, "steps")
         none = report.part("kept_impulse") is None
@@ -83,6 +83,15 @@ class StoredEstimate:
         if type(every) is not int and every != "auto":
             raise report.wrong(("options", "every"), 'must be a whole number or "auto"')
         self._options = report.of(str, "options", "reconstruction"), report.of(str, "options", "acceleration"), every
+
+    @staticmethod
+    def _read_measures(report: _Report) -> dict[str, Any]:
+        """Read them; up to format 2, files have the published relative errors alone, under other names."""
+        if report.number("format") >= 3:
+            return {name: report.number("error", name) for name in MEASURES}
+        published = {f"published_relative_{which}": report.number("error", f"relative_{which}") for which in ("sup", "mean")}
+        kept = {name: report.number("error", name) for name in ("sup", "mean", "reference_sup", "reference_mean")}
+        return dict.fromkeys(MEASURES, math.nan) | published | kept
 
     @staticmethod
     def _read_sources(report: _Report) -> dict[str, Any] | None:

@@ -47,8 +47,8 @@ class Verification:
     """Estimated over true error, of the largest."""
     effectivity_mean: NDArray[np.float64]
     """Estimated over true error, of the mean."""
-    peak_force: NDArray[np.float64]
-    """Largest normal force of all nodes together (N)."""
+    averaged_peak_force: NDArray[np.float64]
+    """Largest normal force of all nodes together (N), averaged over the time in which a wave crosses the struck element."""
     impulse: NDArray[np.float64]
     """Normal impulse of all planes (N s)."""
     rebound: NDArray[np.float64]
@@ -56,11 +56,13 @@ class Verification:
     expected: tuple[float, float]
     """The range of the effectivity index on the first mesh that its verdict states."""
     orders: dict[str, float | None]
-    """Observed orders of ``estimate``, ``peak_force``, ``impulse`` and ``rebound``; None where values do not converge."""
+    """Observed orders of ``estimate``, ``averaged_peak_force``, ``impulse`` and ``rebound``; None where values do not converge."""
     moved: float | None
     """By how much the mean true error of the first mesh moves from the finest mesh but one to the finest, relative; None with one level."""
     fine_enough: bool | None
     """Whether that is at most 0.1."""
+    per_metre: bool
+    """Whether forces and energies are per metre of thickness."""
     _table: str
 
     @property
@@ -78,7 +80,7 @@ class Verification:
         """Draw errors, effectivity index and contact over the element size.
 
         Above are estimate and true error, in the middle their quotient, the effectivity index, with the range that the verdict expects for
-        the first mesh, and below peak force, impulse and rebound velocity over their values on the finest mesh.
+        the first mesh, and below averaged peak force, impulse and rebound velocity over their values on the finest mesh.
 
         Parameters
         ----------
@@ -117,11 +119,12 @@ class Verification:
             elements=np.array([level["elements"] for level in levels]),
             steps=np.array([level["steps"] for level in levels]),
             **pairs,
-            **{key: column(key) for key in ("peak_force", "impulse", "rebound")},
+            **{key: column(key) for key in ("averaged_peak_force", "impulse", "rebound")},
             expected=tuple(levels[0]["expected"]),
             orders=document["orders"],
             moved=settled.get("moved"),
             fine_enough=settled.get("fine_enough"),
+            per_metre=document["per_metre"],
             _table=table,
         )
 

@@ -85,7 +85,7 @@ def test_a_problem_stated_in_python_is_that_of_the_case() -> None:
 def test_the_estimate_says_what_its_document_says(block_history: pc.History) -> None:
     estimate = pc.estimate(block_history)
     document = json.loads(estimate.to_json())
-    for name in ("sup", "mean", "relative_sup", "relative_mean", "reference_sup", "reference_mean"):
+    for name in contents.MEASURES:
         assert getattr(estimate, name) == document["error"][name]
     assert estimate.by_element.tolist() == document["by_element"]
     assert dict(estimate.residuals) == document["residuals"]

@@ -190,20 +190,20 @@ def test_tables_hold_the_numbers_of_the_estimate(tmp_path: Path) -> None:
     assert np.array_equal(run["time (s)"], np.union1d(history.time, over_time.time))
     step, sample = np.isin(run["time (s)"], history.time), np.isin(run["time (s)"], over_time.time)
     for name, values in (
-        ("force_y (N)", total.force[:, 1]),
-        ("normal_force (N)", total.normal_force),
+        ("force_y (N/m)", total.force[:, 1]),
+        ("normal_force (N/m)", total.normal_force),
         ("nodes_in_contact", total.in_contact),
-        ("strain (J)", history.balance.strain),
-        ("work_of_contact (J)", history.balance.work_of_contact),
+        ("strain (J/m)", history.balance.strain),
+        ("work_of_contact (J/m)", history.balance.work_of_contact),
     ):
         assert np.array_equal(run[name][step], values) and np.isnan(run[name][~step]).all() and values.any(), name
-    assert np.array_equal(run["error_total (J)"][sample], over_time.total)
-    assert np.array_equal(np.isfinite(run["error (J^(1/2))"]), sample)
+    assert np.array_equal(run["error_total (J/m)"][sample], over_time.total)
+    assert np.array_equal(np.isfinite(run["error ((J/m)^(1/2))"]), sample)
     elements = table(tmp_path / "tables" / "elements.csv")
-    assert np.array_equal(elements["error (J^(1/2))"], estimate.by_element)
+    assert np.array_equal(elements["error ((J/m)^(1/2))"], estimate.by_element)
     nodes = table(tmp_path / "tables" / "contact_nodes.csv")
     assert np.array_equal(nodes["node"], estimate.contact.nodes)
-    assert np.array_equal(nodes["peak_normal_force (N)"], estimate.contact.peak_normal_force)
+    assert np.array_equal(nodes["peak_normal_force (N/m)"], estimate.contact.peak_normal_force)
     text = (tmp_path / "tables" / "over_time.csv").read_bytes()
     assert text.count(b"\r\n") == len(step) + 1 == text.count(b"\n")
 
@@ -211,13 +211,13 @@ def test_tables_hold_the_numbers_of_the_estimate(tmp_path: Path) -> None:
         assert percute(*command, "--csv", f"{command[0]}-{command[1][0]}.csv").returncode == 0
     assert (tmp_path / "estimate-h.csv").read_bytes() == text
     later = table(tmp_path / "info-h.csv")
-    assert all(np.array_equal(later[name], run[name][step]) for name in later) and "strain (J)" in later
+    assert all(np.array_equal(later[name], run[name][step]) for name in later) and "strain (J/m)" in later
     later = table(tmp_path / "info-e.csv")
-    assert all(np.array_equal(later[name], run[name], equal_nan=True) for name in later) and "error (J^(1/2))" in later
+    assert all(np.array_equal(later[name], run[name], equal_nan=True) for name in later) and "error ((J/m)^(1/2))" in later
 
     pandas = pytest.importorskip("pandas")
     frame = pandas.read_csv(tmp_path / "estimate-h.csv")
-    assert frame["error_total (J)"].max() == pytest.approx(estimate.over_time.total.max(), rel=1e-15)
+    assert frame["error_total (J/m)"].max() == pytest.approx(estimate.over_time.total.max(), rel=1e-15)
 
     again = percute("run", "case.toml", "--csv", "tables")
     assert again.returncode == 2 and "exists already" in again.stderr

@@ -27,7 +27,7 @@ def test_the_examples_of_a_page_run(page: str, tmp_path: Path, monkeypatch: pyte
     for example in examples:
         exec(example, names)
     plt.close("all")
-    assert isinstance(names["estimate"], pc.Estimate) and names["estimate"].relative_sup < 0.1
+    assert isinstance(names["estimate"], pc.Estimate) and names["estimate"].published_relative_sup < 0.1
 
 
 @pytest.mark.parametrize("page", ["docs/export.md", "docs/fields.md", "docs/report.md"])

@@ -145,6 +145,22 @@ def test_a_number_that_json_cannot_have(good: Path, tmp_path: Path) -> None:
     assert math.isnan(pc.open(changed(good, tmp_path, replaced(REPORT, report))).relative_sup)  # type: ignore[union-attr]
 
 
+def test_the_relative_error_of_earlier_versions_is_the_published_one(good: Path, tmp_path: Path) -> None:
+    """Up to format 2, files have no energy of vibration: the other relative errors are missing, not zero."""
+
+    def report(text: bytes) -> np.bytes_:
+        document = json.loads(text)
+        error = document["error"]
+        earlier = {name: error[name] for name in ("sup", "mean", "reference_sup", "reference_mean")}
+        document["error"] = earlier | {f"relative_{which}": error[f"published_relative_{which}"] for which in ("sup", "mean")}
+        return np.bytes_(json.dumps(document | {"format": 2}).encode())
+
+    before, after = pc.open(good), pc.open(changed(good, tmp_path, replaced(REPORT, report)))
+    assert isinstance(before, pc.Estimate) and isinstance(after, pc.Estimate)
+    assert (after.published_relative_sup, after.published_relative_mean) == (before.published_relative_sup, before.published_relative_mean)
+    assert math.isnan(after.relative_sup) and math.isnan(after.energy) and before.relative_sup > before.published_relative_sup
+
+
 @pytest.mark.parametrize("reconstruction", ["corrected", "of tomorrow"])
 def test_a_report_of_another_version(reconstruction: str, good: Path, tmp_path: Path) -> None:
     """Older ones have no verdict, newer ones may have a reconstruction that is unknown here."""

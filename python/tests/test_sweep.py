@@ -69,9 +69,9 @@ def test_the_command_makes_the_same_folder(swept: pc.Sweep, tmp_path: Path, case
 def test_tables(swept: pc.Sweep) -> None:
     frame = swept.to_pandas()
     assert list(frame.index) == list(swept.cases) and frame["sup"].tolist() == swept["sup"].tolist()
-    assert frame.attrs["units"]["peak_normal_force"] == "N"
+    assert frame.attrs["units"]["averaged_peak_force"] == "N/m"
     found = swept.to_xarray()
-    assert found["sup"].dims == tuple(GRID) and found["sup"].shape == (3, 2) and found["sup"].attrs["units"] == "J^½"
+    assert found["sup"].dims == tuple(GRID) and found["sup"].shape == (3, 2) and found["sup"].attrs["units"] == "(J/m)^½"
     for i in range(len(swept)):
         place = {key: swept[key][i] for key in GRID}
         assert found["sup"].sel(place).item() == swept["sup"][i]

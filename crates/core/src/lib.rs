@@ -25,6 +25,7 @@ mod ratio;
 mod simd;
 pub mod simplex;
 pub mod time;
+pub mod units;
 pub mod variable_steps;
 
 pub use ratio::ratio;

@@ -53,16 +53,40 @@ pub struct Sample {
 }
 
 /// The error measures. Absolute values are in J^½, per metre of thickness where that is 1 m.
+///
+/// Relative ones are over √`energy`, the largest energy of deformation and vibration: strain energy plus the kinetic
+/// energy relative to the rigid motion of each body. A common velocity, a spin and a longer flight change nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorMeasures {
     /// √sup η, eq. \[15\].
     pub sup: f64,
     /// √((1/T)∫η dt), eq. \[16\].
     pub mean: f64,
-    /// sup over `reference_sup`, eq. \[22\].
+    /// √((1/(T − t₁))∫η dt) from t₁ on, the last sampled level from which forces of contact act; from t_0 on without
+    /// contact.
+    pub mean_from_touch: f64,
+    /// The largest energy of deformation and vibration at the sampled levels (J).
+    pub energy: f64,
+    /// The largest strain energy there (J).
+    pub strain_energy: f64,
+    /// The largest kinetic energy relative to the rigid motion of each body there (J).
+    pub kinetic_energy: f64,
+    /// `sup` over √`energy`.
     pub relative_sup: f64,
-    /// mean over `reference_mean`.
+    /// `mean_from_touch` over √`energy`.
     pub relative_mean: f64,
+    /// √sup of the elastic part of η over √`strain_energy`.
+    pub relative_stress_sup: f64,
+    /// The mean from the touch of the same.
+    pub relative_stress_mean: f64,
+    /// √sup of the kinetic part of η over √`kinetic_energy`.
+    pub relative_velocity_sup: f64,
+    /// The mean from the touch of the same.
+    pub relative_velocity_mean: f64,
+    /// `sup` over `reference_sup`, eq. \[22\].
+    pub published_relative_sup: f64,
+    /// `mean` over `reference_mean`.
+    pub published_relative_mean: f64,
     /// D = √sup d, eq. \[23\].
     pub reference_sup: f64,
     /// √((1/T)∫d dt).
@@ -70,6 +94,29 @@ pub struct ErrorMeasures {
 }
 
 impl ErrorMeasures {
+    /// The names of all measures, their units and their values.
+    #[must_use]
+    pub fn entries(&self) -> [(&'static str, &'static str, f64); 16] {
+        [
+            ("sup", "J^(1/2)", self.sup),
+            ("mean", "J^(1/2)", self.mean),
+            ("mean_from_touch", "J^(1/2)", self.mean_from_touch),
+            ("energy", "J", self.energy),
+            ("strain_energy", "J", self.strain_energy),
+            ("kinetic_energy", "J", self.kinetic_energy),
+            ("relative_sup", "", self.relative_sup),
+            ("relative_mean", "", self.relative_mean),
+            ("relative_stress_sup", "", self.relative_stress_sup),
+            ("relative_stress_mean", "", self.relative_stress_mean),
+            ("relative_velocity_sup", "", self.relative_velocity_sup),
+            ("relative_velocity_mean", "", self.relative_velocity_mean),
+            ("published_relative_sup", "", self.published_relative_sup),
+            ("published_relative_mean", "", self.published_relative_mean),
+            ("reference_sup", "J^(1/2)", self.reference_sup),
+            ("reference_mean", "J^(1/2)", self.reference_mean),
+        ]
+    }
+
     /// Whether the error is zero to rounding, as in the flight of a rigid body: below 1e-9 of the fields.
     #[must_use]
     pub fn is_zero(&self) -> bool {
@@ -141,10 +188,9 @@ pub struct Estimate<const D: usize> {
 impl<const D: usize> Estimate<D> {
     /// Whether every number of it is one.
     pub(crate) fn is_finite(&self) -> bool {
-        let e = &self.error;
-        let measures = [e.sup, e.mean, e.relative_sup, e.relative_mean, e.reference_sup, e.reference_mean];
+        let mut measures = self.error.entries().into_iter().map(|(_, _, x)| x);
         let samples = self.over_time.iter().all(|s| s.parts.total().is_finite() && s.reference.is_finite());
-        samples && measures.iter().chain(&self.by_element).all(|x| x.is_finite())
+        samples && measures.all(|x| x.is_finite()) && self.by_element.iter().all(|x| x.is_finite())
     }
 
     /// The `count` elements that contribute most, with e_E (J^½), largest first.

@@ -48,6 +48,8 @@ pub(crate) struct TimeLevel<const D: usize> {
     pub(crate) split: Option<SplitFields<D>>,
     /// Whether its stress is that of smoothed strains.
     pub(crate) smoothed: bool,
+    /// Strain energy of the simulation (J).
+    pub(crate) strain_energy: f64,
 }
 
 /// The fields of a split mass term beside a_c (m/s²): M ã = M_c a_c + (M − M_c) w.

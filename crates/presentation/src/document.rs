@@ -1,5 +1,6 @@
 //! The JSON document of an estimate, read by its keys. Documents of earlier versions lack some of them.
 
+use percute_workflow::report::units_of;
 use serde_json::Value;
 use thiserror::Error;
 
@@ -22,7 +23,7 @@ impl Document {
         if !value["error"]["sup"].is_number() {
             return Err(NoDocument("it has no `error.sup`".to_string()));
         }
-        Ok(Self(value))
+        Ok(Self(of_this_version(value)))
     }
 
     /// The value at a path of keys, such as `error.sup`; null if it is missing.
@@ -33,6 +34,11 @@ impl Document {
     /// The whole document.
     pub(crate) fn all(&self) -> &Value {
         &self.0
+    }
+
+    /// A unit of a quantity of the body, which may be per metre of thickness.
+    pub(crate) fn unit(&self, unit: &'static str) -> &'static str {
+        units_of(&self.0).of(unit)
     }
 
     /// A finite number.
@@ -101,6 +107,19 @@ impl Document {
     }
 }
 
+/// Up to format 2 the relative error was that of \[22\] alone.
+fn of_this_version(mut document: Value) -> Value {
+    if document["format"].as_u64().is_some_and(|format| format < 3)
+        && let Some(error) = document["error"].as_object_mut()
+    {
+        for key in ["relative_sup", "relative_mean"] {
+            let value = error.remove(key).unwrap_or_default();
+            error.insert(format!("published_{key}"), value);
+        }
+    }
+    document
+}
+
 /// The numbers of a list.
 pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().into_iter().flatten().map(|number| number.as_f64().unwrap_or(f64::NAN)).collect()
@@ -109,6 +128,16 @@ pub(crate) fn numbers(value: &Value) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_relative_error_of_earlier_versions_is_the_published_one() {
+        let of = |format: u32| {
+            let text = format!(r#"{{"format": {format}, "error": {{"sup": 1.0, "relative_sup": 0.1}}}}"#);
+            let document = Document::parse(&text).unwrap();
+            ["error.relative_sup", "error.published_relative_sup"].map(|path| document.number(path))
+        };
+        assert_eq!((of(2), of(3)), ([None, Some(0.1)], [Some(0.1), None]));
+    }
 
     #[test]
     fn keys_that_are_missing_are_nothing() {

@@ -163,7 +163,7 @@ fn rounded(value: f64) -> f64 {
 /// roundings of 1e-13.
 const ROUNDING: f64 = 1e-12;
 /// Units that get no prefix.
-const PLAIN: [&str; 3] = ["m/s", "kg", ""];
+const PLAIN: [&str; 4] = ["m/s", "kg", "kg/m", ""];
 
 /// A number with its unit, which gets a prefix: 306.5 MN.
 pub(crate) fn quantity(value: f64, unit: &str, digits: usize) -> String {

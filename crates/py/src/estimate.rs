@@ -8,6 +8,7 @@ use crate::run::Run;
 use crate::{bridge, errors, view};
 use numpy::{PyArray1, PyArrayDyn};
 use percute_core::simplex::ByDimension;
+use percute_core::units::Units;
 use percute_core::{each_dimension, map_dimension};
 use percute_estimator::{AdmissibleFields, ElementMap, Options, UnknownName};
 use percute_io::Overwrite;
@@ -56,6 +57,12 @@ pub(crate) fn estimate(
     let maps = (instants.as_ref(), fields);
     let made = map_dimension!(&history.run, run => estimate_one(py, run, options, maps, accept, progress)?);
     Ok(EstimateData { made })
+}
+
+/// A unit of a body of a stated thickness, or per metre.
+#[pyfunction]
+pub(crate) fn unit(name: &str, per_metre: bool) -> &str {
+    Units { per_metre }.of(name)
 }
 
 /// The meaning of the error.
@@ -116,12 +123,9 @@ impl EstimateData {
             (e.error, e.time_of_sup, e.steps, e.end, e.kept_impulse)
         });
         let numbers = PyDict::new(py);
-        numbers.set_item("sup", error.sup)?;
-        numbers.set_item("mean", error.mean)?;
-        numbers.set_item("relative_sup", error.relative_sup)?;
-        numbers.set_item("relative_mean", error.relative_mean)?;
-        numbers.set_item("reference_sup", error.reference_sup)?;
-        numbers.set_item("reference_mean", error.reference_mean)?;
+        for (name, _, value) in error.entries() {
+            numbers.set_item(name, value)?;
+        }
         numbers.set_item("time_of_sup", time_of_sup)?;
         numbers.set_item("steps", steps)?;
         numbers.set_item("end", end)?;

@@ -45,7 +45,7 @@ mod _percute {
     #[pymodule_export]
     use super::element_fields::element_field;
     #[pymodule_export]
-    use super::estimate::{EstimateData, estimate, meaning};
+    use super::estimate::{EstimateData, estimate, meaning, unit};
     #[pymodule_export]
     use super::exact::{ExactData, true_error_of_bar_impact};
     #[pymodule_export]

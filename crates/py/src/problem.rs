@@ -99,6 +99,11 @@ impl ProblemData {
     }
 
     #[getter]
+    fn per_metre(&self) -> bool {
+        each_dimension!(&self.problem, p => p.units().per_metre)
+    }
+
+    #[getter]
     fn mass<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         each_dimension!(&self.problem, p => view::view(py, p, |p| p.mass(), &[p.mass().len()]))
     }

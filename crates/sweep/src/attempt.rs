@@ -3,6 +3,7 @@
 
 use crate::plan::Planned;
 use percute_system::try_lock;
+use percute_workflow::report::FORMAT;
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io;
@@ -63,8 +64,9 @@ pub(crate) fn state(folder: &Path, case: &Planned) -> State {
         return State::Failed(reason.trim().to_string());
     }
     let document = fs::read(folder.join(RESULT)).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
-    let document =
-        document.filter(|found: &serde_json::Value| found["versions"]["percute"] == env!("CARGO_PKG_VERSION"));
+    let document = document.filter(|found: &serde_json::Value| {
+        found["versions"]["percute"] == env!("CARGO_PKG_VERSION") && found["format"] == FORMAT
+    });
     document.map_or(State::Open, |document| State::Done(Box::new(document)))
 }
 

@@ -3,8 +3,10 @@
 use crate::attempt::{State, state};
 use crate::name::text;
 use crate::plan::Plan;
+use percute_core::units::Units;
 use percute_io::{Overwrite, write_bytes};
 use percute_workflow::Failure;
+use percute_workflow::report::units_of;
 use serde_json::Value;
 use std::path::PathBuf;
 
@@ -15,11 +17,19 @@ const FILE: &str = "results.csv";
 struct Quantity(&'static str, &'static str, &'static str);
 
 /// In the order of the table.
-const QUANTITIES: [Quantity; 33] = [
+const QUANTITIES: [Quantity; 41] = [
     Quantity("relative_sup", "", "/error/relative_sup"),
     Quantity("relative_mean", "", "/error/relative_mean"),
     Quantity("sup", "J^½", "/error/sup"),
     Quantity("mean", "J^½", "/error/mean"),
+    Quantity("mean_from_touch", "J^½", "/error/mean_from_touch"),
+    Quantity("energy", "J", "/error/energy"),
+    Quantity("relative_stress_sup", "", "/error/relative_stress_sup"),
+    Quantity("relative_stress_mean", "", "/error/relative_stress_mean"),
+    Quantity("relative_velocity_sup", "", "/error/relative_velocity_sup"),
+    Quantity("relative_velocity_mean", "", "/error/relative_velocity_mean"),
+    Quantity("published_relative_sup", "", "/error/published_relative_sup"),
+    Quantity("published_relative_mean", "", "/error/published_relative_mean"),
     Quantity("reference_sup", "J^½", "/error/reference_sup"),
     Quantity("reference_mean", "J^½", "/error/reference_mean"),
     Quantity("share_contact", "", "/verdict/shares/contact"),
@@ -31,9 +41,9 @@ const QUANTITIES: [Quantity; 33] = [
     Quantity("touches", "", "/verdict/touches"),
     Quantity("speed_ratio", "", "/verdict/speed_ratio"),
     Quantity("courant", "", "/verdict/courant"),
-    Quantity("peak_normal_force", "N", "/contact/peak_normal_force"),
-    Quantity("time_of_peak", "s", "/contact/time_of_peak"),
-    Quantity("peak_pressure", "Pa", "/contact/peak_pressure"),
+    Quantity("averaged_peak_force", "N", "/contact/averaged_peak/force"),
+    Quantity("time_of_averaged_peak", "s", "/contact/averaged_peak/time"),
+    Quantity("averaged_peak_pressure", "Pa", "/contact/averaged_peak/pressure"),
     Quantity("first_touch", "s", "/contact/first_touch"),
     Quantity("time_in_contact", "s", "/rebound/time_in_contact"),
     Quantity("normal_before", "m/s", "/rebound/normal_before"),
@@ -81,7 +91,11 @@ pub fn columns(plan: &Plan) -> Vec<Column> {
             .map(|state| if let State::Done(document) = state { take(document) } else { Value::Null })
             .collect()
     };
+    let done = || states.iter().filter_map(|state| if let State::Done(found) = state { Some(found) } else { None });
+    // A thickness that varies is one that is given.
+    let units = Units { per_metre: done().next().is_some() && done().all(|found| units_of(found).per_metre) };
     for Quantity(name, unit, place) in QUANTITIES {
+        let unit = units.of(unit);
         table.push(column(name, unit, of(&|document| document.pointer(place).map(joined).unwrap_or_default())));
     }
     table.push(column("warnings", "", of(&|document| warnings(document).into())));

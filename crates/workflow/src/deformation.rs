@@ -6,7 +6,7 @@ use percute_core::history::{SinkError, State, StateSink};
 use percute_core::ids::ElementId;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Levers, Problem};
+use percute_core::problem::{Problem, RigidMotion};
 use serde::Serialize;
 
 /// Instants from one that is looked at to the next one. Stress behind a front stays for longer, and the work is a few
@@ -95,7 +95,7 @@ impl Deformation {
 pub(crate) struct DeformationRecorder<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     last: usize,
-    levers: Levers<D>,
+    rigid: RigidMotion<D>,
     body_of_element: Vec<usize>,
     /// Whether the stress in an element was above its yield stress.
     yielded: Vec<bool>,
@@ -123,7 +123,7 @@ impl<'p, const D: usize, const N: usize> DeformationRecorder<'p, D, N> {
         Self {
             problem,
             last: steps,
-            levers: Levers::new(problem),
+            rigid: RigidMotion::new(problem),
             body_of_element: mesh.cells().iter().map(|nodes| of_node[nodes[0].index()]).collect(),
             yielded: vec![false; if yields { mesh.element_count() } else { 0 }],
             found,
@@ -164,7 +164,7 @@ impl<'p, const D: usize, const N: usize> DeformationRecorder<'p, D, N> {
     }
 
     fn rotations(&mut self, displacement: &[[f64; D]], time: f64) {
-        for (body, rotation) in self.found.bodies.iter_mut().zip(self.levers.rotations(displacement)) {
+        for (body, rotation) in self.found.bodies.iter_mut().zip(self.rigid.rotations(displacement)) {
             if rotation.abs() > body.rotation.abs() {
                 (body.rotation, body.time_of_rotation) = (rotation, time);
             }

@@ -7,6 +7,7 @@ use percute_core::contact::{ContactResults, Resultant};
 use percute_core::dynamics::Balance;
 use percute_core::ids::ElementId;
 use percute_core::mesh::Mesh;
+use percute_core::units::Units;
 use percute_estimator::Sample;
 use percute_io::{Overwrite, write_bytes};
 use std::path::{Path, PathBuf};
@@ -16,37 +17,46 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// A table: columns of equal length.
 #[derive(Clone, Debug, Default)]
-pub struct Table(Vec<(String, Vec<f64>)>);
+pub struct Table {
+    units: Units,
+    columns: Vec<(String, Vec<f64>)>,
+}
 
 impl Table {
-    fn add(&mut self, name: &str, unit: &str, values: impl IntoIterator<Item = f64>) {
-        let header = if unit.is_empty() { name.to_string() } else { format!("{name} ({unit})") };
-        self.0.push((header, values.into_iter().collect()));
+    /// An empty one.
+    fn new(units: Units) -> Self {
+        Self { units, columns: Vec::new() }
     }
 
-    fn vector<const D: usize>(&mut self, name: &str, unit: &str, values: &[[f64; D]]) {
+    fn add(&mut self, name: &str, unit: &'static str, values: impl IntoIterator<Item = f64>) {
+        let unit = self.units.of(unit);
+        let header = if unit.is_empty() { name.to_string() } else { format!("{name} ({unit})") };
+        self.columns.push((header, values.into_iter().collect()));
+    }
+
+    fn vector<const D: usize>(&mut self, name: &str, unit: &'static str, values: &[[f64; D]]) {
         (0..D).for_each(|c| self.add(&format!("{name}_{}", AXES[c]), unit, values.iter().map(|v| v[c])));
     }
 
     /// Adds its columns to another table, at other rows; empty where there is none.
     fn spread(self, at: &[Option<usize>], to: &mut Self) {
-        for (name, values) in self.0 {
-            to.0.push((name, at.iter().map(|row| row.map_or(f64::NAN, |row| values[row])).collect()));
+        for (name, values) in self.columns {
+            to.columns.push((name, at.iter().map(|row| row.map_or(f64::NAN, |row| values[row])).collect()));
         }
     }
 
     /// The text: a header with units, then a line for each row. A number that is not known is empty.
     #[must_use]
     pub fn csv(&self) -> String {
-        let rows = self.0.first().map_or(0, |(_, values)| values.len());
-        let header = self.0.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>().join(",");
+        let rows = self.columns.first().map_or(0, |(_, values)| values.len());
+        let header = self.columns.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>().join(",");
         let cell = |(name, values): &(String, Vec<f64>), n: usize| match values[n] {
             x if !x.is_finite() => String::new(),
             // Only counts and numbers of things have no unit.
             x if !name.ends_with(')') => format!("{x}"),
             x => format!("{x:?}"),
         };
-        let row = |n: usize| self.0.iter().map(|column| cell(column, n)).collect::<Vec<_>>().join(",");
+        let row = |n: usize| self.columns.iter().map(|column| cell(column, n)).collect::<Vec<_>>().join(",");
         std::iter::once(header).chain((0..rows).map(row)).map(|line| line + "\r\n").collect()
     }
 }
@@ -58,6 +68,8 @@ pub struct Results<'a, const D: usize, const N: usize> {
     pub mesh: &'a Mesh<D, N>,
     /// Contact results.
     pub contact: Option<&'a ContactResults<D>>,
+    /// Units of forces and energies.
+    pub units: Units,
     /// Energies and works at each step.
     pub balance: &'a [Balance],
     /// η and its parts at the samples.
@@ -74,7 +86,7 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
         let mut rows: Vec<f64> = steps.iter().copied().chain(self.error.iter().map(|sample| sample.time)).collect();
         rows.sort_unstable_by(f64::total_cmp);
         rows.dedup();
-        let mut table = Table::default();
+        let mut table = Table::new(self.units);
         table.add("time", "s", rows.iter().copied());
         let place = |times: &[f64], t: f64| times.binary_search_by(|other| other.total_cmp(&t)).ok();
         let at: Vec<Option<usize>> = rows.iter().map(|&t| place(steps, t)).collect();
@@ -90,7 +102,7 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
 
     /// Forces and energies.
     fn at_steps(&self) -> Table {
-        let mut table = Table::default();
+        let mut table = Table::new(self.units);
         if let Some(contact) = self.contact.filter(|contact| !contact.obstacles.is_empty()) {
             resultants(&mut table, "", &contact.total);
             if contact.obstacles.len() > 1 {
@@ -107,7 +119,7 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
 
     /// √η, its parts and d.
     fn at_samples(&self) -> Table {
-        let mut table = Table::default();
+        let mut table = Table::new(self.units);
         if !self.error.is_empty() {
             table.add("error", "J^(1/2)", self.error.iter().map(|sample| sample.parts.total().sqrt()));
             for (name, of) in PARTS.into_iter().filter(|(name, _)| *name != "time") {
@@ -121,7 +133,7 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
     /// Centroid and error of each element.
     #[must_use]
     pub fn elements(&self) -> Table {
-        let mut table = Table::default();
+        let mut table = Table::new(self.units);
         let count = self.mesh.element_count();
         table.add("element", "", (0..count).map(|e| e as f64));
         let centroid = |e: usize| {
@@ -137,7 +149,7 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
     /// Summary of each node of the contact surface.
     #[must_use]
     pub fn contact_nodes(&self) -> Table {
-        let mut table = Table::default();
+        let mut table = Table::new(self.units);
         let Some(contact) = self.contact else { return table };
         let (nodes, summary) = (&contact.nodes, &contact.summary);
         table.add("node", "", nodes.iter().map(|p| p.node.index() as f64));
@@ -241,7 +253,7 @@ mod tests {
 
     #[test]
     fn a_table_has_a_header_with_units_and_empty_cells() {
-        let mut table = Table::default();
+        let mut table = Table::new(Units::default());
         table.add("time", "s", [0.0, 1.5e-6]);
         table.vector("force", "N", &[[1.0, -2.0], [f64::NAN, 1e16]]);
         table.add("nodes", "", [0.0, 12.0]);

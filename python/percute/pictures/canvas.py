@@ -98,7 +98,7 @@ def typeset(text: str) -> str:
         base = "" if found[1] == "1" else f"{found[1]} \\times "
         return f"${base}10^{{{int(found[2])}}}$"
 
-    return MINUS.sub("−", POWER.sub(power, SYMBOL.sub(symbol, text.replace("J^½", "J$^{1/2}$"))))
+    return MINUS.sub("−", POWER.sub(power, SYMBOL.sub(symbol, text.replace("^½", "$^{1/2}$"))))
 
 
 def writable(name: str, file: object, overwrite: object, endings: tuple[str, ...] = ENDINGS) -> str | None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from percute._percute import unit
 from percute.checks import text, whole, wrong
 from percute.contact import Contact, ContactStatus
 from percute.errors import InputError
@@ -122,7 +123,7 @@ def _draw_forces(axes: Axes, contact: Contact) -> None:
             force = resultants.force @ along / factor
             label = f"tangential ({axis}){of}" if len(axis) == 1 else f"tangential{of}"
             axes.plot(contact.time / seconds, force, line, color="tab:red", label=label)
-    axes.set_ylabel(f"force of contact ({prefix}N)")
+    axes.set_ylabel(f"force of contact ({prefix}{unit('N', contact.per_metre)})")
     axes.margins(x=0.0)
     axes.grid(alpha=0.3)
     legend_beside(axes)

@@ -25,7 +25,7 @@ ERRORS: tuple[tuple[str, str, int, Any], ...] = (
     ("error_sup", "true error against the finest mesh, sup", 1, DASHED),
 )
 INDICES = (("effectivity_mean", "of the mean", 0, "-"), ("effectivity_sup", "of the sup", 1, "-"))
-CONTACT = (("peak_force", "peak force", 0, "-"), ("impulse", "impulse", 1, "-"), ("rebound", "rebound velocity", 2, "-"))
+CONTACT = (("averaged_peak_force", "averaged peak force", 0, "-"), ("impulse", "impulse", 1, "-"), ("rebound", "rebound velocity", 2, "-"))
 """Quantities with their names, the numbers of their colours, and their lines."""
 BAND = 2
 """The colour of the range that the verdict expects."""
@@ -53,7 +53,7 @@ def plot(verification: Verification, axes: Sequence[Axes] | None, save: object, 
                 each.plot(sizes, shown, marker="o", markersize=5, linestyle=line, color=_percute.SERIES[colour], label=label)
     _pad(indices, [*_values(verification, INDICES), *verification.expected], "the error is zero to rounding")
     _pad(contact, [value for name, *_ in CONTACT for value in _shown(getattr(verification, name), True)], "nothing touches")
-    for each, label, columns in zip(plots, ("error (J$^{1/2}$)", "effectivity index", "over the finest"), (2, 3, 3), strict=True):
+    for each, label, columns in zip(plots, (f"error ({_percute.unit('J^½', verification.per_metre)})".replace("^½", "$^{1/2}$"), "effectivity index", "over the finest"), (2, 3, 3), strict=True):
         each.set(xscale="log", xlim=(sizes[-1] / BESIDE, BESIDE), ylabel=label)
         each.set_xticks(list(sizes), [f"1/{round(1 / size)}" if size < 1 else "1" for size in sizes])
         each.set_xticks([], minor=True)

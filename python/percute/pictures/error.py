@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from percute import _percute
+from percute._percute import unit
 from percute.checks import flag, number, text
 from percute.errors import InputError
 from percute.pictures.body import Line, draw_bar, draw_body, linear, scale_of
@@ -69,7 +70,7 @@ def _outline(estimate: Estimate) -> tuple[list[Floats], str]:
 def plot_map(estimate: Estimate, scale: float, outline: bool, axes: Axes | None, save: object, overwrite: object) -> Axes:
     """Draw e_E of each element (J^½), eq. [20]."""
     file, factor = writable("save", save, overwrite), number("scale", scale, finite=True)
-    mesh, values, label = estimate.mesh, estimate.by_element, typeset("e_E (J^½)")
+    mesh, values, label = estimate.mesh, estimate.by_element, typeset(f"e_E ({unit('J^½', estimate.per_metre)})")
     lines, told = _outline(estimate) if flag("outline", outline) and factor == 0.0 else ([], "")
     places = mesh.points
     if factor != 0.0 and mesh.dimension == 2:
@@ -85,9 +86,10 @@ def plot_map(estimate: Estimate, scale: float, outline: bool, axes: Axes | None,
         draw_body(axes, places, mesh.cells, values, label, scale=scale_of(values), planes=planes, outline=lines)
     seconds, prefix = prefixed(np.array([estimate.end]))
     name = f"{Path(estimate._name).name}: " if estimate._name else ""
+    norm = unit("J^½", estimate.per_metre)
     title = (
-        f"Constitutive relation error {estimate.sup:.4g} J^½ ({100 * estimate.relative_sup:.3g} %)\n"
-        f"{name}contribution of each element up to t = {estimate.end / seconds:.4g} {prefix}s; mean error {estimate.mean:.4g} J^½{told}"
+        f"Constitutive relation error {estimate.sup:.4g} {norm} ({100 * estimate.relative_sup:.3g} %)\n"
+        f"{name}contribution of each element up to t = {estimate.end / seconds:.4g} {prefix}s; mean error {estimate.mean:.4g} {norm}{told}"
     )
     axes.set_title(typeset(title), fontsize="medium")
     save_figure(root(axes), file)
@@ -114,7 +116,7 @@ def plot_over_time(estimate: Estimate, by: str, axes: Axes | None, save: object,
         bands.append(draw_curve(axes, time, part, colour=COLOURS[name], width=1.1, label=label))
     axes.axhline(estimate.mean, color="black", linestyle=":", linewidth=1, label="mean error")
     axes.plot(estimate.time_of_sup / seconds, estimate.sup, "ko", markersize=4, label="sup")
-    axes.set_ylabel("error (J$^{1/2}$)")
+    axes.set_ylabel(typeset(f"error ({unit('J^½', estimate.per_metre)})"))
     axes.set_ylim(bottom=0.0)
     marks = [mark_of_range()] if any(bands) else []
     legend_beside(axes, handles=[*axes.get_legend_handles_labels()[0], *marks])

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from percute._percute import unit
 from percute.checks import number, text
 from percute.element_fields import instant
 from percute.errors import InputError
@@ -66,7 +67,8 @@ def field(history: History, quantity: object, step: int) -> tuple[Floats, str, s
         row, column = STRESSES[name]
         return history.stress(step)[:, row, column], f"stress σ$_{{{name[-2:]}}}$", "Pa", SIGNED
     values: Floats = getattr(history, name)(step)
-    return values, *SCALARS[name]
+    told, of, colours = SCALARS[name]
+    return values, told, unit(of, history.problem.per_metre), colours
 
 
 def plot_field(
@@ -110,6 +112,8 @@ def draw_field(
 
 def plot_energies(subject: History | Estimate, axes: Axes | None, save: object, overwrite: object) -> Axes:
     """Draw energies and works over time."""
+    from percute.history import History
+
     file = writable("save", save, overwrite)
     values = _energies(subject)
     axes = new_axes(axes, (7.2, 4.0))
@@ -124,7 +128,8 @@ def plot_energies(subject: History | Estimate, axes: Axes | None, save: object, 
     for name, label in WORKS.items():
         if np.abs(values[name]).max(initial=0.0) > least:
             axes.plot(time, values[name] / factor, color=COLOURS[name], linewidth=1.1, linestyle="--", label=label)
-    axes.set_ylabel(f"energy ({prefix}J)")
+    per_metre = subject.problem.per_metre if isinstance(subject, History) else subject.per_metre
+    axes.set_ylabel(f"energy ({prefix}{unit('J', per_metre)})")
     legend_beside(axes)
     save_figure(root(axes), file)
     return axes

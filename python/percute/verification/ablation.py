@@ -173,7 +173,7 @@ def _slide(section: Section, resolution: Resolution) -> None:
     def errors(run: tuple[int, dict[str, Any]], stop: Stop) -> float:
         count, choice = run
         first = pc.simulate(problem, end=float(history.time[count]), step=float(history.time[count]) / count, progress=stop)
-        return 100.0 * ablated(first, every=1, threads=1, progress=stop, **choice).relative_mean
+        return 100.0 * ablated(first, every=1, threads=1, progress=stop, **choice).published_relative_mean
 
     found = iter(resolution.map(errors, [(count, choice) for choice in CHOICES for count in lengths], lambda run: run[0]))
     columns = [Column("attempt"), *(Column(f"T = {short(part * times['end'], 2)} s", "%", "[22]", digits=3) for part in SLIDE)]

@@ -68,7 +68,7 @@ class Setting:
         history = pc.simulate(problem, end=count * self.step, step=self.step, progress=stop)
         estimates = [ablated(history, every=1, threads=1, progress=stop, **choice) for choice in choices]
         true = exact.error(history)
-        errors: list[tuple[float, ...]] = [(each.sup, each.mean, each.relative_sup, each.relative_mean) for each in estimates]
+        errors: list[tuple[float, ...]] = [(each.sup, each.mean, each.published_relative_sup, each.published_relative_mean) for each in estimates]
         indices = [each.effectivity(true) for each in estimates]
         held = [holds(each, (index.sup, index.mean)) for each, index in zip(estimates, indices, strict=True)]
         return Outcome((true.sup, true.mean), errors, indices, held)

@@ -110,7 +110,7 @@ def _compare(history: pc.History, estimate: pc.Estimate, coarse: pc.TrueError, f
         mean.append(math.sqrt(means[0] / means[1]))
     parts = estimate.parts
     moved = abs(fine.sup / coarse.sup - 1.0)
-    return Bounces(len(starts), sup, mean, estimate.relative_sup, parts.kinetic / parts.total, moved)
+    return Bounces(len(starts), sup, mean, estimate.published_relative_sup, parts.kinetic / parts.total, moved)
 
 
 def add(section: Section, resolution: Resolution) -> None:

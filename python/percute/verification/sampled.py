@@ -61,7 +61,7 @@ def table(cases: tuple[tuple[str, float], ...] = CASES, every: tuple[int, ...] =
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", pc.InputWarning)
                 estimate = pc.estimate(sampled(history, k), every=1, force=True)
-            yield Row(body, end / steps / stated.critical_time_step, k, estimate.relative_sup, estimate.relative_mean)
+            yield Row(body, end / steps / stated.critical_time_step, k, estimate.published_relative_sup, estimate.published_relative_mean)
 
 
 def main() -> None:

@@ -121,7 +121,7 @@ def _tables(rows: Sequence[Row], found: Sequence[Found]) -> tuple[Table, Table]:
             default = "yes" if choice["acceleration"] == DEFAULTS[choice["reconstruction"]] else "no"
             names = choice["reconstruction"], choice["acceleration"], default, Block(row.cells).mesh, len(e.by_element)
             absolute.add(*names, e.sup, row.absolute[0], e.mean, row.absolute[1])
-            errors = 100 * e.relative_sup, row.relative[0], 100 * e.relative_mean, row.relative[1]
+            errors = 100 * e.published_relative_sup, row.relative[0], 100 * e.published_relative_mean, row.relative[1]
             relative.add(*names, *errors, e.reference_sup, row.denominators[0], e.reference_mean, row.denominators[1])
     return absolute, relative
 

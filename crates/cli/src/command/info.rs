@@ -10,7 +10,7 @@ use percute_workflow::Failure;
 use percute_workflow::case::CaseOf;
 use percute_workflow::history::open;
 use percute_workflow::info::{Info, of_case, of_estimate, of_history, of_mesh};
-use percute_workflow::report::reported;
+use percute_workflow::report::{reported, units_in};
 use percute_workflow::tables::{Destination, Results};
 use std::path::Path;
 
@@ -47,21 +47,24 @@ fn tables(file: &Path, path: &Path, force: bool) -> Result<(), Failure> {
     match kind(file)? {
         Kind::History => each_dimension!(open(file)?, stored => {
             let (contact, balance) = stored.results()?;
-            let (mesh, contact) = (stored.problem.mesh(), Some(&contact));
-            place.write(&Results { mesh, contact, balance: &balance, error: &[], by_element: &[] }, overwrite)
+            let (mesh, contact, units) = (stored.problem.mesh(), Some(&contact), stored.problem.units());
+            place.write(&Results { mesh, contact, units, balance: &balance, error: &[], by_element: &[] }, overwrite)
         }),
         Kind::Estimate => {
             let estimate = estimate_file::open(file)?;
             let (error, by_element) = (&estimate.over_time[..], &estimate.by_element[..]);
+            let units = units_in(&estimate.report);
             match (&estimate.mesh, estimate_file::contact(file)?) {
-                (ByDimension::Bar(mesh), Some(ByDimension::Bar(contact))) => {
-                    place.write(&Results { mesh, contact: Some(&contact), balance: &[], error, by_element }, overwrite)
-                }
-                (ByDimension::Plane(mesh), Some(ByDimension::Plane(contact))) => {
-                    place.write(&Results { mesh, contact: Some(&contact), balance: &[], error, by_element }, overwrite)
-                }
+                (ByDimension::Bar(mesh), Some(ByDimension::Bar(contact))) => place.write(
+                    &Results { mesh, contact: Some(&contact), units, balance: &[], error, by_element },
+                    overwrite,
+                ),
+                (ByDimension::Plane(mesh), Some(ByDimension::Plane(contact))) => place.write(
+                    &Results { mesh, contact: Some(&contact), units, balance: &[], error, by_element },
+                    overwrite,
+                ),
                 (mesh, _) => each_dimension!(mesh, mesh => {
-                    place.write(&Results { mesh, contact: None, balance: &[], error, by_element }, overwrite)
+                    place.write(&Results { mesh, contact: None, units, balance: &[], error, by_element }, overwrite)
                 }),
             }
         }

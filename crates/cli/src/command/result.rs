@@ -83,9 +83,10 @@ fn show<const D: usize, const N: usize>(
 fn tabulate<const D: usize, const N: usize>(finished: &Finished<'_, D, N>, force: bool) -> Result<(), Failure> {
     let Some(tables) = &finished.tables else { return Ok(()) };
     let Results { simulation, estimate, contact, .. } = &finished.results;
-    let (mesh, contact) = (finished.subject.problem.mesh(), Some(contact));
+    let problem = finished.subject.problem;
+    let (mesh, contact, units) = (problem.mesh(), Some(contact), problem.units());
     let (balance, error) = (&simulation.balance_over_time[..], &estimate.over_time[..]);
-    let results = tables::Results { mesh, contact, balance, error, by_element: &estimate.by_element };
+    let results = tables::Results { mesh, contact, units, balance, error, by_element: &estimate.by_element };
     tables.write(&results, Overwrite::allowed(force))
 }
 

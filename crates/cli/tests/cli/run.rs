@@ -47,7 +47,10 @@ fn nulls(path: &str, value: &Value, found: &mut Vec<String>) {
 fn the_json_document_has_its_keys() {
     let document = json(BLOCK, &[]);
     let numbers = "time_step critical_time_step steps end time_of_sup seconds kept_impulse \
-        error.sup error.mean error.relative_sup error.relative_mean error.reference_sup error.reference_mean \
+        error.sup error.mean error.mean_from_touch error.energy error.strain_energy error.kinetic_energy \
+        error.relative_sup error.relative_mean error.relative_stress_sup error.relative_stress_mean \
+        error.relative_velocity_sup error.relative_velocity_mean error.published_relative_sup \
+        error.published_relative_mean error.reference_sup error.reference_mean \
         parts.kinetic parts.elastic parts.contact \
         balance.kinetic balance.strain balance.initial balance.work_of_loads balance.work_of_supports \
         balance.work_of_contact balance.friction balance.energy_drift balance.impulse_drift \

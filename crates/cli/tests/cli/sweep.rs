@@ -82,7 +82,7 @@ fn failures_are_recorded_and_the_rest_goes_on() {
     assert!(stderr(&output).contains("nx=-6,friction=0.1: error: case.toml:"), "{}", stderr(&output));
     let table = rows(&bench.path("sweep/results.csv"));
     assert_eq!(table.iter().map(|row| cell(row, "status")).collect::<Vec<_>>(), ["done", "done", "failed", "failed"]);
-    assert!(cell(&table[2], "failure").contains("whole number") && cell(&table[2], "sup (J^½)").is_empty());
+    assert!(cell(&table[2], "failure").contains("whole number") && cell(&table[2], "sup ((J/m)^½)").is_empty());
     // A failure is tried again.
     let again = bench.percute(&["sweep", "sweep.toml"]);
     assert!(stdout(&again).starts_with("4 cases: 0 done, 2 done before, 2 failed"));

@@ -30,7 +30,8 @@ pub use obstacle::{Obstacle, ObstacleError};
 pub use plane::Plane;
 pub(crate) use prediction::{Predicted, Prediction};
 pub use results::{
-    ContactMemoryError, ContactPoint, ContactRecorder, ContactResults, ContactSteps, Nearest, NodeSummary, Resultant,
+    AveragedPeak, ContactMemoryError, ContactPoint, ContactRecorder, ContactResults, ContactSteps, Nearest,
+    NodeSummary, Resultant, stopping_times,
 };
 pub(crate) use solve::solve;
 pub use surface::{ContactFacet, ContactNode, ContactSurface};

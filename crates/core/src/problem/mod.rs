@@ -11,11 +11,11 @@ mod error;
 mod facing_edges;
 mod gaps;
 mod joined;
-mod levers;
 mod may_touch;
 mod pairs;
 mod plausibility;
 mod renumber;
+mod rigid_motion;
 mod roles;
 mod sides;
 mod sliding;
@@ -25,16 +25,17 @@ pub(crate) mod symmetry;
 pub use bodies::{Between, Contact};
 pub use builder::{Builder, Initial, Statement};
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
-pub use levers::Levers;
 pub use plausibility::{
     PlausibilityWarning, RefusedStart, SMALL_ROTATION, cause_of_refused_start, plausibility_warnings,
 };
+pub use rigid_motion::RigidMotion;
 
 use crate::contact::{ContactSurface, Facing, Interface, Obstacle};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{Profile, Table};
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
+use crate::units::Units;
 use std::sync::OnceLock;
 
 /// One component of a node's motion that is prescribed.
@@ -127,6 +128,12 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     #[must_use]
     pub fn materials(&self) -> &[Elastic] {
         &self.materials
+    }
+
+    /// Units of forces, energies and masses: per metre of thickness where that is 1 m, as it is unless it is given.
+    #[must_use]
+    pub fn units(&self) -> Units {
+        Units { per_metre: D == 2 && self.materials.iter().all(|law| law.extent() == 1.0) }
     }
 
     /// Which of [`Problem::materials`] each element has.

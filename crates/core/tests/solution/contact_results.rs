@@ -6,7 +6,7 @@ use percute_core::contact::{ContactRecorder, ContactResults, ContactSteps, Statu
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::StepSource;
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::{BarMesh, ElementGroups, TriangleMesh};
 use percute_core::problem::{BarProblem, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_exact::BarImpact;
@@ -82,6 +82,48 @@ fn the_exact_bar_is_pressed_by_rho_c_v_for_two_transits() {
     assert!(near(node.peak_pressure, exact.density * speed_of_waves * exact.speed));
     assert!(near(node.impulse[0], plateau * dt * (2.0 * ELEMENTS as f64 - 0.5)), "{}", node.impulse[0]);
     assert_eq!((node.friction_energy, node.impulse), (0.0, results.total[count].impulse));
+}
+
+/// The stress of the impact is ρcv. The raw force is that only with steps of its element, and the larger, the shorter
+/// they are: also where a short element far from the contact makes them short.
+#[test]
+fn the_averaged_force_of_a_bar_is_rho_c_v_for_any_step() {
+    let law = Elastic::bar(70e9, 2700.0, 0.02).unwrap();
+    let wave_speed = (70e9_f64 / 2700.0).sqrt();
+    let plateau = 0.02 * 2700.0 * wave_speed * 50.0;
+    let even: Vec<[f64; 1]> = (0..=40).map(|i| [0.1 * f64::from(i) / 40.0]).collect();
+    let mut short = even.clone();
+    short.push([0.1 + 1e-6]);
+    for (points, courant, [least, most]) in [
+        (&even, 1.0, [0.999, 1.001]),
+        // Behind the front of short steps, the lumped mass oscillates.
+        (&even, 0.5, [1.0, 1.3]),
+        (&even, 0.1, [1.0, 1.3]),
+        (&even, 0.02, [1.0, 1.3]),
+        (&short, 0.9, [1.0, 1.3]),
+    ] {
+        let cells: Vec<_> = (1..points.len()).map(|i| [i - 1, i]).collect();
+        let groups = [("start".to_string(), vec![[0]])].into();
+        let mesh = BarMesh::new(points.clone(), &cells, &groups, &ElementGroups::new()).unwrap();
+        let free = BarProblem::builder(mesh.clone()).material(law).build().unwrap();
+        let dt = courant * critical_time_step(&free);
+        let problem = BarProblem::builder(mesh)
+            .material(law)
+            .initial_velocity(Initial::Uniform([-50.0]))
+            .obstacle(Obstacle::plane([-2.3 * 50.0 * dt], [1.0], 0.0, None).unwrap())
+            .build()
+            .unwrap();
+        let count = 3 + (8e-6 / dt).ceil() as usize;
+        let run = run(&problem, &TimeGrid::uniform(dt * count as f64, count).unwrap());
+        let found = results(&run);
+        let (averaged, raw) = (found.averaged_peak.unwrap().force, found.total[found.peak().unwrap()].normal_force);
+        let ratios = [averaged / plateau, raw / plateau];
+        assert!((least..=most).contains(&ratios[0]), "{courant}: {ratios:?}");
+        let is_short = courant < 0.2 || points.len() > 41;
+        assert!(!is_short || ratios[1] > 1.3, "{courant}: {ratios:?}, the raw force would do");
+        let peak = found.averaged_peak.unwrap();
+        assert!((peak.pressure * 0.02 - averaged).abs() < 1e-9 * averaged);
+    }
 }
 
 /// A block that comes down askew on a tilted plane under steps that change all the time: the impulse is what its

@@ -3,9 +3,10 @@
 mod impulse;
 mod interval;
 mod supports;
+mod vibration;
 
 use super::near_elements::span;
-use super::schedule::Schedule;
+use super::schedule::{Decision, Schedule};
 use super::sliding::SlidingMisfit;
 use crate::contact_density::{CornerSliding, OffContact};
 use crate::element::Element;
@@ -27,6 +28,7 @@ use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::collections::VecDeque;
 use supports::SupportCheck;
+pub(crate) use vibration::Vibration;
 
 /// Turns steps into levels whose forces are known.
 #[derive(Debug)]
@@ -59,6 +61,9 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     /// Number of steps taken in.
     count: usize,
     given: Given,
+    vibration: Vibration<D>,
+    /// The level from whose forces on bodies touch.
+    first_contact: Option<usize>,
     pub(crate) impulse: Impulse,
     pub(crate) residuals: Residuals,
 }
@@ -88,6 +93,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             unmeasured: None,
             count: 0,
             given: Given::default(),
+            vibration: Vibration::new(problem),
+            first_contact: None,
             impulse: Impulse::default(),
             residuals: Residuals::default(),
         }
@@ -120,6 +127,16 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     /// Whether the middles of intervals between samples are estimated.
     pub(super) fn estimates_middles(&self) -> bool {
         self.schedule.is_automatic()
+    }
+
+    /// The largest energies of deformation and vibration.
+    pub(super) fn vibration(&self) -> &Vibration<D> {
+        &self.vibration
+    }
+
+    /// The level from whose forces on bodies touch; the first one where none do.
+    pub(super) fn first_contact(&self) -> usize {
+        self.first_contact.unwrap_or(0)
     }
 
     pub(super) fn tracks(&self) -> &ContactTracks {
@@ -206,7 +223,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         let (problem, step, n) = (self.problem, state.step(), state.step().index);
         self.count += 1;
         self.given = Given { velocity: step.velocity.is_some(), acceleration: step.acceleration.is_some() };
-        let decision = self.schedule.advance(n, step.touching, normal_sum(problem, step.reaction));
+        let decision = self.decide(step);
         if decision.before {
             self.differ_at_last();
         }
@@ -241,6 +258,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             },
             split,
             smoothed,
+            strain_energy: state.strain(),
         };
         let motion = MotionKnown { level, now, mid_velocity, inertia };
         if n == 0 {
@@ -279,6 +297,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             if self.schedule.is_sampled(level.level.index) {
                 level.off_contact = std::mem::take(&mut self.off_contact);
                 level.corner_sliding = std::mem::take(&mut self.corner_sliding);
+                self.vibration.take(level.level.strain_energy, level.now.motion.velocity());
                 return Some(level);
             }
         }
@@ -291,6 +310,15 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         if let (Some(last), Some(unmeasured)) = (self.motions.back(), &self.unmeasured) {
             self.reconstruction.differ([unmeasured, last.now.velocity()]);
         }
+    }
+
+    /// Which levels a step makes samples; notes the first contact.
+    fn decide(&mut self, step: &Step<'_, D>) -> Decision {
+        let force = normal_sum(self.problem, step.reaction);
+        if force != 0.0 || step.touching.contains(&true) {
+            self.first_contact.get_or_insert(step.index);
+        }
+        self.schedule.advance(step.index, step.touching, force)
     }
 
     /// Hands the normal motion of the candidate nodes to their tracks.

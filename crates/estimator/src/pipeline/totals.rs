@@ -1,7 +1,7 @@
 //! Sums over elements and time, in a fixed order.
 
 use super::near::NearElement;
-use super::prepare::{Impulse, Preparation};
+use super::prepare::{Impulse, Preparation, Vibration};
 use super::sampled_interval::{SampledInterval, estimate_middles, samples};
 use super::separation::separation;
 use crate::estimate::{ErrorMeasures, Estimate, Parts, Sample};
@@ -58,7 +58,7 @@ pub(super) fn estimate<const D: usize, const N: usize>(
     let differences = preparation.reconstruction().differences();
     Estimate {
         sources: differences.map(|differences| separation(&intervals, differences, (worst.time, end))),
-        error: measures(&intervals, &over_time, worst.parts.total().sqrt(), end),
+        error: measures(&intervals, &over_time, preparation, end),
         time_of_sup: worst.time,
         parts: worst.parts,
         over_time,
@@ -75,21 +75,45 @@ pub(super) fn estimate<const D: usize, const N: usize>(
     }
 }
 
-/// The measures of a run up to `end` (s), of which √sup η is known.
-fn measures(intervals: &[SampledInterval], over_time: &[Sample], sup: f64, end: f64) -> ErrorMeasures {
-    let root_mean = |value: &dyn Fn(&(Parts, f64)) -> f64| {
-        let each = |i: &SampledInterval| i.integral(|k| value(&i.samples[k]));
-        (intervals.iter().map(each).sum::<f64>() / end).sqrt()
+/// The measures of a run up to `end` (s).
+fn measures<const D: usize, const N: usize>(
+    intervals: &[SampledInterval],
+    over_time: &[Sample],
+    preparation: &Preparation<'_, D, N>,
+    end: f64,
+) -> ErrorMeasures {
+    let root_sup = |of: fn(&Parts) -> f64| over_time.iter().fold(0.0_f64, |most, s| most.max(of(&s.parts))).sqrt();
+    let root_mean = |intervals: &[SampledInterval], length: f64, of: &dyn Fn(&(Parts, f64)) -> f64| {
+        let each = |i: &SampledInterval| i.integral(|k| of(&i.samples[k]));
+        (intervals.iter().map(each).sum::<f64>() / length).sqrt()
     };
-    let mean = root_mean(&|s| s.0.total());
-    let reference_sup = over_time.iter().fold(0.0_f64, |m, s| m.max(s.reference)).sqrt();
-    let reference_mean = root_mean(&|s| s.1);
-    ErrorMeasures {
-        sup,
-        mean,
-        relative_sup: ratio(sup, reference_sup),
-        relative_mean: ratio(mean, reference_mean),
-        reference_sup,
-        reference_mean,
+    let touch = preparation.first_contact();
+    let touched = &intervals[intervals.iter().rposition(|interval| interval.levels[0] <= touch).unwrap_or(0)..];
+    let mean_from_touch = |of: fn(&Parts) -> f64| root_mean(touched, end - touched[0].times[0], &|s| of(&s.0));
+    let Vibration { strain, kinetic, total, .. } = preparation.vibration();
+    let mut measures = ErrorMeasures {
+        sup: root_sup(Parts::total),
+        mean: root_mean(intervals, end, &|s| s.0.total()),
+        mean_from_touch: mean_from_touch(Parts::total),
+        energy: *total,
+        strain_energy: *strain,
+        kinetic_energy: *kinetic,
+        reference_sup: over_time.iter().fold(0.0_f64, |m, s| m.max(s.reference)).sqrt(),
+        reference_mean: root_mean(intervals, end, &|s| s.1),
+        ..ErrorMeasures::default()
+    };
+    measures.published_relative_sup = ratio(measures.sup, measures.reference_sup);
+    measures.published_relative_mean = ratio(measures.mean, measures.reference_mean);
+    // Where both are rounding, their ratio is nothing.
+    if !measures.is_zero() {
+        let [elastic, moving]: [fn(&Parts) -> f64; 2] = [|parts| parts.elastic, |parts| parts.kinetic];
+        let over = |error: f64, energy: f64| ratio(error, energy.sqrt());
+        measures.relative_sup = over(measures.sup, *total);
+        measures.relative_mean = over(measures.mean_from_touch, *total);
+        measures.relative_stress_sup = over(root_sup(elastic), *strain);
+        measures.relative_stress_mean = over(mean_from_touch(elastic), *strain);
+        measures.relative_velocity_sup = over(root_sup(moving), *kinetic);
+        measures.relative_velocity_mean = over(mean_from_touch(moving), *kinetic);
     }
+    measures
 }

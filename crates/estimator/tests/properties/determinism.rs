@@ -51,13 +51,8 @@ fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
         end,
     } = estimate;
     assert_eq!(*given, Given::default());
-    let mut numbers = vec![
-        error.sup,
-        error.mean,
-        error.relative_sup,
-        error.relative_mean,
-        error.reference_sup,
-        error.reference_mean,
+    let mut numbers: Vec<f64> = error.entries().into_iter().map(|(_, _, value)| value).collect();
+    numbers.extend([
         *time_of_sup,
         parts.kinetic,
         parts.elastic,
@@ -67,7 +62,7 @@ fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
         *auxiliary_contact_energy,
         *steps as f64,
         *end,
-    ];
+    ]);
     let sample =
         |s: &percute_estimator::Sample| [s.time, s.parts.kinetic, s.parts.elastic, s.parts.contact, s.reference];
     numbers.extend(over_time.iter().flat_map(sample));

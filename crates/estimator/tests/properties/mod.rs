@@ -16,6 +16,7 @@ mod loads;
 mod malformed;
 mod maps;
 mod pairs;
+mod relative;
 mod several;
 mod shapes;
 mod sliding;

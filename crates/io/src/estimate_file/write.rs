@@ -114,7 +114,7 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
         self.over_time(&ours)?;
         self.measures(&ours)?;
         if let Some((results, steps)) = self.contact() {
-            contact::write(&ours, results, steps)?;
+            contact::write(&ours, results, steps, self.problem.units())?;
         }
         let residuals = group(&ours, "residuals")?;
         for (name, value) in self.estimate.residuals.entries() {
@@ -139,7 +139,7 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
         let mesh = self.problem.mesh();
         let (nodes, cells) = (mesh.node_count(), mesh.element_count());
         let data = group(vtk, "CellData")?;
-        unit(&numbers(&data, "by_element", &[cells], &self.estimate.by_element)?, "J^(1/2)")?;
+        unit(&numbers(&data, "by_element", &[cells], &self.estimate.by_element)?, self.problem.units().of("J^(1/2)"))?;
         let bodies = write_bodies(&data, mesh)?;
         if maps.is_empty() {
             return Ok(());
@@ -154,7 +154,7 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
             }
             if let Some(contact) = self.contact() {
                 let steps: Vec<usize> = maps.iter().map(|map| map.step).collect();
-                let names = contact::write_fields(&data, contact, nodes, &steps)?;
+                let names = contact::write_fields(&data, contact, (nodes, self.problem.units()), &steps)?;
                 point_offsets.extend(names.into_iter().map(|name| (name, nodes)));
             }
         }
@@ -174,7 +174,7 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
             let values: Vec<f64> = self.estimate.maps.iter().flat_map(&take).collect();
             let count = rows * self.estimate.maps.len();
             let shape = if components == 1 { vec![count] } else { vec![count, components] };
-            unit(&numbers(data, name, &shape, &values)?, of)?;
+            unit(&numbers(data, name, &shape, &values)?, self.problem.units().of(of))?;
             offsets.push((name, rows));
         }
         Ok(())
@@ -209,24 +209,20 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
             ("total", "J", column(|s| s.parts.total())),
             ("reference", "J", column(|s| s.reference)),
         ];
-        columns.iter().try_for_each(|(name, of, values)| unit(&numbers(&group, name, &[values.len()], values)?, of))
+        let units = self.problem.units();
+        columns
+            .iter()
+            .try_for_each(|(name, of, values)| unit(&numbers(&group, name, &[values.len()], values)?, units.of(of)))
     }
 
     fn measures(&self, ours: &Group) -> Result<(), FileCause> {
         let group = group(ours, "measures")?;
         let Estimate { error: e, time_of_sup, end, kept_impulse, given, steps, .. } = self.estimate;
-        let numbers = [
-            ("sup", Some(e.sup)),
-            ("mean", Some(e.mean)),
-            ("relative_sup", Some(e.relative_sup)),
-            ("relative_mean", Some(e.relative_mean)),
-            ("reference_sup", Some(e.reference_sup)),
-            ("reference_mean", Some(e.reference_mean)),
-            ("time_of_sup", Some(*time_of_sup)),
-            ("end", Some(*end)),
-            ("kept_impulse", *kept_impulse),
-        ];
-        for (name, value) in numbers {
+        for (name, _, value) in e.entries() {
+            attribute(&group, name, value)?;
+        }
+        for (name, value) in [("time_of_sup", Some(*time_of_sup)), ("end", Some(*end)), ("kept_impulse", *kept_impulse)]
+        {
             if let Some(value) = value {
                 attribute(&group, name, value)?;
             }

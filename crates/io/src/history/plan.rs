@@ -271,7 +271,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         numbers(&contact, "nodes", &[nodes.len()], &nodes)?;
         let (instants, count) = (self.instants(), nodes.len());
         let reaction = room::<f64>(&contact, "reaction", &[instants, count, D])?;
-        unit(&reaction, "N")?;
+        unit(&reaction, self.problem.units().of("N"))?;
         let touching = room::<u8>(&contact, "touching", &[instants, count])?;
         Ok((offset(&reaction)?, offset(&touching)?))
     }

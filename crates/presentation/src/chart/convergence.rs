@@ -41,7 +41,7 @@ const INDICES: [Quantity; 2] = [
     Quantity { class: "s1 solid", name: "of the sup", of: |level| level.effectivity.map(|index| index.sup) },
 ];
 const CONTACT: [Quantity; 3] = [
-    Quantity { class: "s0 solid", name: "peak force", of: |level| level.peak_force },
+    Quantity { class: "s0 solid", name: "averaged peak force", of: |level| level.averaged_peak_force },
     Quantity { class: "s1 solid", name: "impulse", of: |level| level.impulse },
     Quantity { class: "s2 solid", name: "rebound velocity", of: |level| level.rebound },
 ];
@@ -59,9 +59,16 @@ pub fn convergence(verification: &Verification) -> Option<String> {
     let (indices, band) = (INDICES.iter().map(|quantity| Line::new(quantity, levels, 1.0)), levels[0].expected);
     let (indices, contact) = (with_values(indices), over_the_finest(levels));
     let charts = [
-        Chart { label: "error (J^½)", y, lines: errors, rows: 2, band: None, none: "" },
         Chart {
-            label: "effectivity index",
+            label: format!("error ({})", verification.units().of("J^½")),
+            y,
+            lines: errors,
+            rows: 2,
+            band: None,
+            none: "",
+        },
+        Chart {
+            label: "effectivity index".to_string(),
             y: padded(&indices, band.as_slice().as_flattened()),
             lines: indices,
             rows: 1,
@@ -69,7 +76,7 @@ pub fn convergence(verification: &Verification) -> Option<String> {
             none: "the error is zero to rounding",
         },
         Chart {
-            label: "over the finest",
+            label: "over the finest".to_string(),
             y: padded(&contact, &[]),
             lines: contact,
             rows: 1,
@@ -113,7 +120,7 @@ impl Line {
 /// One of the plots, with its scale, the rows of its legend, a range that is shaded, and the reason for no values. On a
 /// linear scale a line marks 1.
 struct Chart {
-    label: &'static str,
+    label: String,
     lines: Vec<Line>,
     y: Scale,
     rows: usize,
@@ -134,7 +141,7 @@ impl Chart {
         if let Some([low, high]) = self.band {
             svg.rectangle("class=\"s2 band\"", plot.at(x.low, low), plot.at(x.high, high));
         }
-        plot.axes(svg, &Look { x: below, y: self.label, marks: [0, 5], whole: false, grid: [true; 2] });
+        plot.axes(svg, &Look { x: below, y: &self.label, marks: [0, 5], whole: false, grid: [true; 2] });
         for k in 0..levels {
             let ([at, bottom], name) = (plot.at(size(k), self.y.low), fraction(k));
             svg.line("axis", [at, bottom], [at, bottom + 5.0]);

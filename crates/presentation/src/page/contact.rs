@@ -28,11 +28,11 @@ fn facts(document: &Document) -> String {
     let value = |path: &str| document.number(path);
     let mut row = |name: &str, value: String| table.row(&[name.to_string(), value]);
     row("first touch", quantity(value("contact.first_touch"), "s"));
-    row("peak of the normal force", quantity(value("contact.peak_normal_force"), "N"));
-    row("time of the peak", quantity(value("contact.time_of_peak"), "s"));
-    row("largest pressure at a node", quantity(value("contact.peak_pressure"), "Pa"));
-    row("at node", number(value("contact.node_of_peak_pressure")));
-    let shown = |impulse: &Value| together(&vector_quantity(&numbers(impulse), "N s", 5));
+    row("averaged peak of the normal force", quantity(value("contact.averaged_peak.force"), document.unit("N")));
+    row("time of the averaged peak", quantity(value("contact.averaged_peak.time"), "s"));
+    row("averaged peak of the pressure at a node", quantity(value("contact.averaged_peak.pressure"), "Pa"));
+    row("at node", number(value("contact.averaged_peak.node")));
+    let shown = |impulse: &Value| together(&vector_quantity(&numbers(impulse), document.unit("N s"), 5));
     if document.has_interfaces() {
         for (k, name) in document.names_of_obstacles() {
             let impulse =
@@ -46,7 +46,7 @@ fn facts(document: &Document) -> String {
         row("impulse on the body", shown(impulse));
     }
     let friction = document.column("contact.total.friction_energy").last().copied();
-    row("energy dissipated by friction", quantity(friction, "J"));
+    row("energy dissipated by friction", quantity(friction, document.unit("J")));
     row("impulse kept by the admissible force", share(value("kept_impulse")));
     table.html()
 }
@@ -60,9 +60,9 @@ fn force(document: &Document) -> String {
         let normal = |k: usize| over_time.get(k).map_or_else(Vec::new, |each| numbers(&each["normal_force"]));
         lines.extend(names.iter().map(|(k, name)| Line { name, values: normal(*k) }));
     }
-    let mark = document.number("contact.time_of_peak").map(|time| (time, "peak"));
+    let mark = document.number("contact.averaged_peak.time").map(|time| (time, "averaged peak"));
     let time = document.column("contact.time");
-    let chart = OverTime { time, quantity: "normal force", unit: "N", prefixes: true, lines, mark };
+    let chart = OverTime { time, quantity: "normal force", unit: document.unit("N"), prefixes: true, lines, mark };
     chart
         .draw()
         .map_or_else(String::new, |svg| figure(&svg, "contact force over time", "Sum of the normal contact forces."))

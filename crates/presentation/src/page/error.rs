@@ -27,7 +27,13 @@ pub(super) fn map(contents: &Contents<'_>) -> String {
         caption += &format!(" Above {} elements, the map is stored as pixels.", picture::MOST_POLYGONS);
     }
     let mean = document.number("error.mean").unwrap_or(f64::NAN);
-    let mut table = Table::new(&["#rank", "#element", "#e_E (J^½)", "#share of e_mean^2", "centroid (m)"]);
+    let mut table = Table::new(&[
+        "#rank",
+        "#element",
+        &format!("#e_E ({})", document.unit("J^½")),
+        "#share of e_mean^2",
+        "centroid (m)",
+    ]);
     for (k, element) in worst.iter().enumerate() {
         let error = element["error"].as_f64();
         let part = share(error.map(|error| (error / mean).powi(2)));
@@ -46,7 +52,7 @@ pub(super) fn over_time(document: &Document) -> String {
     let chart = OverTime {
         time: column("time"),
         quantity: "√η and its parts",
-        unit: "J^½",
+        unit: document.unit("J^½"),
         prefixes: false,
         lines: vec![
             line("√η", "total"),
@@ -62,7 +68,7 @@ pub(super) fn over_time(document: &Document) -> String {
     let figure = figure(&svg, "error over time with its parts", caption);
     let parts = ["kinetic", "elastic", "contact"].map(|name| (name, document.number(&format!("parts.{name}"))));
     let total: f64 = parts.iter().filter_map(|(_, part)| *part).sum();
-    let mut table = Table::new(&["part of η at the sup", "#J", "#share"]);
+    let mut table = Table::new(&["part of η at the sup", &format!("#{}", document.unit("J")), "#share"]);
     for (name, part) in parts {
         let share = share(part.filter(|_| total > 0.0).map(|part| part / total));
         table.row(&[name.to_string(), number(part), share]);
@@ -87,14 +93,15 @@ pub(super) fn sources(document: &Document) -> String {
     if document.at("sources").is_null() || total <= 0.0 {
         return String::new();
     }
+    let joule = document.unit("J");
     let mut table = Table::new(&[
         "source",
         "~meaning",
-        "#mean (J)",
+        &format!("#mean ({joule})"),
         "#share of e_mean^2",
         "",
-        "#at the sup (J)",
-        "#mean, half size (J)",
+        &format!("#at the sup ({joule})"),
+        &format!("#mean, half size ({joule})"),
     ]);
     for (name, meaning) in SOURCES {
         let mean = value("mean", name);
@@ -122,7 +129,7 @@ fn outlook(document: &Document) -> String {
     let Some(mean) = document.number("error.mean").filter(|mean| *mean > 0.0) else { return String::new() };
     let expected = |key: &str| {
         let expected = document.number(&format!("sources.{key}"))?;
-        Some(format!("{} J^½ ({})", trimmed(expected, 4), change(expected / mean - 1.0)))
+        Some(format!("{} {} ({})", trimmed(expected, 4), document.unit("J^½"), change(expected / mean - 1.0)))
     };
     let (Some(size), Some(step)) = (expected("mean_with_half_size"), expected("mean_with_half_step")) else {
         return String::new();

@@ -101,18 +101,18 @@ fn member(value: &Value, unit: &str) -> String {
 #[derive(Clone, Debug)]
 pub(super) struct Table {
     /// Titles of the columns; those that begin with `#` hold numbers, with `~` long texts.
-    titles: Vec<&'static str>,
+    titles: Vec<String>,
     rows: Vec<String>,
     long: bool,
 }
 
 impl Table {
-    pub(super) fn new(titles: &[&'static str]) -> Self {
-        Self { titles: titles.to_vec(), rows: Vec::new(), long: false }
+    pub(super) fn new(titles: &[&str]) -> Self {
+        Self { titles: titles.iter().map(|title| title.to_string()).collect(), rows: Vec::new(), long: false }
     }
 
     /// One that paper may break between rows.
-    pub(super) fn long(titles: &[&'static str]) -> Self {
+    pub(super) fn long(titles: &[&str]) -> Self {
         Self { long: true, ..Self::new(titles) }
     }
 
@@ -131,7 +131,7 @@ impl Table {
 
     /// Adds a row of HTML with a class.
     pub(super) fn marked(&mut self, class: &str, cells: Vec<String>) {
-        let cell = |(title, cell): (&&str, String)| format!("<td{}>{cell}</td>", Self::class(title));
+        let cell = |(title, cell): (&String, String)| format!("<td{}>{cell}</td>", Self::class(title));
         let cells: String = self.titles.iter().zip(cells).map(cell).collect();
         let class = if class.is_empty() { String::new() } else { format!(" class=\"{class}\"") };
         self.rows.push(format!("<tr{class}>{cells}</tr>\n"));
@@ -143,7 +143,7 @@ impl Table {
             return String::new();
         }
         let title =
-            |title: &&str| format!("<th{}>{}</th>", Self::class(title), html(title.trim_start_matches(['#', '~'])));
+            |title: &String| format!("<th{}>{}</th>", Self::class(title), html(title.trim_start_matches(['#', '~'])));
         let titles: String = self.titles.iter().map(title).collect();
         // Pairs of a name and a value need no titles.
         let head =

@@ -24,7 +24,14 @@ pub(super) fn balance(document: &Document) -> String {
         (values.iter().any(|value| *value != 0.0)).then_some(Line { name, values })
     };
     let lines = names.into_iter().filter_map(line).collect();
-    let chart = OverTime { time: column("time"), quantity: "energy", unit: "J", prefixes: true, lines, mark: None };
+    let chart = OverTime {
+        time: column("time"),
+        quantity: "energy",
+        unit: document.unit("J"),
+        prefixes: true,
+        lines,
+        mark: None,
+    };
     let caption =
         "Kinetic and strain energy, the works of contact, loads and supports, and the energy dissipated by friction.";
     let chart = chart.draw().map_or_else(String::new, |svg| figure(&svg, "energies over time", caption));
@@ -38,7 +45,7 @@ pub(super) fn balance(document: &Document) -> String {
         ("work_of_contact", "work of contact"),
         ("friction", "dissipated by friction"),
     ] {
-        table.row(&[name.to_string(), quantity(document.number(&format!("balance.{key}")), "J")]);
+        table.row(&[name.to_string(), quantity(document.number(&format!("balance.{key}")), document.unit("J"))]);
     }
     for (key, name) in [("energy_drift", "drift of the energy"), ("impulse_drift", "drift of the impulse")] {
         table.row(&[name.to_string(), share(document.number(&format!("balance.{key}")))]);
@@ -99,7 +106,7 @@ fn mesh(contents: &Contents<'_>) -> String {
     row("lower corner (m)", vector(&document.column("problem.lower_corner")));
     row("upper corner (m)", vector(&document.column("problem.upper_corner")));
     row("mean size of the elements (m)", number(Some(body.mean_size())));
-    row("mass (kg)", number(document.number("problem.mass")));
+    row(&format!("mass ({})", document.unit("kg")), number(document.number("problem.mass")));
     row("largest wave speed (m/s)", number(document.number("problem.wave_speed")));
     row("contact nodes", number(document.number("problem.contact_nodes")));
     row("prescribed components of nodes", number(document.number("problem.prescribed_components")));

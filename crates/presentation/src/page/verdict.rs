@@ -87,18 +87,26 @@ fn meaning(document: &Document) -> String {
 fn tiles(document: &Document) -> String {
     let value = |path: &str| document.number(path);
     let si = |unit: &str, value: f64| together(&quantity(value, unit, 4));
-    let error = |name: &str| {
+    let error = |name: &str, absolute: &str| {
         let relative = share(Some(value(&format!("error.relative_{name}"))?));
-        let [error, reference] = [format!("error.{name}"), format!("error.reference_{name}")].map(|path| value(&path));
-        Some((relative, format!("{} J^½ of {}", short(error?, 4), short(reference?, 4))))
+        let norm = value("error.energy")?.sqrt();
+        Some((
+            relative,
+            format!(
+                "{} of {} {}",
+                short(value(&format!("error.{absolute}"))?, 4),
+                short(norm, 4),
+                document.unit("J^½")
+            ),
+        ))
     };
     let step = || {
         let (step, critical) = (value("time_step")?, value("critical_time_step")?);
         Some((trimmed(step / critical, 3), format!("longest Δt = {}", si("s", step))))
     };
     let force = || {
-        let (force, time) = (value("contact.peak_normal_force")?, value("contact.time_of_peak")?);
-        Some((si("N", force), format!("at {}", si("s", time))))
+        let (force, time) = (value("contact.averaged_peak.force")?, value("contact.averaged_peak.time")?);
+        Some((si(document.unit("N"), force), format!("at {}", si("s", time))))
     };
     let residual = || {
         let at_most = value("largest_residual.value")?;
@@ -112,10 +120,10 @@ fn tiles(document: &Document) -> String {
     };
     let time = value("time_of_sup").map_or(String::new(), |time| format!(", at {}", si("s", time)));
     let all = [
-        ("Largest error e_sup", error("sup").map(|(big, small)| (big, small + &time))),
-        ("Mean error e_mean", error("mean")),
+        ("Largest error e_sup", error("sup", "sup").map(|(big, small)| (big, small + &time))),
+        ("Mean error from the touch", error("mean", "mean_from_touch")),
         ("Step over Δt_c", step()),
-        ("Peak contact force", force()),
+        ("Averaged peak contact force", force()),
         ("Restitution", rebound()),
         ("Drift of the energy", drift()),
         ("Largest residual", residual()),

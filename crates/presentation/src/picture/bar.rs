@@ -26,7 +26,16 @@ pub(super) fn draw(svg: &mut Svg, body: &Body, document: &Document, top: f64, ma
     let y = Scale::linear(0.0, most * (1.0 + ROOM));
     let plot = Plot { corner: [AXIS_LEFT, top], size: PLOT, x, y };
     let label = format!("x ({unit})");
-    plot.axes(svg, &Look { x: &label, y: "e_E (J^½)", marks: [8, 6], whole: false, grid: [true, false] });
+    plot.axes(
+        svg,
+        &Look {
+            x: &label,
+            y: &format!("e_E ({})", document.unit("J^½")),
+            marks: [8, 6],
+            whole: false,
+            grid: [true, false],
+        },
+    );
     let pieces = pieces(body, &values);
     let at = |x: f64, value: f64| plot.at(x * factor, value);
     for &(a, b, value) in &pieces {

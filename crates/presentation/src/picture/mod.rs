@@ -90,13 +90,14 @@ impl<'a> Shown<'a> {
 /// Two lines: the error of the whole, and the subject of the picture.
 fn head(svg: &mut Svg, document: &Document) {
     let number = |path: &str| document.number(path).unwrap_or(f64::NAN);
+    let norm = document.unit("J^½");
     let (error, relative) = (short(number("error.sup"), 4), percent(number("error.relative_sup")));
-    let title = format!("Constitutive relation error {error} J^½ ({relative})");
+    let title = format!("Constitutive relation error {error} {norm} ({relative})");
     let cut = if document.flag("interrupted") { " (interrupted)" } else { "" };
     let name = document.name();
     let name = if name.is_empty() { name } else { name + ": " };
     let line = format!(
-        "{name}contribution of each element up to t = {}{cut}; mean error {} J^½",
+        "{name}contribution of each element up to t = {}{cut}; mean error {} {norm}",
         quantity(number("end"), "s", 4),
         short(number("error.mean"), 4)
     );

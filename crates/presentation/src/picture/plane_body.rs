@@ -78,7 +78,7 @@ pub(super) fn draw(svg: &mut Svg, shown: &Shown<'_>, elements: Elements, marked:
     marks(svg, &places.collect::<Vec<_>>());
     let bar = [AXIS_LEFT + size[0] + SCALE[0], top];
     let less = values.iter().any(|&value| value < colours.low);
-    colour_bar(svg, bar, [SCALE[1], size[1]], &colours, ("e_E (J^½)", less));
+    colour_bar(svg, bar, [SCALE[1], size[1]], &colours, (&format!("e_E ({})", document.unit("J^½")), less));
 }
 
 /// Draws the outline, seen on dark and on light elements, and says above the plot what it is.

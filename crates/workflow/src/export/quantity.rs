@@ -60,7 +60,9 @@ pub(super) struct Rows<'a, const D: usize, const N: usize> {
 
 impl<const D: usize, const N: usize> Rows<'_, D, N> {
     pub(super) fn fields(&self) -> Vec<ExportField> {
-        self.quantities.iter().map(|quantity| quantity.field()).collect()
+        let units = self.problem.units();
+        let fields = self.quantities.iter().map(|quantity| quantity.field());
+        fields.map(|field| ExportField { unit: units.of(field.unit), ..field }).collect()
     }
 
     /// Whether steps must have their velocity and acceleration.

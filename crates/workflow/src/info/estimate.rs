@@ -3,7 +3,7 @@
 use super::{Info, writer};
 use crate::message::{bytes, counted, short, trimmed};
 use crate::report::summary::counts;
-use crate::report::{FORMAT, Versions};
+use crate::report::{FORMAT, Versions, units_of};
 use percute_io::Provenance;
 use percute_io::estimate_file::EstimateFile;
 use serde::Serialize;
@@ -57,7 +57,8 @@ impl EstimateInfo {
         lines.push(("holds", "the error over time and of each element;".to_string()));
         lines.push(("", self.maps()));
         if let [Some(sup), Some(mean)] = ["sup", "mean"].map(|key| self.report["error"][key].as_f64()) {
-            lines.push(("error", format!("sup {} J^½, mean {} J^½", short(sup, 4), short(mean, 4))));
+            let norm = units_of(&self.report).of("J^½");
+            lines.push(("error", format!("sup {} {norm}, mean {} {norm}", short(sup, 4), short(mean, 4))));
         }
         let uses = "percute report writes its page, percute plot draws it, percute.open reads it in Python";
         lines.push(("use", uses.to_string()));

@@ -1,7 +1,7 @@
 //! What contact did, for the report: resultants at every step, and what each node went through, but not all nodes at
 //! all steps, which may be millions.
 
-use percute_core::contact::{ContactResults, Nearest, NodeSummary, Resultant};
+use percute_core::contact::{AveragedPeak, ContactResults, Nearest, NodeSummary, Resultant};
 use serde::Serialize;
 
 /// The gap that is left where nothing has touched.
@@ -15,16 +15,26 @@ pub struct NearestNode {
     pub touch: Option<f64>,
 }
 
+/// The largest contact force, averaged over the time in which a wave crosses the struck element.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PeakForce {
+    /// The largest sum of the normal forces of all nodes (N).
+    pub force: f64,
+    /// Its instant (s), at the end of the average.
+    pub time: f64,
+    /// The largest pressure of a node (Pa).
+    pub pressure: f64,
+    /// This node.
+    pub node: usize,
+}
+
 /// What contact did.
 #[derive(Clone, Debug, Serialize)]
 #[allow(missing_docs)]
 pub struct ContactReport {
     pub first_touch: Option<f64>,
     pub nearest: Option<NearestNode>,
-    pub peak_normal_force: f64,
-    pub time_of_peak: Option<f64>,
-    pub peak_pressure: f64,
-    pub node_of_peak_pressure: Option<usize>,
+    pub averaged_peak: Option<PeakForce>,
     pub time: Vec<f64>,
     pub total: ContactResultants,
     pub obstacles: Vec<ContactResultants>,
@@ -68,7 +78,6 @@ impl ContactReport {
         if results.obstacles.is_empty() {
             return None;
         }
-        let (peak, pressed) = (results.peak(), results.most_pressed());
         Some(Self {
             first_touch: results.first_touch(),
             nearest: results.nearest.map(|Nearest { at, gap, touch }| NearestNode {
@@ -76,10 +85,12 @@ impl ContactReport {
                 gap,
                 touch,
             }),
-            peak_normal_force: peak.map_or(0.0, |n| results.total[n].normal_force),
-            time_of_peak: peak.map(|n| results.instants[n]),
-            peak_pressure: pressed.map_or(0.0, |at| results.summary[at].peak_pressure),
-            node_of_peak_pressure: pressed.map(|at| results.nodes[at].node.index()),
+            averaged_peak: results.averaged_peak.map(|AveragedPeak { force, time, pressure, at }| PeakForce {
+                force,
+                time,
+                pressure,
+                node: results.nodes[at].node.index(),
+            }),
             time: results.instants.clone(),
             total: ContactResultants::new(&results.total),
             obstacles: results.obstacles.iter().map(|over_time| ContactResultants::new(over_time)).collect(),

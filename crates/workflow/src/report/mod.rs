@@ -22,7 +22,7 @@ mod warnings;
 
 pub use build::warnings_of;
 pub use columns::{Columns, ENERGIES, EnergiesOverTime, Named, PARTS, SOURCES};
-pub use contact::{ContactNodes, ContactReport, ContactResultants, NearestNode};
+pub use contact::{ContactNodes, ContactReport, ContactResultants, NearestNode, PeakForce};
 pub use impacts::{BodyMotion, Impacts, InterfaceRebound};
 pub use meaning::meaning;
 pub use poor::PoorElement;
@@ -45,11 +45,12 @@ use percute_core::contact::ContactResults;
 use percute_core::dynamics::{Balance, Simulation};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use percute_core::units::Units;
 use percute_estimator::{ErrorMeasures, Estimate, Given, Options, Parts, Residuals, Sample};
 use serde::Serialize;
 
 /// Number of the layout of the JSON document; it grows when a key changes its meaning or goes.
-pub(crate) const FORMAT: u32 = 2;
+pub const FORMAT: u32 = 3;
 /// Residuals above this mean that a field is not admissible.
 pub(crate) const ADMISSIBLE: f64 = 1e-10;
 
@@ -156,6 +157,7 @@ pub struct ProblemSummary {
     pub reoriented_elements: usize,
     pub lower_corner: Vec<f64>,
     pub upper_corner: Vec<f64>,
+    pub per_metre: bool,
     pub mass: f64,
     pub wave_speed: f64,
     pub materials: usize,
@@ -195,6 +197,25 @@ pub struct LargestResidual {
     pub admissible: bool,
 }
 
+/// Units of forces and energies in a document; those of the body in documents of earlier versions.
+#[must_use]
+pub fn units_of(document: &serde_json::Value) -> Units {
+    Units { per_metre: document["problem"]["per_metre"].as_bool().unwrap_or_default() }
+}
+
+/// The same of the text of a document; those of the body in one of another program.
+#[must_use]
+pub fn units_in(text: &str) -> Units {
+    units_of(&serde_json::from_str(text).unwrap_or_default())
+}
+
+impl ProblemSummary {
+    /// Units of forces, energies and masses.
+    pub(crate) fn units(&self) -> Units {
+        Units { per_metre: self.per_metre }
+    }
+}
+
 impl Versions {
     pub(crate) fn of_this_program() -> Self {
         let (architecture, system) = (std::env::consts::ARCH, std::env::consts::OS);
@@ -209,10 +230,13 @@ impl Report {
     /// As [`Report::to_json`].
     pub fn verdict_to_json(&self) -> Result<String, std::io::Error> {
         let Self { verdict, rebound, impacts, sliding, deformation, warnings, .. } = self;
-        let nearest = self.contact.as_ref().and_then(|contact| contact.nearest);
+        let contact = self.contact.as_ref();
+        let (nearest, peak) = (contact.and_then(|c| c.nearest), contact.and_then(|c| c.averaged_peak));
         let document = serde_json::json!({
             "verdict": verdict, "rebound": rebound, "impacts": impacts, "sliding": sliding,
-            "contact": { "nearest": nearest }, "deformation": deformation, "warnings": warnings,
+            "problem": { "per_metre": self.problem.per_metre },
+            "contact": { "nearest": nearest, "averaged_peak": peak },
+            "deformation": deformation, "warnings": warnings,
         });
         serde_json::to_string(&document).map_err(std::io::Error::from)
     }

@@ -30,7 +30,7 @@ pub fn simulated<const D: usize, const N: usize>(
         ("body", body(&problem_summary(subject))),
         ("time", time),
         ("", step(times.longest_step(), subject.critical_step)),
-        ("energy", energy(balance)),
+        ("energy", energy(balance, subject.problem.units())),
         ("drift", drift(balance)),
         ("history", format!("{}, {size}", file.display())),
     ])

@@ -4,6 +4,7 @@ use super::{ADMISSIBLE, InterfaceRebound, NearestNode, ProblemSummary, Rebound, 
 use crate::foreign::Consistency;
 use crate::message::{counted, percent, printable, short, trimmed, whole_percent};
 use percute_core::dynamics::Balance;
+use percute_core::units::Units;
 use percute_estimator::Sampling;
 
 /// Nature of the error, in a line.
@@ -145,14 +146,16 @@ fn time(report: &Report) -> String {
 }
 
 fn error(report: &Report) -> Vec<(&'static str, String)> {
-    let measure = |name: &str, value: f64, relative: f64, reference: f64| {
-        let (value, reference) = (short(value, 4), short(reference, 4));
-        format!("{name:<5}{value:>10} J^½  {:>8} of the reference {reference}", percent(relative))
+    let (e, units) = (&report.error, report.problem.units());
+    let [norm, joule] = ["J^½", "J"].map(|unit| units.of(unit));
+    let measure = |name: &str, value: f64, relative: f64| {
+        format!("{name:<5}{:>8} {norm}  {:>7}", short(value, 4), percent(relative))
     };
-    let e = &report.error;
+    let (energy, [stress, velocity]) =
+        (short(e.energy, 4), [e.relative_stress_mean, e.relative_velocity_mean].map(percent));
     vec![
-        ("error", measure("sup", e.sup, e.relative_sup, e.reference_sup)),
-        ("", measure("mean", e.mean, e.relative_mean, e.reference_mean)),
+        ("error", measure("sup", e.sup, e.relative_sup) + &format!(" of √{energy} {joule}")),
+        ("", measure("mean", e.mean_from_touch, e.relative_mean) + &format!("; stress {stress}, velocity {velocity}")),
     ]
 }
 
@@ -172,15 +175,17 @@ fn result(report: &Report) -> String {
     }
     let (sup, time) = (short(e.sup, 4), trimmed(report.time_of_sup, 5));
     let [at_most, mean] = [e.relative_sup, e.relative_mean].map(percent);
+    let norm = report.problem.units().of("J^½");
     let touched = report.contact.as_ref().is_none_or(|contact| contact.nearest.is_none());
     let nothing = if touched { "" } else { "nothing touched: " };
-    format!("{nothing}sup {at_most} ({sup} J^½ at {time} s), mean {mean}")
+    format!("{nothing}sup {at_most} ({sup} {norm} at {time} s), mean {mean}")
 }
 
 fn worst_elements(report: &Report) -> Vec<(&'static str, String)> {
+    let norm = report.problem.units().of("J^½");
     let line = |(i, worst): (usize, &super::WorstElement)| {
         let centroid = worst.centroid.iter().map(|&x| short(x, 3)).collect::<Vec<_>>().join(", ");
-        let value = format!("element {:<8} {:>10} J^½  at ({centroid}) m", worst.element, short(worst.error, 4));
+        let value = format!("element {:<8} {:>10} {norm}  at ({centroid}) m", worst.element, short(worst.error, 4));
         (if i == 0 { "worst" } else { "" }, value)
     };
     // The document and the picture have more.
@@ -188,20 +193,20 @@ fn worst_elements(report: &Report) -> Vec<(&'static str, String)> {
 }
 
 fn balance(report: &Report) -> Vec<(&'static str, String)> {
-    let b = &report.balance;
+    let (b, joule) = (&report.balance, report.problem.units().of("J"));
     let [loads, supports, contact, friction] =
         [b.work_of_loads, b.work_of_supports, b.work_of_contact, b.friction].map(|x| short(x, 4));
     vec![
-        ("energy", energy(b)),
-        ("work", format!("loads {loads}, supports {supports}, contact {contact}, friction {friction} J")),
+        ("energy", energy(b, report.problem.units())),
+        ("work", format!("loads {loads}, supports {supports}, contact {contact}, friction {friction} {joule}")),
         ("drift", drift(b)),
     ]
 }
 
 /// Energies at the start and now.
-pub(crate) fn energy(balance: &Balance) -> String {
+pub(crate) fn energy(balance: &Balance, units: Units) -> String {
     let [initial, kinetic, strain] = [balance.initial, balance.kinetic, balance.strain].map(|x| short(x, 4));
-    format!("initial {initial}, now kinetic {kinetic}, strain {strain} J")
+    format!("initial {initial}, now kinetic {kinetic}, strain {strain} {}", units.of("J"))
 }
 
 /// Drifts of the two balances.
@@ -227,13 +232,14 @@ fn kept_impulse(report: &Report) -> Option<String> {
     (kept != percent(1.0)).then(|| format!("{kept} of the contact impulse kept by the admissible force"))
 }
 
-/// When it began, and its largest force and pressure; nothing without planes, nor without contact, which is said
-/// already.
+/// When it began, and its largest force and pressure, averaged over the time in which a wave crosses the struck
+/// element; nothing without planes, nor without contact, which is said already.
 fn contact(report: &Report) -> Option<String> {
     let contact = report.contact.as_ref()?;
-    let (first, peak) = (contact.first_touch?, contact.time_of_peak?);
-    let [force, pressure] = [contact.peak_normal_force, contact.peak_pressure].map(|x| short(x, 4));
-    Some(format!("from {} s, peak {force} N at {} s, pressure {pressure} Pa", trimmed(first, 4), trimmed(peak, 4)))
+    let (first, peak) = (trimmed(contact.first_touch?, 4), contact.averaged_peak?);
+    let ([force, pressure], time) = ([peak.force, peak.pressure].map(|x| short(x, 4)), trimmed(peak.time, 4));
+    let newton = report.problem.units().of("N");
+    Some(format!("from {first} s, averaged peak {force} {newton} at {time} s, {pressure} Pa"))
 }
 
 /// Velocities before and after contact, along the normal.

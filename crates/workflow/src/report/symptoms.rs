@@ -68,7 +68,7 @@ pub(super) fn symptoms(facts: &Facts<'_>) -> impl Iterator<Item = Symptom> {
         drift(facts.drift, facts.steps_vary),
         given(facts.contact_energy),
         given_to_auxiliary(facts.auxiliary_contact_energy),
-        relative_error(facts.relative),
+        relative_error(facts.published_relative),
         flat_elements(facts),
         kept_impulse(facts),
         no_contact(facts),
@@ -146,11 +146,16 @@ fn relative_error(relative: [f64; 2]) -> Option<Symptom> {
     }
     let shown = percent(largest);
     let figure = format!(
-        "the relative error is {shown}: fields that have nothing in common have 70.7 % (1/√2), whatever their true \
-         error"
+        "the error is {shown} of the sum of both fields [22]: fields that have nothing in common have 70.7 % (1/√2), \
+         whatever their true error"
     );
     let remedy = "refine the mesh, and look for elements that are nearly flat";
-    symptom("relative_error", format!("relative error {shown}, near its ceiling of 71 %"), figure, remedy)
+    symptom(
+        "relative_error",
+        format!("error {shown} of the sum of both fields, near its ceiling of 71 %"),
+        figure,
+        remedy,
+    )
 }
 
 fn flat_elements(facts: &Facts<'_>) -> Option<Symptom> {

@@ -34,7 +34,7 @@ pub(super) struct Facts<'a> {
     /// Work of contact without friction, over the larger of the first and the last energy.
     pub(super) contact_energy: f64,
     /// The largest relative error and the mean.
-    pub(super) relative: [f64; 2],
+    pub(super) published_relative: [f64; 2],
     /// Whether the steps have different lengths.
     pub(super) steps_vary: bool,
     pub(super) interrupted: bool,

@@ -5,6 +5,7 @@ use crate::info::memory;
 use crate::report::Report;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use percute_core::units::Units;
 use percute_estimator::Options;
 use percute_estimator::reference::TrueError;
 use serde::Serialize;
@@ -26,8 +27,9 @@ pub struct Level {
     pub effectivity: Option<Measures>,
     /// Range of this index that the verdict states, if it states one.
     pub expected: Option<[f64; 2]>,
-    /// Largest normal force of all nodes together (N).
-    pub peak_force: Option<f64>,
+    /// Largest normal force of all nodes together (N), averaged over the time in which a wave crosses the struck
+    /// element.
+    pub averaged_peak_force: Option<f64>,
     /// Normal impulse of all planes (N s).
     pub impulse: Option<f64>,
     /// Normal velocity of the centre of mass after contact (m/s); none without a coefficient of restitution.
@@ -35,6 +37,9 @@ pub struct Level {
     /// Whether the estimate is zero to rounding.
     #[serde(skip)]
     pub(super) exact: bool,
+    /// Whether forces and energies are per metre of thickness.
+    #[serde(skip)]
+    per_metre: bool,
 }
 
 /// The largest error and the mean.
@@ -53,7 +58,7 @@ pub struct Orders {
     /// Of the mean estimate: from the two finest meshes.
     pub estimate: Option<f64>,
     /// Of the largest force: from the differences of the three finest meshes, like the rest.
-    pub peak_force: Option<f64>,
+    pub averaged_peak_force: Option<f64>,
     /// Of the impulse.
     pub impulse: Option<f64>,
     /// Of the velocity after contact.
@@ -71,6 +76,8 @@ pub struct Verification {
     pub settled: Option<Settled>,
     /// Whether the work was stopped before all levels were done.
     pub interrupted: bool,
+    /// Whether forces and energies are per metre of thickness.
+    pub per_metre: bool,
 }
 
 /// The work of a verification.
@@ -143,7 +150,7 @@ impl Level {
             error: None,
             effectivity: None,
             expected: report.verdict.effectivity,
-            peak_force: contact.map(|contact| contact.peak_normal_force),
+            averaged_peak_force: contact.and_then(|contact| Some(contact.averaged_peak?.force)),
             impulse: contact.map(|contact| contact.obstacles.iter().zip(&report.problem.obstacles).map(impulse).sum()),
             rebound: report
                 .rebound
@@ -151,6 +158,7 @@ impl Level {
                 .filter(|found| found.restitution.is_some())
                 .and_then(|found| found.normal_after),
             exact: e.is_zero(),
+            per_metre: report.problem.per_metre,
         }
     }
 
@@ -170,15 +178,22 @@ impl Verification {
         let estimates: Vec<f64> = estimates.take(2).collect();
         let orders = Orders {
             estimate: estimates.get(1).and_then(|coarse| order(*coarse, estimates[0])),
-            peak_force: of(|level| level.peak_force),
+            averaged_peak_force: of(|level| level.averaged_peak_force),
             impulse: of(|level| level.impulse),
             rebound: of(|level| level.rebound),
         };
-        Self { levels, orders, settled, interrupted }
+        let per_metre = levels.first().is_some_and(|level| level.per_metre);
+        Self { levels, orders, settled, interrupted, per_metre }
     }
 }
 
 impl Verification {
+    /// Units of forces and energies.
+    #[must_use]
+    pub fn units(&self) -> Units {
+        Units { per_metre: self.per_metre }
+    }
+
     /// The verification as a JSON document.
     ///
     /// # Errors

@@ -22,10 +22,10 @@ pub fn table(verification: &Verification) -> String {
     if verification.levels.is_empty() {
         return "Interrupted before the first mesh was done: there is nothing to compare.\n".to_string();
     }
-    let head = ["elements", "steps", "est. mean", "true mean", "index sup", "mean", "peak N", "impulse", "rebound"];
+    let head = ["elements", "steps", "est. mean", "true mean", "index sup", "mean", "peak", "impulse", "rebound"];
     let mut lines = vec![row(&head.map(str::to_string))];
     lines.extend(verification.levels.iter().map(|level| row(&cells(level))));
-    let Orders { estimate, peak_force, impulse, rebound } = verification.orders;
+    let Orders { estimate, averaged_peak_force, impulse, rebound } = verification.orders;
     let order = |order: Option<f64>| order.map_or_else(|| "–".to_string(), |p| format!("h^{p:.1}"));
     let blank = String::new;
     lines.push(row(&[
@@ -35,13 +35,13 @@ pub fn table(verification: &Verification) -> String {
         blank(),
         blank(),
         blank(),
-        order(peak_force),
+        order(averaged_peak_force),
         order(impulse),
         order(rebound),
     ]));
-    lines.push(
-        "Errors in J^½, impulse in N s, rebound in m/s; the true error is that against the finest mesh.".to_string(),
-    );
+    let [energy, force, impulse] = ["J^½", "N", "N s"].map(|unit| verification.units().of(unit));
+    lines.push(format!("Errors in {energy}, averaged peak force in {force}, impulse in {impulse}, rebound in m/s;"));
+    lines.push("the true error is that against the finest mesh.".to_string());
     lines.extend(expected(verification));
     lines.push(conclusion(verification));
     lines.join("\n") + "\n"
@@ -58,7 +58,7 @@ fn cells(level: &Level) -> [String; 9] {
         number(level.error.map(|e| e.mean)),
         index(effectivity.map(|e| e.sup)),
         index(effectivity.map(|e| e.mean)),
-        number(level.peak_force),
+        number(level.averaged_peak_force),
         number(level.impulse),
         number(level.rebound),
     ]

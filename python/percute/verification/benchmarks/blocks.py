@@ -113,7 +113,7 @@ def patch(stop: Stop | None = None) -> Outcome:
     history = Trial("patch", stop).history
     quantities, run = [], []
     for choice in PLANE_CHOICES:
-        run.append(pc.estimate(history, every=1, **choice, threads=1, progress=stop).relative_sup)
+        run.append(pc.estimate(history, every=1, **choice, threads=1, progress=stop).published_relative_sup)
         name = f"relative error, `{choice['reconstruction']}`, `{choice['acceleration']}`"
         quantities.append(Quantity(name, "", 0.0, ROUNDING, bound=1e-10))
     return Outcome(filled(quantities, [run]))
@@ -132,4 +132,4 @@ def patch_contact(stop: Stop | None = None) -> Outcome:
         Quantity("relative elastic error, `corrected`", "", 0.0, ROUNDING, bound=1e-10),
         Quantity("relative error, `corrected`", "", 0.0, COMPLEMENTARITY, bound=1e-7),
     ]
-    return Outcome(filled(quantities, [[*furthest, elastic, estimate.relative_sup]]))
+    return Outcome(filled(quantities, [[*furthest, elastic, estimate.published_relative_sup]]))

@@ -5,11 +5,13 @@
 //! are therefore those of R_n and of this step: a node is in contact at t_n if and only if it touches at t_{n+1}. Gap
 //! and position are those of u_n. At the last t_n before the first touch the node has both a force and a gap.
 
+mod averaged;
 mod nearest;
 mod recorder;
 mod resultant;
 mod summary;
 
+pub use averaged::{AveragedPeak, stopping_times};
 pub use nearest::Nearest;
 pub use recorder::{ContactMemoryError, ContactRecorder};
 pub use resultant::Resultant;
@@ -45,6 +47,8 @@ pub struct ContactResults<const D: usize> {
     /// act, or by which a side leans on which a corner of the slave acts (rad): forces have the direction of the
     /// normal.
     pub lean: f64,
+    /// The largest force, averaged over the time in which a wave crosses the struck element; none without force.
+    pub averaged_peak: Option<AveragedPeak>,
     /// The gap that is left where nothing has touched; none without contact surface, or after any touch or force.
     pub nearest: Option<Nearest>,
     /// All nodes at all instants, if requested.

@@ -1,5 +1,6 @@
 //! Contact results of the steps of a run or a history.
 
+use super::averaged::Averages;
 use super::nearest::Gaps;
 use super::resultant::{Share, Sum};
 use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
@@ -41,6 +42,7 @@ pub struct ContactRecorder<'p, const D: usize, const N: usize> {
     shortest: Vec<f64>,
     leaning: Leaning<'p, D>,
     gaps: Gaps,
+    averages: Averages,
     results: ContactResults<D>,
 }
 
@@ -68,15 +70,16 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             depth: 0.0,
             at_end: false,
             lean: 0.0,
+            averaged_peak: None,
             nearest: None,
             steps: None,
             nodes,
         };
         let (laws, now) = (TangentialLaw::of_surface(problem), vec![start; results.nodes.len()]);
         let facing = problem.surface().facing(problem.initial_displacement());
-        let (shortest, gaps) = (shortest_edges(problem), Gaps::default());
+        let (shortest, gaps, averages) = (shortest_edges(problem), Gaps::default(), Averages::new(problem));
         let leaning = Leaning::new(problem.surface(), problem.mesh(), problem.on_lines_of_symmetry());
-        Self { problem, times, laws, now, facing, shortest, leaning, gaps, results }
+        Self { problem, times, laws, now, facing, shortest, leaning, gaps, averages, results }
     }
 
     /// Keeps all nodes at all instants too.
@@ -96,7 +99,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
     /// What contact did at the steps taken.
     #[must_use]
     pub fn finish(self) -> ContactResults<D> {
-        ContactResults { nearest: self.gaps.nearest(), ..self.results }
+        ContactResults { nearest: self.gaps.nearest(), averaged_peak: self.averages.peak(), ..self.results }
     }
 
     /// The normal force of each obstacle (N) up to which its nodes are free.
@@ -200,15 +203,21 @@ impl<const D: usize, const N: usize> ContactRecorder<'_, D, N> {
         self.facing.update(step.displacement);
         self.gap_left(step);
         let least = self.least_forces(step);
+        let length = self.times.velocity_step(step.index);
+        let over = [self.times.instants()[step.index] + 0.5 * self.times.step(step.index), length];
+        let mut averaged = 0.0;
         for at in 0..self.now.len() {
             let obstacle = self.results.nodes[at].obstacle;
             let share = self.node(at, step, least[obstacle]);
             sums[obstacle].add(&share);
             // Two bodies that touch have one contact, that of the first one.
+            let average = self.averages.node(at, over, share.normal_force, share.area);
             if self.problem.surface().is_of_first(at) {
                 total.add(&share);
+                averaged += average;
             }
         }
+        self.averages.sum(step.time, averaged);
         self.results.lean = self.lean();
         let dt = if step.index == 0 { 0.0 } else { self.times.step(step.index - 1) };
         for (sum, over_time) in sums.into_iter().zip(&mut self.results.obstacles) {

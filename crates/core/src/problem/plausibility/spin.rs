@@ -2,7 +2,7 @@
 
 use super::{PlausibilityWarning, at, plausibility_warning};
 use crate::message::short;
-use crate::problem::{Levers, Problem};
+use crate::problem::{Problem, RigidMotion};
 use crate::time::TimeGrid;
 
 /// Rotations up to this (rad) are small. A straight path ωt in place of an arc makes a body larger by θ²/2, here
@@ -14,7 +14,7 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
 ) -> Option<PlausibilityWarning> {
-    let (mesh, spins) = (problem.mesh(), Levers::new(problem).rotations(problem.initial_velocity()));
+    let (mesh, spins) = (problem.mesh(), RigidMotion::new(problem).rotations(problem.initial_velocity()));
     let of_node = mesh.part_numbers();
     let mut held = vec![false; spins.len()];
     problem.prescribed().iter().for_each(|prescribed| held[of_node[prescribed.node.index()]] = true);

@@ -7,8 +7,7 @@
 //! that follows. Of two nodes that touch, the mass is 1/(1/m + 1/m'), and 1/(ρc) the sum of both. Steps as long as τ
 //! change nothing; on a uniform bar these are steps from half the critical one on.
 
-use percute_core::ids::ElementId;
-use percute_core::material::Law;
+use percute_core::contact::stopping_times;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::collections::VecDeque;
@@ -46,22 +45,8 @@ struct Pending<const D: usize> {
 
 impl<const D: usize> ImpulseSmoothing<D> {
     pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
-        let (mesh, nodes) = (problem.mesh(), problem.surface().nodes());
-        // ρcℓ.
-        let mut impedance = vec![0.0; nodes.len()];
-        for facet in problem.surface().facets() {
-            let owner: ElementId = mesh.facets()[facet.facet.index()].owner;
-            let law = problem.material(owner);
-            facet.nodes.iter().for_each(|&k| impedance[k] += law.density() * law.wave_speed() * facet.area / D as f64);
-        }
-        let time = |at: usize| {
-            let mass = problem.surface().moved_mass(at, problem.mass());
-            match nodes[at].opposite {
-                Some(opposite) => mass * (1.0 / impedance[at] + 1.0 / impedance[opposite]),
-                None => mass / impedance[at],
-            }
-        };
-        Self { time: (0..nodes.len()).map(time).collect(), pending: vec![VecDeque::new(); nodes.len()] }
+        let time = stopping_times(problem);
+        Self { pending: vec![VecDeque::new(); time.len()], time }
     }
 
     /// The time τ of a node (s).

@@ -5,6 +5,7 @@ use crate::mesh::in_space;
 use crate::write::{numbers, unit};
 use hdf5::Group;
 use percute_core::contact::{ContactResults, ContactSteps};
+use percute_core::units::Units;
 
 /// Contact status of a node that is not on the contact surface.
 const OFF: i8 = -1;
@@ -14,12 +15,12 @@ const OFF: i8 = -1;
 pub(in crate::estimate_file) fn write_fields<const D: usize>(
     data: &Group,
     (results, steps): (&ContactResults<D>, &ContactSteps<D>),
-    nodes: usize,
+    (nodes, units): (usize, Units),
     at: &[usize],
 ) -> Result<Vec<&'static str>, FileCause> {
     let spread = Spread { results, nodes, at };
     let area = |row: usize| results.nodes[row % results.nodes.len()].area;
-    let vectors: [(&str, &str, Vec<[f64; D]>); 3] = [
+    let vectors: [(&str, &'static str, Vec<[f64; D]>); 3] = [
         ("contact_force", "N", spread.all([0.0; D], |row| steps.force[row])),
         ("contact_density", "Pa", spread.all([0.0; D], |row| steps.force[row].map(|f| f / area(row)))),
         ("sliding_velocity", "m/s", spread.all([0.0; D], |row| steps.sliding_velocity[row])),
@@ -30,10 +31,10 @@ pub(in crate::estimate_file) fn write_fields<const D: usize>(
     ];
     let rows = at.len() * nodes;
     for (name, of, values) in &vectors {
-        unit(&numbers(data, name, &[rows, 3], &in_space(values))?, of)?;
+        unit(&numbers(data, name, &[rows, 3], &in_space(values))?, units.of(of))?;
     }
     for (name, of, values) in &scalars {
-        unit(&numbers(data, name, &[rows], values)?, of)?;
+        unit(&numbers(data, name, &[rows], values)?, units.of(of))?;
     }
     numbers(data, "contact_status", &[rows], &spread.all(OFF, |row| steps.status[row] as i8))?;
     let names = vectors.iter().map(|v| v.0).chain(scalars.iter().map(|s| s.0));

@@ -10,7 +10,8 @@ pub use read::{AnyContact, contact};
 use crate::error::FileCause;
 use crate::write::{group, numbers, unit};
 use hdf5::Group;
-use percute_core::contact::{ContactResults, ContactSteps, Resultant};
+use percute_core::contact::{AveragedPeak, ContactResults, ContactSteps, Resultant};
+use percute_core::units::Units;
 
 /// Size of the results in a file (bytes), at `instants` of maps over `nodes` nodes.
 pub(super) fn bytes<const D: usize>(results: &ContactResults<D>, instants: usize, nodes: usize) -> usize {
@@ -25,14 +26,15 @@ pub(super) fn write<const D: usize>(
     ours: &Group,
     results: &ContactResults<D>,
     steps: &ContactSteps<D>,
+    units: Units,
 ) -> Result<(), FileCause> {
     let contact = group(ours, "contact")?;
     let (nodes, instants) = (results.nodes.len(), results.instants.len());
     numbers(&contact, "node", &[nodes], &integers(&results.nodes, |p| p.node.index()))?;
     numbers(&contact, "obstacle", &[nodes], &integers(&results.nodes, |p| p.obstacle))?;
-    let write = |name: &str, of: &str, shape: &[usize], values: &[f64]| -> Result<(), FileCause> {
+    let write = |name: &str, of: &'static str, shape: &[usize], values: &[f64]| -> Result<(), FileCause> {
         let set = numbers(&contact, name, shape, values)?;
-        if of.is_empty() { Ok(()) } else { unit(&set, of) }
+        if of.is_empty() { Ok(()) } else { unit(&set, units.of(of)) }
     };
     write("point", "m", &[nodes, D], &vectors(&results.nodes, |p| p.point))?;
     write("normal", "", &[nodes, D], &vectors(&results.nodes, |p| p.normal))?;
@@ -51,16 +53,22 @@ pub(super) fn write<const D: usize>(
     {
         write(name, of, &[1], &[value])?;
     }
+    if let Some(AveragedPeak { force, time, pressure, at }) = results.averaged_peak {
+        write("averaged_peak_force", "N", &[1], &[force])?;
+        write("time_of_averaged_peak", "s", &[1], &[time])?;
+        write("averaged_peak_pressure", "Pa", &[1], &[pressure])?;
+        write("place_of_averaged_peak_pressure", "", &[1], &[at as f64])?;
+    }
     write("force", "N", &[instants, nodes, D], steps.force.as_flattened())?;
     write("gap", "m", &[instants, nodes], &steps.gap)?;
     write("sliding_velocity", "m/s", &[instants, nodes, D], steps.sliding_velocity.as_flattened())?;
     let status: Vec<u8> = steps.status.iter().map(|s| *s as u8).collect();
     numbers(&contact, "status", &[instants, nodes], &status)?;
     write("friction_energy", "J", &[instants, nodes], &steps.friction_energy)?;
-    write_resultants(&group(&contact, "total")?, &results.total)?;
+    write_resultants(&group(&contact, "total")?, &results.total, units)?;
     let obstacles = group(&contact, "obstacles")?;
     for (at, over_time) in results.obstacles.iter().enumerate() {
-        write_resultants(&group(&obstacles, &at.to_string())?, over_time)?;
+        write_resultants(&group(&obstacles, &at.to_string())?, over_time, units)?;
     }
     Ok(())
 }
@@ -68,7 +76,7 @@ pub(super) fn write<const D: usize>(
 /// Name, unit, and the value of a resultant.
 type Named<const D: usize, T> = (&'static str, &'static str, fn(&Resultant<D>) -> T);
 
-fn write_resultants<const D: usize>(part: &Group, over_time: &[Resultant<D>]) -> Result<(), FileCause> {
+fn write_resultants<const D: usize>(part: &Group, over_time: &[Resultant<D>], units: Units) -> Result<(), FileCause> {
     let count = over_time.len();
     let scalars: [Named<D, f64>; 3] = [
         ("normal_force", "N", |r| r.normal_force),
@@ -76,7 +84,7 @@ fn write_resultants<const D: usize>(part: &Group, over_time: &[Resultant<D>]) ->
         ("friction_energy", "J", |r| r.friction_energy),
     ];
     for (name, of, take) in scalars {
-        unit(&numbers(part, name, &[count], &column(over_time, take))?, of)?;
+        unit(&numbers(part, name, &[count], &column(over_time, take))?, units.of(of))?;
     }
     let fields: [Named<D, [f64; D]>; 3] = [
         ("force", "N", |r| r.force),
@@ -84,7 +92,7 @@ fn write_resultants<const D: usize>(part: &Group, over_time: &[Resultant<D>]) ->
         ("centre", "m", |r| r.centre.unwrap_or([f64::NAN; D])),
     ];
     for (name, of, take) in fields {
-        unit(&numbers(part, name, &[count, D], &vectors(over_time, take))?, of)?;
+        unit(&numbers(part, name, &[count, D], &vectors(over_time, take))?, units.of(of))?;
     }
     numbers(part, "in_contact", &[count], &integers(over_time, |r| r.in_contact))?;
     numbers(part, "slipping", &[count], &integers(over_time, |r| r.slipping)).map(drop)

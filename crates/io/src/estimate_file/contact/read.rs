@@ -4,7 +4,9 @@ use crate::error::{FileCause, FileError};
 use crate::estimate_file::maps::size;
 use crate::kind::Kind;
 use crate::read::{Part, reading};
-use percute_core::contact::{ContactPoint, ContactResults, ContactSteps, Nearest, NodeSummary, Resultant, Status};
+use percute_core::contact::{
+    AveragedPeak, ContactPoint, ContactResults, ContactSteps, Nearest, NodeSummary, Resultant, Status,
+};
 use percute_core::ids::NodeId;
 use percute_core::simplex::ByDimension;
 use std::path::Path;
@@ -58,6 +60,7 @@ impl Reader<'_, '_> {
             depth: self.one("depth")?,
             at_end: self.one("at_end")? > 0.0,
             lean: self.one("lean")?,
+            averaged_peak: self.averaged_peak(count)?,
             nearest: Nearest::of_steps(&instants, &nodes, &summary, &steps),
             nodes,
             summary,
@@ -66,6 +69,19 @@ impl Reader<'_, '_> {
             steps: Some(steps),
             instants,
         })
+    }
+
+    /// The largest averaged force; none without force, and in files of earlier versions.
+    fn averaged_peak(&self, nodes: usize) -> Result<Option<AveragedPeak>, FileCause> {
+        let [force, time, pressure, at] = [
+            "averaged_peak_force",
+            "time_of_averaged_peak",
+            "averaged_peak_pressure",
+            "place_of_averaged_peak_pressure",
+        ]
+        .map(|name| self.one(name));
+        let (force, time, pressure, at) = (force?, time?, pressure?, at? as usize);
+        Ok((force > 0.0 && at < nodes).then_some(AveragedPeak { force, time, pressure, at }))
     }
 
     /// A number that is left out where it is 0.

@@ -11,7 +11,7 @@ use crate::report::poor::PoorElement;
 use crate::report::symptoms::{AUXILIARY_CONTACT_ENERGY, CONTACT_ENERGY, DRIFT, KEPT};
 use percute_core::contact::Nearest;
 
-/// A relative error above this is as large as the solution: it cannot exceed 1/√2 by much.
+/// A published relative error above this is as large as the solution: it cannot exceed 1/√2 by much.
 const AS_LARGE: f64 = 0.5;
 /// Less of the squared error is not told.
 const LEAST: f64 = 5e-3;
@@ -46,7 +46,7 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
             "contact gives the auxiliary solution {given} of the energy, and the estimate is probably too large"
         ));
     }
-    if facts.error.relative_mean > AS_LARGE {
+    if facts.error.published_relative_mean > AS_LARGE {
         doubts.push("the error is as large as the solution".to_string());
     }
     if !(KEPT[0]..=KEPT[1]).contains(&kept) {
