@@ -43,7 +43,7 @@ from percute.impacts import BodyMotion, Impacts, InterfaceRebound, SlidingEstima
 from percute.mesh import Mesh
 from percute.names import name_arguments as _name_arguments
 from percute.problem import Problem
-from percute.rebound import Rebound
+from percute.rebound import NextTouch, Rebound
 from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
 from percute.simulation import simulate, true_errors
 from percute.statement import BodyForce, Elastic, Plane, Support, Traction
@@ -58,6 +58,7 @@ __all__ = [
     "BodyForce",
     "BodyMotion",
     "Contact",
+    "ContactPeak",
     "ContactStatus",
     "Deformation",
     "Effectivity",
@@ -79,6 +80,7 @@ __all__ = [
     "MeshWarning",
     "MissingFileError",
     "Nearest",
+    "NextTouch",
     "OverTime",
     "Parts",
     "PercuteError",

@@ -33,6 +33,8 @@ class BodyDeformation:
     """The instant of this rotation (s)."""
     strain: Extreme
     """The principal strain of an element, in the plane, that is largest without its sign."""
+    angular_velocity: float = 0.0
+    """Its angular velocity at the last instant, counterclockwise (rad/s); 0 of a bar."""
 
 
 @dataclass(frozen=True, kw_only=True)

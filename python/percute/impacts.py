@@ -23,7 +23,9 @@ class BodyMotion:
     velocity_before: NDArray[np.float64]
     """V at the start (m/s), shape (dimension,)."""
     velocity_after: NDArray[np.float64] | None
-    """V at the last instant (m/s); None with supports or loads, which change it, too."""
+    """V at the last instant (m/s); None with supports or loads on the body, which change it, too."""
+    angular_velocity_after: float | None = None
+    """Its angular velocity there, counterclockwise (rad/s); None of a bar, or of a history."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -9,7 +9,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Rebound"]
+__all__ = ["NextTouch", "Rebound"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class NextTouch:
+    """The first point of a body in flight that would reach a plane."""
+
+    node: int
+    """Its node."""
+    plane: int
+    """The plane, its place in ``problem.obstacles``."""
+    time: float
+    """The instant (s)."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -41,6 +53,10 @@ class Rebound:
     """From the first touch to the release, or to the end of the run, with the flights between phases (s)."""
     ended: bool
     """Whether contact has ended."""
+    angular_velocity_after: float | None = None
+    """Angular velocity at the last instant, counterclockwise (rad/s); None if contact has not ended, of a bar, or of a history."""
+    touches_again: NextTouch | None = None
+    """The first point that would reach a plane again by turning, if the run went on, without loads; None of a history."""
 
     @classmethod
     def _of(cls, found: Mapping[str, Any] | None) -> Rebound | None:
@@ -48,7 +64,10 @@ class Rebound:
         if found is None:
             return None
         # Estimate files of earlier versions have no reason, and call the span time in contact.
-        found = {"no_restitution": None, "span": found["time_in_contact"], **found}
+        later = {"no_restitution": None, "angular_velocity_after": None, "touches_again": None}
+        found = {**later, "span": found["time_in_contact"], **found}
         after = found["velocity_after"]
         vectors = {"velocity_before": np.array(found["velocity_before"]), "velocity_after": None if after is None else np.array(after)}
+        again = found["touches_again"]
+        vectors["touches_again"] = None if again is None else NextTouch(**again)
         return cls(**{name: vectors.get(name, found[name]) for name in cls.__dataclass_fields__})

@@ -294,6 +294,27 @@ def test_impulses_give_the_motion_of_each_body(tmp_path: Path) -> None:
     assert loaded.interfaces[0].no_restitution == "supports or loads change the velocities, too"
 
 
+def test_a_free_body_has_a_restitution_where_the_other_one_is_held(tmp_path: Path) -> None:
+    """The anvil is fixed below: the velocity of the hammer alone counts."""
+    problem = blocks()
+    held = pc.Problem(
+        problem.mesh,
+        material=problem.material,
+        contacts=problem.contacts,
+        initial_velocity=problem.initial_velocity * (problem.initial_velocity < 0.0),
+        supports=[pc.Support(group="anvil.bottom", components=(True, True))],
+    )
+    history = pc.simulate(held, end=40e-6, courant=0.9)
+    impacts = history.impacts
+    assert impacts is not None
+    anvil, hammer = impacts.bodies
+    [interface] = impacts.interfaces
+    assert anvil.velocity_after is None and hammer.velocity_after is not None and interface.ended, interface
+    assert interface.restitution == pytest.approx(-hammer.velocity_after[1] / hammer.velocity_before[1], rel=1e-12)
+    estimated = pc.estimate(history).impacts
+    assert estimated is not None and estimated.bodies[1].angular_velocity_after is not None
+
+
 def test_bars_exchange_their_velocities() -> None:
     """A cradle: the first bar stops, the last one leaves. The bar in between has two contacts at once."""
     law = pc.Elastic(young=70e9, density=2700, section=1e-4)

@@ -187,3 +187,47 @@ def test_a_rebound_needs_a_plane_that_is_struck() -> None:
     with pytest.warns(pc.InputWarning) as told:
         pc.simulate(away, end="rebound", longest=3e-5, courant=0.9)
     assert any("has not touched a plane by 3e-5 s" in str(each.message) for each in told)
+
+
+def test_a_corner_that_would_hit_next_is_named_with_its_instant() -> None:
+    """A tilted block lands on a corner, and turns on to the next one: a longer run has that touch at the instant that is told."""
+    mesh = pc.Mesh.rectangle(0.06, 0.02, nx=6, ny=2).rotated(20.0)
+    gap = 1e-5
+    plane = pc.Plane(point=(0.0, float(mesh.points[:, 1].min()) - gap), normal=(0.0, 1.0), friction=0.0)
+    problem = pc.Problem(mesh, material=pc.Elastic(young=2e9, poisson=0.3, density=1200.0, plane="stress"), obstacles=[plane], initial_velocity=(0.0, -2.0))
+    history = pc.simulate(problem, end="rebound", longest=5e-3, courant=0.9)
+    with pytest.warns(pc.SimulationWarning, match="would reach plane_0 at"):
+        estimate = pc.estimate(history)
+    rebound = estimate.rebound
+    assert rebound is not None and rebound.touches_again is not None and rebound.restitution is not None
+    spin, again = rebound.angular_velocity_after, rebound.touches_again
+    # The impulse acts left of the centre of mass, and turns the block clockwise, towards its right corner.
+    assert spin is not None and spin < -10.0 and again.node == int(np.argmax(mesh.points[:, 0] - mesh.points[:, 1]))
+    assert history.rebound is not None and history.rebound.touches_again is None
+    longer = pc.simulate(problem, end=1.5 * again.time, courant=0.9)
+    touched = longer.time[1:][longer.touching[1:].any(axis=1)]
+    later = touched[touched > rebound.first_touch + rebound.span + 1e-4]
+    # The block vibrates by some per cent of the height that the corner falls through.
+    assert later[0] == pytest.approx(again.time, rel=0.05)
+    names = [each["name"] for each in json.loads(estimate.to_json())["warnings"]]
+    assert "touches_again" in names and estimate.rebound == estimate.rebound
+    assert f"turning at {spin:.3g} rad/s" in str(estimate).replace("\n          ", " ")
+
+
+def test_peak_force_does_not_depend_on_the_step() -> None:
+    """The raw force of a bar grows like one over the step; its average over the time in which a wave crosses the element is ρcvS."""
+    exact = pc.exact.BarImpact(**BAR)
+    plateau = BAR["density"] * exact.wave_speed * BAR["speed"] * BAR["section"]
+    mesh = pc.Mesh.bar(BAR["length"], elements=30)
+    material = pc.Elastic(young=BAR["young"], density=BAR["density"], section=BAR["section"])
+    problem = pc.Problem(mesh, material=material, obstacles=[pc.Plane(point=-BAR["gap"], normal=1.0)], initial_velocity=-BAR["speed"])
+    for courant in (0.9, 0.3, 0.1, 0.03):
+        history = pc.simulate(problem, end=2e-5, courant=courant)
+        peak = pc.estimate(history, every=10).contact_peak
+        assert peak is not None
+        raw = float(history.contact.resultants.normal_force.max())
+        # Above 1 by the oscillation of the lumped mass behind the front, 1.24 at most.
+        assert 1.0 - 1e-3 < peak.force / plateau < 1.25, (courant, peak)
+        assert peak.pressure == pytest.approx(peak.force / BAR["section"], rel=1e-12)
+        if courant < 0.2:
+            assert raw > 3.0 * plateau

@@ -12,8 +12,8 @@ use std::sync::Arc;
 pub(crate) fn rebound<const D: usize, const N: usize>(py: Python<'_>, run: &Arc<Run<D, N>>) -> PyResult<String> {
     let contact = contact::of_run(py, run)?;
     let balance = kept(py, run)?;
-    let rebound = Rebound::new(&run.problem, &balance, &contact);
-    let impacts = Impacts::new(&run.problem, &contact);
+    let rebound = Rebound::new(&run.problem, &balance, &contact, None);
+    let impacts = Impacts::new(&run.problem, &contact, None);
     rebound_to_json(rebound.as_ref(), impacts.as_ref()).map_err(|error| errors::percute_error(py, &error.to_string()))
 }
 

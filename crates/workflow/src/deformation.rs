@@ -1,6 +1,7 @@
 //! How far bodies strain and turn, and how far stress goes: strains and rotations are small by assumption, and the law
 //! is linear.
 
+use crate::flight::{NextTouch, next_touch};
 use percute_core::element_state::ElementState;
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::ids::ElementId;
@@ -20,6 +21,9 @@ pub struct Deformation {
     pub bodies: Vec<BodyDeformation>,
     /// The materials, in their order.
     pub materials: Vec<MaterialStress>,
+    /// The first point of a single body that would reach a plane by turning, if the run went on.
+    #[serde(skip)]
+    pub next_touch: Option<NextTouch>,
 }
 
 /// How far a body strains and turns.
@@ -31,6 +35,9 @@ pub struct BodyDeformation {
     pub rotation: f64,
     /// The instant of this rotation (s).
     pub time_of_rotation: f64,
+    /// Its angular velocity at the last instant, counterclockwise (rad/s), that of the rigid motion which fits best; 0 of
+    /// a bar.
+    pub angular_velocity: f64,
     /// The principal strain of an element, in the plane, that is largest without its sign.
     pub strain: Extreme,
 }
@@ -107,7 +114,13 @@ impl<'p, const D: usize, const N: usize> DeformationRecorder<'p, D, N> {
     pub(crate) fn new(problem: &'p Problem<D, N>, steps: usize) -> Self {
         let mesh = problem.mesh();
         let of_node = mesh.part_numbers();
-        let body = |name| BodyDeformation { name, rotation: 0.0, time_of_rotation: 0.0, strain: Extreme::default() };
+        let body = |name| BodyDeformation {
+            name,
+            rotation: 0.0,
+            time_of_rotation: 0.0,
+            angular_velocity: 0.0,
+            strain: Extreme::default(),
+        };
         let stated = &problem.statement().materials;
         let material = |(at, law): (usize, &Elastic)| MaterialStress {
             group: stated.get(at).and_then(|(group, _)| group.clone()),
@@ -118,6 +131,7 @@ impl<'p, const D: usize, const N: usize> DeformationRecorder<'p, D, N> {
         let found = Deformation {
             bodies: mesh.part_names().into_iter().map(body).collect(),
             materials: problem.materials().iter().enumerate().map(material).collect(),
+            next_touch: None,
         };
         let yields = problem.materials().iter().any(|law| law.yield_stress().is_some());
         Self {
@@ -171,6 +185,17 @@ impl<'p, const D: usize, const N: usize> DeformationRecorder<'p, D, N> {
         }
     }
 
+    /// The angular velocity of each body and, at the last instant, what would follow.
+    fn turning(&mut self, state: &State<'_, D>) {
+        let (step, velocity) = (state.step(), state.velocity());
+        for (body, spin) in self.found.bodies.iter_mut().zip(self.rigid.rotations(&velocity)) {
+            body.angular_velocity = spin;
+        }
+        if step.index == self.last {
+            self.found.next_touch = next_touch(self.problem, &self.rigid, step.time, [step.displacement, &velocity]);
+        }
+    }
+
     fn elements(&mut self, displacement: &[[f64; D]], time: f64) {
         let materials = self.problem.element_material();
         for element in 0..self.body_of_element.len() {
@@ -194,6 +219,7 @@ impl<const D: usize, const N: usize> StateSink<D> for DeformationRecorder<'_, D,
         if step.index.is_multiple_of(EVERY) || step.index == self.last {
             self.rotations(step.displacement, step.time);
             self.elements(step.displacement, step.time);
+            self.turning(state);
         }
         Ok(())
     }

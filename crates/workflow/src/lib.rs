@@ -9,6 +9,7 @@ mod difference;
 pub mod effort;
 pub mod export;
 mod failure;
+mod flight;
 pub mod foreign;
 pub mod grade;
 pub mod history;

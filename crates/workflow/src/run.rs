@@ -210,7 +210,10 @@ fn results<const D: usize, const N: usize>(
     contact: ContactResults<D>,
     (deformation, outline): Beside<'_, D, N>,
 ) -> Results<D> {
-    let deformation = deformation.finish(ordered.stated_problem().mesh(), |element| ordered.element(element));
+    let mut deformation = deformation.finish(ordered.stated_problem().mesh(), |element| ordered.element(element));
+    if let Some(touch) = &mut deformation.next_touch {
+        touch.node = ordered.node(touch.node);
+    }
     let (contact, outline) = (ordered.contact(contact), outline.finish(|node| ordered.node(node)));
     Results { simulation, estimate, contact, deformation, outline }
 }

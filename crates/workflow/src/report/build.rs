@@ -6,6 +6,7 @@ use super::found::found;
 use super::linearity::Linearity;
 use super::symptoms::auxiliary_contact_energy;
 use super::varying_steps::varying_steps;
+use super::verdict::NarrowContact;
 use super::warnings::{Facts, Warning, few_samples, reported};
 use super::{
     ADMISSIBLE, ContactReport, FORMAT, Findings, Impacts, LargestResidual, ObstacleSummary, ProblemSummary, Rebound,
@@ -74,7 +75,7 @@ impl Report {
             auxiliary_contact_energy: estimate.auxiliary_contact_energy,
             contact: ContactReport::new(contact),
             rebound,
-            impacts: Impacts::new(problem_of, contact),
+            impacts: Impacts::new(problem_of, contact, Some(deformation)),
             sliding: SlidingReport::all(problem_of, contact, &estimate.surfaces),
             deformation: deformation.clone(),
             over_time: Columns::new(estimate.over_time.clone(), PARTS),
@@ -96,7 +97,7 @@ fn judged<const D: usize, const N: usize>(
     let Subject { problem, times, critical_step, checked, .. } = *subject;
     let (courant, drift) = (times.longest_step() / critical_step, simulation.balance.energy_drift);
     let contact_energy = contact_energy(&simulation.balance, checked);
-    let rebound = Rebound::new(problem, &simulation.balance_over_time, contact);
+    let rebound = Rebound::new(problem, &simulation.balance_over_time, contact, Some(deformation));
     let rebounded = rebound.as_ref();
     let beside = verdict::Beside {
         options,
@@ -146,6 +147,9 @@ pub fn warnings_of<const D: usize, const N: usize>(
         touches: contact.total.iter().any(|sum| sum.force.iter().any(|f| *f != 0.0)),
         own_contacts: estimate.own_contacts,
         auxiliary_contact_energy: auxiliary_contact_energy(estimate, checked),
+        touches_again: Rebound::new(subject.problem, &simulation.balance_over_time, contact, Some(deformation))
+            .and_then(|rebound| rebound.touches_again),
+        narrow: NarrowContact::new(subject.problem, contact),
         slip: contact.slip,
         depth: contact.depth,
         common_slope: contact.lean.to_degrees(),

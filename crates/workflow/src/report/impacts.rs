@@ -1,6 +1,7 @@
 //! What contact did to several bodies: the velocity of each before and after, and the rebound at each interface.
 
 use super::rebound::time_of_phases;
+use crate::deformation::Deformation;
 use percute_core::contact::{ContactResults, Frame};
 use percute_core::problem::Problem;
 use serde::Serialize;
@@ -24,8 +25,10 @@ pub struct BodyMotion {
     pub mass: f64,
     /// V at the start (m/s).
     pub velocity_before: Vec<f64>,
-    /// V at the last instant (m/s); none with supports or loads, which change it, too.
+    /// V at the last instant (m/s); none with supports or loads on the body, which change it, too.
     pub velocity_after: Option<Vec<f64>>,
+    /// Its angular velocity there, counterclockwise (rad/s); none on a bar, or of a history alone.
+    pub angular_velocity_after: Option<f64>,
 }
 
 /// How two bodies come together and part: their relative velocity along the normal of the interface. Of several bodies
@@ -59,7 +62,11 @@ pub struct InterfaceRebound {
 impl Impacts {
     /// Those of a run; none without interfaces.
     #[must_use]
-    pub fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, contact: &ContactResults<D>) -> Option<Self> {
+    pub fn new<const D: usize, const N: usize>(
+        problem: &Problem<D, N>,
+        contact: &ContactResults<D>,
+        deformation: Option<&Deformation>,
+    ) -> Option<Self> {
         let interfaces = &problem.statement().interfaces;
         if interfaces.is_empty() {
             return None;
@@ -71,15 +78,41 @@ impl Impacts {
             mass: centres.mass[body],
             velocity_before: centres.start[body].to_vec(),
             velocity_after: centres.after[body].map(|v| v.to_vec()),
+            angular_velocity_after: deformation.filter(|_| D > 1).map(|all| all.bodies[body].angular_velocity),
         });
-        let sides = (0..problem.obstacles().len()).filter(|&k| problem.obstacles()[k].as_plane().is_none());
-        let sides: Vec<usize> = sides.collect();
-        let rebounds = interfaces.iter().zip(sides.chunks_exact(2)).map(|(interface, sides)| {
-            let groups = interface.groups().map(str::to_string);
-            rebound(problem, contact, &centres, (groups, [sides[0], sides[1]]))
+        let rebounds = interfaces.iter().zip(problem.sides_of_interfaces()).map(|(interface, sides)| {
+            rebound(problem, contact, &centres, (interface.groups().map(str::to_string), sides))
         });
         Some(Self { bodies: bodies.collect(), interfaces: rebounds.collect() })
     }
+}
+
+/// What acts on a body beside contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Beside {
+    Nothing,
+    /// Fixed supports alone.
+    Fixed,
+    /// Loads, or supports that move.
+    Other,
+}
+
+/// What acts on each body beside contact.
+fn beside_contact<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    of_node: &[usize],
+    bodies: usize,
+) -> Vec<Beside> {
+    let mut beside = vec![Beside::Nothing; bodies];
+    for held in problem.prescribed().iter().filter(|held| held.motion.is_none()) {
+        beside[of_node[held.node.index()]] = Beside::Fixed;
+    }
+    let moved = problem.prescribed().iter().filter(|held| held.motion.is_some()).map(|held| held.node);
+    let facets = problem.mesh().facets();
+    let pulled = problem.facet_loads().iter().map(|load| facets[load.facet.index()].nodes[0]);
+    let weighed = problem.body_loads().iter().flat_map(|load| load.nodal_volume.iter().map(|(node, _)| *node));
+    moved.chain(pulled).chain(weighed).for_each(|node| beside[of_node[node.index()]] = Beside::Other);
+    beside
 }
 
 /// The motion of the centres of mass: contact forces alone change it, unless there are supports or loads.
@@ -91,8 +124,8 @@ struct Centres<'c, const D: usize> {
     /// Velocity at the start (m/s), and at the last instant if contact alone changes it.
     start: Vec<[f64; D]>,
     after: Vec<Option<[f64; D]>>,
-    /// Whether contact alone changes velocities.
-    alone: bool,
+    /// What else acts on each body.
+    beside: Vec<Beside>,
 }
 
 impl<'c, const D: usize> Centres<'c, D> {
@@ -109,21 +142,25 @@ impl<'c, const D: usize> Centres<'c, D> {
         for point in &contact.nodes {
             of_obstacle[point.obstacle].insert(of_node[point.node.index()]);
         }
-        let alone =
-            problem.prescribed().is_empty() && problem.facet_loads().is_empty() && problem.body_loads().is_empty();
+        let beside = beside_contact(problem, &of_node, count);
         let mut after = start.clone();
         for (point, summary) in contact.nodes.iter().zip(&contact.summary) {
             let body = of_node[point.node.index()];
             (0..D).for_each(|c| after[body][c] += summary.impulse[c] / mass[body]);
         }
-        let after = after.into_iter().map(|velocity| alone.then_some(velocity)).collect();
-        Self { contact, of_obstacle, mass, start, after, alone }
+        let known = |(velocity, beside): ([f64; D], &Beside)| (*beside == Beside::Nothing).then_some(velocity);
+        let after = after.into_iter().zip(&beside).map(known).collect();
+        Self { contact, of_obstacle, mass, start, after, beside }
     }
 
     /// Velocity of the bodies of an obstacle at an instant (m/s), that of their common centre of mass; none if another
     /// obstacle acts on some of them and on others together.
     fn at(&self, obstacle: usize, n: usize) -> Option<[f64; D]> {
         let bodies = &self.of_obstacle[obstacle];
+        if bodies.iter().all(|&body| self.beside[body] == Beside::Fixed) {
+            // What holds it has no velocity.
+            return Some([0.0; D]);
+        }
         let total: f64 = bodies.iter().map(|&body| self.mass[body]).sum();
         let mut velocity = [0.0; D];
         for &body in bodies {
@@ -134,7 +171,19 @@ impl<'c, const D: usize> Centres<'c, D> {
             let impulse = over_time.get(n).filter(|_| of.is_subset(bodies))?.impulse;
             (0..D).for_each(|c| velocity[c] += impulse[c] / total);
         }
-        self.alone.then_some(velocity)
+        self.moved_by_contact(obstacle).then_some(velocity)
+    }
+
+    /// Whether contact alone changes the velocity of all bodies of an obstacle.
+    fn moved_by_contact(&self, obstacle: usize) -> bool {
+        self.of_obstacle[obstacle].iter().all(|&body| self.beside[body] == Beside::Nothing)
+    }
+
+    /// Whether the velocities of the bodies of two obstacles are known: contact alone changes them, or one side is held.
+    fn are_known(&self, sides: [usize; 2]) -> bool {
+        let held = |side: usize| self.of_obstacle[side].iter().all(|&body| self.beside[body] == Beside::Fixed);
+        let [first, second] = sides.map(|side| self.moved_by_contact(side));
+        first && (second || held(sides[1])) || second && held(sides[0])
     }
 
     /// Whether another obstacle than these acts on one of their bodies between two instants.
@@ -188,7 +237,7 @@ fn rebound<const D: usize, const N: usize>(
     let before = centres.relative(sides, &frame, first.saturating_sub(1));
     let after = if ended { centres.relative(sides, &frame, last + 1) } else { None };
     let no_restitution = match (before, after) {
-        _ if !centres.alone => Some("supports or loads change the velocities, too"),
+        _ if !centres.are_known(sides) => Some("supports or loads change the velocities, too"),
         _ if !ended => Some("contact has not ended"),
         (None, _) | (_, None) => Some("another contact changes the velocities, too"),
         _ if centres.others_act(sides, [first, last]) => Some("another contact changes the velocities, too"),

@@ -1,6 +1,8 @@
 //! The rebound of the body: the velocities of its centre of mass before the first contact and after the last.
 
 use super::Impacts;
+use crate::deformation::Deformation;
+use crate::flight::NextTouch;
 use percute_core::contact::{ContactResults, Frame, Resultant};
 use percute_core::dynamics::Balance;
 use percute_core::problem::Problem;
@@ -34,6 +36,11 @@ pub struct Rebound {
     pub span: f64,
     /// Whether contact has ended.
     pub ended: bool,
+    /// Angular velocity at the last instant, counterclockwise (rad/s); none if contact has not ended, on a bar, or of a
+    /// history alone.
+    pub angular_velocity_after: Option<f64>,
+    /// The first point that would reach a plane again by turning, if the run went on; without loads.
+    pub touches_again: Option<NextTouch>,
 }
 
 /// The velocity along the normal of one plane is not its alone.
@@ -58,6 +65,7 @@ impl Rebound {
         problem: &Problem<D, N>,
         balance: &[Balance],
         contact: &ContactResults<D>,
+        deformation: Option<&Deformation>,
     ) -> Option<Self> {
         if !problem.statement().interfaces.is_empty() {
             // Bodies that strike each other have velocities of their own.
@@ -90,6 +98,7 @@ impl Rebound {
         };
         let restitution = normal_after.filter(|_| no_restitution.is_none()).map(|v| -v / normal_before);
         let (first_touch, release) = (time(first + 1), time(last + 1));
+        let turning = deformation.filter(|deformation| ended && D > 1 && deformation.bodies.len() == 1);
         Some(Self {
             velocity_before: before.to_vec(),
             velocity_after: after.map(|v| v.to_vec()),
@@ -102,6 +111,8 @@ impl Rebound {
             time_in_contact: time_of_phases(acting, [first, last], time),
             span: release - first_touch,
             ended,
+            angular_velocity_after: turning.map(|deformation| deformation.bodies[0].angular_velocity),
+            touches_again: turning.filter(|_| restitution.is_some()).and_then(|deformation| deformation.next_touch),
         })
     }
 }

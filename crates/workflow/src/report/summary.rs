@@ -249,7 +249,9 @@ fn returned(rebound: &Rebound) -> String {
     match (rebound.normal_after, rebound.restitution) {
         (Some(after), Some(restitution)) => {
             let (after, restitution) = (trimmed(after, 4), trimmed(restitution, 3));
-            format!("from {before} to {after} m/s, restitution {restitution}, {time}")
+            let turning = rebound.angular_velocity_after.filter(|spin| *spin != 0.0);
+            let turning = turning.map_or(String::new(), |spin| format!(", turning at {} rad/s", short(spin, 3)));
+            format!("from {before} to {after} m/s, restitution {restitution}, {time}{turning}")
         }
         (Some(after), None) => {
             let (after, reason) = (trimmed(after, 4), rebound.no_restitution.unwrap_or_default());

@@ -2,7 +2,9 @@
 
 use super::flat::FlatElements;
 use super::linearity::Linearity;
+use super::verdict::NarrowContact;
 use super::{LargestResidual, ProblemSummary};
+use crate::flight::NextTouch;
 use crate::foreign::{Checked, Samples};
 use crate::message::{counted, percent, short, trimmed};
 use percute_core::mesh::{ImportWarning, Mesh};
@@ -45,6 +47,10 @@ pub(super) struct Facts<'a> {
     pub(super) own_contacts: usize,
     /// Energy that contact gives to the auxiliary solution, over that of the simulation.
     pub(super) auxiliary_contact_energy: f64,
+    /// The first point that would reach a plane again, if the run went on.
+    pub(super) touches_again: Option<NextTouch>,
+    /// A contact that is narrower than the elements there.
+    pub(super) narrow: Option<NarrowContact>,
     /// The farthest that pairs of nodes slip, over their shortest edge.
     pub(super) slip: f64,
     /// The deepest that a node of surfaces that slide was inside the other body, over its shortest edge.
@@ -107,6 +113,32 @@ pub(super) fn not_admissible(facts: &Facts<'_>) -> Option<Warning> {
         super::ADMISSIBLE
     );
     warning("not_admissible", format!("residual {name} too large: do not trust the error"), message)
+}
+
+pub(super) fn narrow_contact(facts: &Facts<'_>) -> Option<Warning> {
+    let NarrowContact { half_width, edge, needed } = facts.narrow?;
+    let [half_width, edge, needed] = [half_width, edge, needed].map(|x| short(x, 2));
+    let message = format!(
+        "the contact is narrower than an element: its half-width is about {half_width} m by Hertz at the averaged peak \
+         force, and the edges there are {edge} m long. Pressure and stress there are those of a single node; edges of \
+         {needed} m would resolve them"
+    );
+    warning(
+        "narrow_contact",
+        format!("contact narrower than an element: edges of {needed} m would resolve it"),
+        message,
+    )
+}
+
+pub(super) fn touches_again(facts: &Facts<'_>) -> Option<Warning> {
+    let NextTouch { node, plane, time } = facts.touches_again?;
+    let time = trimmed(time, 4);
+    let brief = format!("node {node} would reach plane_{plane} at {time} s");
+    let message = format!(
+        "the body turns after its last contact, and {brief}: velocities and restitution are those of the impact until \
+         the end of the run, not of all of it; end later, or give a larger `after`, for the rest"
+    );
+    warning("touches_again", brief, message)
 }
 
 pub(super) fn last_instant(facts: &Facts<'_>) -> Option<Warning> {

@@ -2,6 +2,7 @@
 //! recommendation, a sentence each.
 
 mod facts;
+mod narrow;
 mod onset;
 mod rules;
 mod text;
@@ -10,6 +11,7 @@ mod uneven;
 mod untested;
 
 pub(super) use facts::{Beside, Facts};
+pub(super) use narrow::NarrowContact;
 pub use touches::Touches;
 
 use super::PoorElement;

@@ -2,6 +2,7 @@
 
 use percute_core::contact::{CORNER, ContactResults};
 use percute_core::ids::{ElementId, NodeId};
+use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
 use serde::Serialize;
@@ -69,7 +70,7 @@ pub(super) fn first_contacts<const D: usize>(results: &ContactResults<D>) -> Vec
 }
 
 /// The contact surface with the first touch of its nodes.
-struct Surface<'a, const D: usize, const N: usize> {
+pub(super) struct Surface<'a, const D: usize, const N: usize> {
     problem: &'a Problem<D, N>,
     first_touch: Vec<Option<f64>>,
     /// The nodes beside each node on the surface.
@@ -81,7 +82,7 @@ struct Surface<'a, const D: usize, const N: usize> {
 }
 
 impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
-    fn new(problem: &'a Problem<D, N>, results: &ContactResults<D>) -> Self {
+    pub(super) fn new(problem: &'a Problem<D, N>, results: &ContactResults<D>) -> Self {
         let first_touch = first_contacts(results);
         let mut beside = vec![Vec::new(); first_touch.len()];
         for facet in problem.surface().facets() {
@@ -162,6 +163,24 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
         apart.abs() <= PARALLEL * length
     }
 
+    /// The node that touches an obstacle first.
+    pub(super) fn first_of(&self, obstacle: usize) -> Option<usize> {
+        let nodes = self.problem.surface().nodes();
+        let touched = (0..nodes.len()).filter(|&at| nodes[at].obstacle == obstacle);
+        let touched = touched.filter_map(|at| Some((self.first_touch[at]?, at)));
+        touched.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at)| at)
+    }
+
+    /// The mean length of the edges at a node (m) and the material there.
+    pub(super) fn edges(&self, at: usize) -> Option<(f64, &Elastic)> {
+        let mesh = self.problem.mesh();
+        let facets = self.problem.surface().facets().iter().filter(|facet| facet.nodes.contains(&at));
+        let lengths: Vec<f64> = facets.map(|facet| mesh.facet_normal(facet.facet).1).collect();
+        let element = *self.elements(at).first()?;
+        let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
+        (!lengths.is_empty()).then(|| (mean, self.problem.material(element)))
+    }
+
     fn node(&self, at: usize) -> NodeId {
         self.problem.surface().nodes()[at].node
     }
@@ -171,7 +190,7 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
     }
 
     /// By how much the outline turns at a node (rad): π less the angle inside the body.
-    fn turn(&self, at: usize) -> f64 {
+    pub(super) fn turn(&self, at: usize) -> f64 {
         let angles = self.elements(at).iter().map(|&element| angle(self.problem.mesh(), element, self.node(at)));
         PI - angles.sum::<f64>() * if self.on_line[at] { 2.0 } else { 1.0 }
     }

@@ -39,15 +39,15 @@ impl Uneven {
         results: &ContactResults<D>,
     ) -> Self {
         let mesh = problem.mesh();
-        let step = |element: ElementId| time_step_of_element(problem, element);
-        let steps = || (0..by_element.len()).map(|e| step(ElementId::new(e)));
-        let size = |element: ElementId| step(element) * problem.material(element).wave_speed();
+        let steps: Vec<f64> =
+            (0..by_element.len()).map(|e| time_step_of_element(problem, ElementId::new(e))).collect();
+        let size = |element: ElementId| steps[element.index()] * problem.material(element).wave_speed();
         let largest = (0..by_element.len()).map(|e| size(ElementId::new(e))).fold(0.0, f64::max);
         let touched = results.nodes.iter().zip(&results.summary).filter(|(_, summary)| summary.first_touch.is_some());
         let elements = touched.flat_map(|(point, _)| mesh.stars().star(point.node).elements.iter().copied());
         Self {
             longest: longest(mesh, by_element),
-            sizes: steps().fold(0.0, f64::max) / steps().fold(f64::INFINITY, f64::min),
+            sizes: steps.iter().copied().fold(0.0, f64::max) / steps.iter().copied().fold(f64::INFINITY, f64::min),
             at_contact: largest / elements.map(size).fold(largest, f64::min),
             impedances: impedances(problem),
             poisson: poisson(problem),
@@ -75,14 +75,12 @@ fn impedances<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
     let of = |element: ElementId| each[usize::from(problem.element_material()[element.index()])];
     let inner = problem.mesh().facets().iter().filter_map(|facet| Some((of(facet.owner), of(facet.neighbour?))));
     let inner = inner.map(|(a, b)| a.max(b) / a.min(b)).fold(1.0, f64::max);
-    let sides: Vec<usize> =
-        (0..problem.obstacles().len()).filter(|&k| problem.obstacles()[k].as_plane().is_none()).collect();
     let ends = |side: usize| {
         let facets = problem.surface().facets().iter().filter(|facet| facet.obstacle == side);
         let owners = facets.map(|facet| of(problem.mesh().facets()[facet.facet.index()].owner));
         owners.fold([f64::INFINITY, 0.0], |[least, most], each| [least.min(each), most.max(each)])
     };
-    sides.chunks_exact(2).map(|sides| (ends(sides[0]), ends(sides[1]))).fold(inner, |most, (a, b)| {
+    problem.sides_of_interfaces().map(|sides| sides.map(ends)).fold(inner, |most, [a, b]| {
         // A side without facets has no impedance.
         most.max(a[1] / b[0]).max(b[1] / a[0])
     })
