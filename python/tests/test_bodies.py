@@ -302,7 +302,7 @@ def test_a_free_body_has_a_restitution_where_the_other_one_is_held(tmp_path: Pat
         material=problem.material,
         contacts=problem.contacts,
         initial_velocity=problem.initial_velocity * (problem.initial_velocity < 0.0),
-        supports=[pc.Support(group="anvil.bottom", components=(True, True))],
+        supports=[pc.Support(group="anvil.bottom", components=("x", "y"))],
     )
     history = pc.simulate(held, end=40e-6, courant=0.9)
     impacts = history.impacts

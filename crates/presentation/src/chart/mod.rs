@@ -1,6 +1,7 @@
 //! Charts: quantities over time, pressure along the surface over time, convergence.
 
 mod convergence;
+mod envelope;
 mod over_time;
 mod space_time;
 mod surface;

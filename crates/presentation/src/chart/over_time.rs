@@ -1,5 +1,6 @@
 //! Quantities over time.
 
+use super::envelope::envelope;
 use super::{Legend, ROOM, SIZE};
 use crate::axes::{Look, Plot};
 use crate::scale::{Scale, prefixed};
@@ -63,9 +64,16 @@ impl OverTime<'_> {
             svg.text("faint", [x, corner[1] - 4.0], Anchor::Middle, false, name);
         }
         for (k, line) in self.lines.iter().enumerate().take(LINES) {
-            let points = thinned(&self.time, &line.values).into_iter();
-            let points = points.map(|(t, value)| plot.at(t * in_time, value * factor));
-            svg.polyline(&format!("s{k}"), points);
+            let at = |t: f64, value: f64| plot.at(t * in_time, value * factor);
+            let Some(ranges) = envelope(&self.time, &line.values) else {
+                let points = thinned(&self.time, &line.values).into_iter();
+                svg.polyline(&format!("s{k}"), points.map(|(t, value)| at(t, value)));
+                continue;
+            };
+            let (low, high) =
+                (ranges.iter().map(|r| at(r.time, r.low)), ranges.iter().rev().map(|r| at(r.time, r.high)));
+            svg.polyline(&format!("range r{k}"), low.chain(high));
+            svg.polyline(&format!("s{k}"), ranges.iter().map(|r| at(r.time, r.mean)));
         }
         legend.draw(&mut svg);
         Some(svg)

@@ -39,8 +39,7 @@ impl Uneven {
         results: &ContactResults<D>,
     ) -> Self {
         let mesh = problem.mesh();
-        let steps: Vec<f64> =
-            (0..by_element.len()).map(|e| time_step_of_element(problem, ElementId::new(e))).collect();
+        let steps: Vec<f64> = (0..by_element.len()).map(|e| time_step_of_element(problem, ElementId::new(e))).collect();
         let size = |element: ElementId| steps[element.index()] * problem.material(element).wave_speed();
         let largest = (0..by_element.len()).map(|e| size(ElementId::new(e))).fold(0.0, f64::max);
         let touched = results.nodes.iter().zip(&results.summary).filter(|(_, summary)| summary.first_touch.is_some());
