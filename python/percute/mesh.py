@@ -102,10 +102,7 @@ class Mesh(Immutable):
         columns, rows = whole("nx", nx, most=MOST), whole("ny", ny, most=MOST)
         if text("diagonals", diagonals) not in ("right", "alternating", "crossed"):
             raise wrong("diagonals", diagonals, '"right", "alternating" or "crossed"')
-        if diagonals == "crossed" and 4 * columns * rows > MOST:
-            raise InputError(f"`nx` and `ny` are {columns} and {rows}, {4 * columns * rows} elements; there must be at most {MOST}")
-        mesh = cls._of(_percute.MeshData.rectangle(*sides, columns, rows))
-        return mesh if diagonals == "right" else cls(*_cut_again(mesh, columns, diagonals == "crossed"), mesh.edge_groups)
+        return cls._of(_percute.MeshData.rectangle(*sides, columns, rows, diagonals))
 
     @classmethod
     def disc(cls, radius: float, *, rings: int) -> Mesh:
@@ -370,22 +367,6 @@ class Mesh(Immutable):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Mesh, (self.points.copy(), self.cells.copy(), dict(self.edge_groups), dict(self.element_groups))
-
-
-def _cut_again(mesh: Mesh, columns: int, crossed: bool) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Give the nodes and elements of a rectangle whose cells are cut by both diagonals, or by them in turn."""
-    first, second = mesh.cells[::2].astype(np.int64), mesh.cells[1::2].astype(np.int64)
-    a, b, c, d = *first.T, second[:, 2]
-    if crossed:
-        centres = len(mesh.points) + np.arange(len(first))
-        points = np.concatenate([mesh.points, 0.5 * (mesh.points[a] + mesh.points[c])])
-        sides = [np.column_stack([start, end, centres]) for start, end in ((a, b), (b, c), (c, d), (d, a))]
-        return points, np.stack(sides, axis=1).reshape(-1, 3)
-    row, column = np.divmod(np.arange(len(first)), columns)
-    other = ((row + column) % 2 == 1)[:, None]
-    lower = np.where(other, np.column_stack([a, b, d]), first)
-    upper = np.where(other, np.column_stack([b, c, d]), second)
-    return mesh.points, np.stack([lower, upper], axis=1).reshape(-1, 3)
 
 
 def _same_groups(first: Mapping[str, NDArray[np.int64]], second: Mapping[str, NDArray[np.int64]]) -> bool:

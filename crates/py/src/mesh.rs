@@ -3,7 +3,7 @@
 use crate::any::AnyMesh;
 use crate::{bridge, errors, view};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
-use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
+use percute_core::mesh::{BarMesh, Diagonals, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
 use percute_core::simplex::{ByDimension, Element, Simplex};
 use percute_core::{each_dimension, map_dimension};
 use percute_io::Overwrite;
@@ -27,8 +27,10 @@ type NumberGroups<'py> = BTreeMap<String, PyReadonlyArray1<'py, i64>>;
 #[pymethods]
 impl MeshData {
     #[staticmethod]
-    fn rectangle(py: Python<'_>, width: f64, height: f64, nx: usize, ny: usize) -> PyResult<Self> {
-        let mesh = bridge::blocking(py, None, move |_| TriangleMesh::rectangle(width, height, nx, ny))?;
+    fn rectangle(py: Python<'_>, width: f64, height: f64, nx: usize, ny: usize, diagonals: &str) -> PyResult<Self> {
+        let known = Diagonals::NAMES.into_iter().find(|(name, _)| *name == diagonals);
+        let (_, cut) = known.ok_or_else(|| errors::input(py, "`diagonals` has a name that is not known"))?;
+        let mesh = bridge::blocking(py, None, move |_| TriangleMesh::rectangle_cut(width, height, nx, ny, cut))?;
         Ok(Self { mesh: ByDimension::Plane(Arc::new(mesh.map_err(|e| errors::input(py, e))?)) })
     }
 

@@ -38,6 +38,30 @@ impl BarMesh {
     }
 }
 
+/// The diagonals by which the cells of a rectangle are cut.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Diagonals {
+    /// From the lower left to the upper right corner of each cell. Diagonals of one direction push a symmetric body
+    /// aside.
+    #[default]
+    Right,
+    /// In turn from the lower left and from the upper left corner. Symmetric if both numbers of cells are even.
+    Alternating,
+    /// Both: four triangles around the middle of each cell. Symmetric.
+    Crossed,
+}
+
+impl Diagonals {
+    /// All, by their names.
+    pub const NAMES: [(&str, Self); 3] =
+        [("right", Self::Right), ("alternating", Self::Alternating), ("crossed", Self::Crossed)];
+
+    /// The number of triangles in a cell.
+    fn triangles(self) -> usize {
+        if self == Self::Crossed { 4 } else { 2 }
+    }
+}
+
 impl TriangleMesh {
     /// The rectangle [0, width] × [0, height] (m) in nx × ny cells, each cut from its lower left
     /// to its upper right corner; its sides are the groups `left`, `right`, `bottom`, `top`.
@@ -45,12 +69,30 @@ impl TriangleMesh {
     /// # Errors
     /// A length that is not positive, or no cells.
     pub fn rectangle(width: f64, height: f64, nx: usize, ny: usize) -> Result<Self, MeshError> {
+        Self::rectangle_cut(width, height, nx, ny, Diagonals::Right)
+    }
+
+    /// The same with a choice of diagonals. The middles of crossed cells are the last nodes.
+    ///
+    /// # Errors
+    /// A length that is not positive, or no cells.
+    pub fn rectangle_cut(
+        width: f64,
+        height: f64,
+        nx: usize,
+        ny: usize,
+        diagonals: Diagonals,
+    ) -> Result<Self, MeshError> {
         positive("width", width)?;
         positive("height", height)?;
         count("nx", nx)?;
         count("ny", ny)?;
         count("nx * ny", nx.saturating_mul(ny))?;
-        room(2 * nx * ny)?;
+        let elements = diagonals.triangles() * nx * ny;
+        if diagonals == Diagonals::Crossed {
+            count("4 * nx * ny", elements)?;
+        }
+        room(elements)?;
         let id = |i: usize, j: usize| j * (nx + 1) + i;
         let mut points = Vec::with_capacity((nx + 1) * (ny + 1));
         for j in 0..=ny {
@@ -58,11 +100,21 @@ impl TriangleMesh {
                 points.push([width * i as f64 / nx as f64, height * j as f64 / ny as f64]);
             }
         }
-        let mut cells = Vec::with_capacity(2 * nx * ny);
+        let mut cells = Vec::with_capacity(elements);
         for j in 0..ny {
             for i in 0..nx {
-                cells.push([id(i, j), id(i + 1, j), id(i + 1, j + 1)]);
-                cells.push([id(i, j), id(i + 1, j + 1), id(i, j + 1)]);
+                let corners = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
+                let [a, b, c, d] = corners;
+                match diagonals {
+                    Diagonals::Alternating if (i + j) % 2 == 1 => cells.extend([[a, b, d], [b, c, d]]),
+                    Diagonals::Right | Diagonals::Alternating => cells.extend([[a, b, c], [a, c, d]]),
+                    Diagonals::Crossed => {
+                        let [low, high] = [points[a], points[c]];
+                        let middle = points.len();
+                        points.push([0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])]);
+                        cells.extend((0..4).map(|k| [corners[k], corners[(k + 1) % 4], middle]));
+                    }
+                }
             }
         }
         let groups = FacetGroups::from([
@@ -121,6 +173,37 @@ impl TriangleMesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ids::ElementId;
+
+    fn area(mesh: &TriangleMesh) -> f64 {
+        (0..mesh.element_count()).map(|e| mesh.cell_geometry(ElementId::new(e)).volume).sum()
+    }
+
+    /// The triangles by the places of their nodes, each in order, of the mesh or of its image x ↦ 3 − x.
+    fn triangles(mesh: &TriangleMesh, mirrored: bool) -> Vec<[[u64; 2]; 3]> {
+        let place = |p: [f64; 2]| [if mirrored { 3.0 - p[0] } else { p[0] }, p[1]].map(f64::to_bits);
+        let mut found: Vec<_> = mesh.cells().iter().map(|cell| cell.map(|k| place(mesh.points()[k.index()]))).collect();
+        found.iter_mut().for_each(|triangle| triangle.sort_unstable());
+        found.sort_unstable();
+        found
+    }
+
+    /// All coordinates are multiples of 3/8 and exact, so that mirror images have the same bits.
+    #[test]
+    fn rectangles_are_cut_by_each_diagonal() {
+        let cut = |diagonals| TriangleMesh::rectangle_cut(3.0, 2.0, 4, 2, diagonals).unwrap();
+        for (name, diagonals) in Diagonals::NAMES {
+            let (mesh, count) = (cut(diagonals), if diagonals == Diagonals::Crossed { 32 } else { 16 });
+            assert_eq!((mesh.element_count(), mesh.reoriented_elements()), (count, 0), "{name}");
+            assert!((area(&mesh) - 6.0).abs() < 1e-14, "{name}: rounding of a sum of 32 terms");
+            let symmetric = triangles(&mesh, false) == triangles(&mesh, true);
+            assert_eq!(symmetric, diagonals != Diagonals::Right, "{name}");
+            // The corners of the cells, and so the sides, have the same numbers with all diagonals.
+            assert_eq!(mesh.points()[..15], cut(Diagonals::Right).points()[..], "{name}");
+        }
+        let many = TriangleMesh::rectangle_cut(1.0, 1.0, 6_000_000, 1, Diagonals::Crossed).unwrap_err();
+        assert!(many.to_string().contains("4 * nx * ny"), "{many}");
+    }
 
     /// The disc has the area of its regular outline of 6 n sides, ½ 6n r² sin(2π/6n); its lowest node lies at (0, −r)
     /// exactly, and each node has its mirror image.
@@ -130,8 +213,7 @@ mod tests {
             let disc = TriangleMesh::disc(0.5, rings).unwrap();
             assert_eq!((disc.element_count(), disc.node_count()), (6 * rings * rings, 3 * rings * (rings + 1) + 1));
             assert_eq!((disc.reoriented_elements(), disc.facet_groups()["boundary"].len()), (0, 6 * rings));
-            let area: f64 =
-                (0..disc.element_count()).map(|e| disc.cell_geometry(crate::ids::ElementId::new(e)).volume).sum();
+            let area = area(&disc);
             let sides = 6.0 * rings as f64;
             let exact = 0.5 * sides * 0.25 * (std::f64::consts::TAU / sides).sin();
             // Rounding of a sum of at most 300 terms.

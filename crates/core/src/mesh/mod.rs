@@ -18,6 +18,7 @@ mod strips;
 mod topology;
 
 pub use check::{MeshError, room};
+pub use generator::Diagonals;
 pub use import_warning::ImportWarning;
 pub use order::Numbering;
 pub(crate) use renumber::NewNumbers;

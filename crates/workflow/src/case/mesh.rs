@@ -4,8 +4,9 @@ use super::material::NOT_FOR_BARS;
 use super::source::CaseError;
 use super::table::Table;
 use super::value::Value;
+use crate::message::hint;
 use percute_core::map_dimension;
-use percute_core::mesh::{AnyMesh, BarMesh, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
+use percute_core::mesh::{AnyMesh, BarMesh, Diagonals, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
 use percute_core::simplex::{Element, Simplex};
 use percute_io::FileCause;
 use percute_io::gmsh::{self, GmshCause};
@@ -13,6 +14,7 @@ use std::path::PathBuf;
 
 pub(super) const KEYS: [&str; 9] =
     ["rectangle", "disc", "bar", "file", "scale", "points", "cells", "edge_groups", "element_groups"];
+const OF_RECTANGLE: [&str; 5] = ["width", "height", "nx", "ny", "diagonals"];
 const RECTANGLE: &str = "{ width = 0.05, height = 0.04, nx = 20, ny = 16 }";
 const DISC: &str = "{ radius = 0.05, rings = 12 }";
 const BAR: &str = "{ length = 0.1, elements = 100 }";
@@ -81,7 +83,7 @@ pub(super) fn coarsest(table: &Table<'_>) -> Option<Coarsest> {
     let count = |of: &str, keys: &[&'static str], key: &str| {
         table.get(of).and_then(|value| value.table(keys, "").ok()?.get(key)?.count(1).ok()).unwrap_or(1)
     };
-    let sides = ["nx", "ny"].map(|side| count("rectangle", &["width", "height", "nx", "ny"], side));
+    let sides = ["nx", "ny"].map(|side| count("rectangle", &OF_RECTANGLE, side));
     let rings = count("disc", &["radius", "rings"], "rings");
     let elements = count("bar", &["length", "elements"], "elements");
     if sides[0].saturating_mul(sides[1]).max(rings.saturating_mul(rings)).max(elements) <= LARGE {
@@ -96,7 +98,7 @@ pub(super) fn coarsest(table: &Table<'_>) -> Option<Coarsest> {
     let corners = || vec![0, nx, above, above.saturating_add(nx)];
     let (made, nodes) = match ["rectangle", "disc", "bar"].map(|key| table.get(key).is_some()) {
         [true, false, false] => {
-            let size = ["width", "height"].map(|side| length("rectangle", &["width", "height", "nx", "ny"], side));
+            let size = ["width", "height"].map(|side| length("rectangle", &OF_RECTANGLE, side));
             match size {
                 [Some(width), Some(height)] => (TriangleMesh::rectangle(width, height, 1, 1), corners()),
                 _ => (TriangleMesh::rectangle(1.0, 1.0, 1, 1), Vec::new()),
@@ -140,11 +142,21 @@ fn from_file(table: &Table<'_>, value: &Value<'_>) -> Result<AnyMesh, CaseError>
 }
 
 fn rectangle(value: &Value<'_>) -> Result<TriangleMesh, CaseError> {
-    let table = value.table(&["width", "height", "nx", "ny"], RECTANGLE)?;
+    let table = value.table(&OF_RECTANGLE, RECTANGLE)?;
     let length = |key| table.require(key, "a length in m")?.number("m");
     let count = |key| table.require(key, "a number of cells")?.count(1);
     let (width, height, nx, ny) = (length("width")?, length("height")?, count("nx")?, count("ny")?);
-    TriangleMesh::rectangle(width, height, nx, ny).map_err(|error| generator(&table, &error))
+    let diagonals = table.get("diagonals").map_or(Ok(Diagonals::default()), |value| diagonals(&value))?;
+    TriangleMesh::rectangle_cut(width, height, nx, ny, diagonals).map_err(|error| generator(&table, &error))
+}
+
+fn diagonals(value: &Value<'_>) -> Result<Diagonals, CaseError> {
+    let [right, alternating, crossed] = Diagonals::NAMES.map(|(name, _)| name);
+    let allowed = format!("one of \"{right}\", \"{alternating}\", \"{crossed}\"");
+    let name = value.text(&allowed)?;
+    let hint = || hint(name, Diagonals::NAMES.map(|(name, _)| name));
+    let found = Diagonals::NAMES.into_iter().find(|(known, _)| *known == name);
+    found.map(|(_, diagonals)| diagonals).ok_or_else(|| value.must_be(format!("{allowed}{}", hint())))
 }
 
 fn disc(value: &Value<'_>) -> Result<TriangleMesh, CaseError> {

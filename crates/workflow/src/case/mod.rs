@@ -2,7 +2,7 @@
 //!
 //! Units are SI. A bar takes one number where a plane body takes a vector `[x, y]`. Tables:
 //!
-//! - `[mesh]`: one of `rectangle = { width, height, nx, ny }` (sides `left`, `right`, `bottom`,
+//! - `[mesh]`: one of `rectangle = { width, height, nx, ny, diagonals }` (sides `left`, `right`, `bottom`,
 //!   `top`), `disc = { radius, rings }` around the origin (outline `boundary`), `bar = { length, elements }` (ends
 //!   `start`, `end`); `file = "block.msh"`, a mesh of Gmsh, relative to the folder of the case, with `scale` (metres
 //!   per unit of length, 1 unless given); or arrays: `points` and `cells`, with
