@@ -178,7 +178,7 @@ def of_contact(contact: Contact) -> Contents:
     quantities = _resultants(contact.resultants, "total_")
     if len(contact.obstacles) > 1:
         for number, each in enumerate(contact.obstacles):
-            quantities |= _resultants(each, f"plane{number}_")
+            quantities |= _resultants(each, f"plane_{number}_")
     for name, told in AT_NODES.items():
         values = getattr(contact, name)
         dims = ("time", "contact_node", "component")[: values.ndim]

@@ -65,7 +65,7 @@ def test_resultants_of_each_of_several_planes() -> None:
     mesh = pc.Mesh(problem.mesh.points, problem.mesh.cells, {"bottom": [[0, 1], [1, 2]], "left": [[3, 6]]})
     history = pc.simulate(pc.Problem(mesh, material=problem.material, obstacles=planes, initial_velocity=(-10, -10)), end=3e-6, courant=0.5)
     table = history.contact.to_pandas()
-    assert np.array_equal(table["plane1_normal_force"], history.contact.obstacles[1].normal_force)
+    assert np.array_equal(table["plane_1_normal_force"], history.contact.obstacles[1].normal_force)
 
 
 def test_an_estimate(estimate: pc.Estimate) -> None:

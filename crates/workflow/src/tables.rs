@@ -107,7 +107,7 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
             resultants(&mut table, "", &contact.total);
             if contact.obstacles.len() > 1 {
                 for (k, plane) in contact.obstacles.iter().enumerate() {
-                    resultants(&mut table, &format!("plane_{}_", k + 1), plane);
+                    resultants(&mut table, &format!("plane_{k}_"), plane);
                 }
             }
         }
@@ -153,7 +153,7 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
         let Some(contact) = self.contact else { return table };
         let (nodes, summary) = (&contact.nodes, &contact.summary);
         table.add("node", "", nodes.iter().map(|p| p.node.index() as f64));
-        table.add("plane", "", nodes.iter().map(|p| (p.obstacle + 1) as f64));
+        table.add("plane", "", nodes.iter().map(|p| p.obstacle as f64));
         table.vector("point", "m", &nodes.iter().map(|p| p.point).collect::<Vec<_>>());
         table.add("area", "m^2", nodes.iter().map(|p| p.area));
         table.add("first_touch", "s", summary.iter().map(|s| s.first_touch.unwrap_or(f64::NAN)));

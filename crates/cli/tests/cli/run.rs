@@ -275,3 +275,26 @@ fn the_help_of_commands_in_python_names_the_package() {
         assert!(stderr(&refused).starts_with(&format!("error: `percute {command}` needs the Python package")));
     }
 }
+
+/// The resultants of the floor and the wall of a corner, by names that count from 0, add up to the total.
+#[test]
+fn planes_are_counted_from_0_in_tables() {
+    let bench = Bench::new(include_str!("../../../../examples/corner.toml"));
+    let output = bench.percute(&["run", "case.toml", "--csv", "tables", "--quiet"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let column = |file: &str, name: &str| -> Vec<f64> {
+        let mut table = csv::Reader::from_path(bench.path("tables").join(file)).unwrap();
+        let at = table.headers().unwrap().iter().position(|header| header == name);
+        let at = at.unwrap_or_else(|| panic!("no column {name}"));
+        table.records().map(|row| row.unwrap()[at].parse().unwrap_or(f64::NAN)).filter(|x| x.is_finite()).collect()
+    };
+    let names = ["force_x (N)", "plane_0_force_x (N)", "plane_1_force_x (N)"];
+    let [total, floor, wall] = names.map(|name| column("over_time.csv", name));
+    // Rounding of one sum.
+    let adds_up = |k: usize| (total[k] - floor[k] - wall[k]).abs() <= 1e-12 * (floor[k].abs() + wall[k].abs());
+    assert!(total.len() > 10 && (0..total.len()).all(adds_up), "{total:?} {floor:?} {wall:?}");
+    assert!(wall.iter().any(|force| *force > 0.0) && wall.iter().all(|force| *force >= 0.0), "the wall pushes right");
+    let mut planes = column("contact_nodes.csv", "plane");
+    planes.dedup();
+    assert!(planes.iter().all(|plane| [0.0, 1.0].contains(plane)) && planes.len() > 1, "{planes:?}");
+}
