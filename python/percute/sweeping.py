@@ -209,7 +209,8 @@ def sweep(
     """Run a case over values of its keys, each in a process and a folder of its own, like ``percute sweep``.
 
     A case is done if its folder has its text and the document of this version of percute. Such cases are not run again, so that the same
-    call goes on after an interruption. The results are bitwise those of single runs.
+    call goes on after an interruption. Results of another case file or version stay, unless ``overwrite`` is true. The results are bitwise
+    those of single runs.
 
     Parameters
     ----------
@@ -228,7 +229,7 @@ def sweep(
         A client of Dask, whose workers run the cases (extra ``sweep``). All of them must see ``folder`` and the files of the case. A case whose
         worker is lost is run again by another.
     overwrite : bool, default: False
-        Whether cases that are done are run again.
+        Whether all cases are run and replace what is in their folders.
     long : bool, default: False
         As for `simulate`.
     progress : bool or callable, optional
@@ -243,6 +244,8 @@ def sweep(
     ------
     InputError
         A key that the case does not have, no value, or a mistake in the first case.
+    ExistingFileError
+        There are results of another case file or another version of percute in the folder.
     MissingFileError, StorageError
         The case cannot be read, or the folder cannot be written.
     KeyboardInterrupt
@@ -256,6 +259,8 @@ def sweep(
     count = None if jobs is None else whole("jobs", jobs)
     way = (_command(), count, whole("threads", threads, most=_percute.MOST_THREADS), flag("long", long), flag("overwrite", overwrite))
     plan = _percute.SweepPlan(os.path.abspath(file), place, [(keys, json.dumps(rows)) for keys, rows in parts], way[3])
+    if client is not None and not way[4]:
+        plan.keep_results()
     with shown(progress) as tell:
         if client is None:
             plan.run([name for name, _ in plan.cases()], way, tell)

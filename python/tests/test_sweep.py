@@ -66,6 +66,17 @@ def test_the_command_makes_the_same_folder(swept: pc.Sweep, tmp_path: Path, case
     assert before == [(tmp_path / "sweep" / name / "result.json").stat().st_mtime_ns for name in swept.cases]
 
 
+def test_results_are_replaced_by_overwrite_only(tmp_path: Path, case: Path) -> None:
+    grid: dict[str, list[object]] = {"obstacle.0.friction": [0.3]}
+    before = pc.sweep(case, grid, folder=tmp_path / "sweep")
+    case.write_text(BLOCK.replace("young = 70e9", "young = 71e9"))
+    with pytest.raises(pc.ExistingFileError, match="friction=0.3: .* another case file .* overwrite=True"):
+        pc.sweep(case, grid, folder=tmp_path / "sweep")
+    assert json.loads((tmp_path / "sweep" / "friction=0.3" / "result.json").read_text())["error"]["sup"] == before["sup"][0]
+    after = pc.sweep(case, grid, folder=tmp_path / "sweep", overwrite=True)
+    assert list(after["status"]) == ["done"] and after["sup"][0] != before["sup"][0]
+
+
 def test_tables(swept: pc.Sweep) -> None:
     frame = swept.to_pandas()
     assert list(frame.index) == list(swept.cases) and frame["sup"].tolist() == swept["sup"].tolist()

@@ -9,7 +9,7 @@ use percute_estimator::{EstimateError, RunError};
 use percute_io::gmsh::{GmshCause, GmshError};
 use percute_io::{FileCause, FileError};
 use percute_workflow::message::hint;
-use percute_workflow::{Failure, inconsistency};
+use percute_workflow::{Failure, inconsistency, kept_results};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
@@ -206,6 +206,9 @@ pub(crate) fn output(py: Python<'_>, error: &Failure) -> PyErr {
             let file = file.display();
             let message = format!("{what} {file}: the file exists already; give another name, or overwrite=True");
             exception(py, "ExistingFileError", &message)
+        }
+        Failure::Results { folder, cases } => {
+            exception(py, "ExistingFileError", &kept_results(folder, cases, "overwrite=True"))
         }
         Failure::NoFolder { .. } => exception(py, "MissingFileError", &error.to_string()),
         Failure::Unwritable { .. } => exception(py, "StorageError", &error.to_string()),

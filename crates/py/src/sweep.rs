@@ -1,7 +1,7 @@
 //! Sweeps.
 
 use crate::{bridge, errors};
-use percute_sweep::{Count, Key, Launch, Plan, Planned, Values, columns, from_json, run, write};
+use percute_sweep::{Count, Key, Launch, Plan, Planned, Values, columns, from_json, keep_results, run, write};
 use percute_workflow::Failure;
 use percute_workflow::effort::Long;
 use pyo3::prelude::*;
@@ -42,6 +42,11 @@ impl SweepPlan {
     /// Name and text of each case.
     fn cases(&self) -> Vec<(&str, &str)> {
         self.plan.cases.iter().map(|case| (case.name.as_str(), case.text.as_str())).collect()
+    }
+
+    /// Refuses to lose results.
+    fn keep_results(&self, py: Python<'_>) -> PyResult<()> {
+        keep_results(&self.plan.folder, &self.plan.cases).map_err(|error| errors::run(py, &error))
     }
 
     /// Runs the cases with these names that are not done.

@@ -3,6 +3,7 @@
 
 use crate::plan::Planned;
 use percute_system::try_lock;
+use percute_workflow::Failure;
 use percute_workflow::report::FORMAT;
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -48,10 +49,20 @@ impl State {
     }
 }
 
-/// Whether a case was run before with another text: its folder in that of the sweep has one.
-#[must_use]
-pub fn has_changed(folder: &Path, case: &Planned) -> bool {
-    fs::read_to_string(folder.join(&case.name).join(CASE)).is_ok_and(|text| text != case.text)
+/// Refuses to lose results: those of another text or version, and folders of the name of a case that hold none. What
+/// is done stays, and a failure is tried again.
+///
+/// # Errors
+/// [`Failure::Results`].
+pub fn keep_results<'c>(folder: &Path, cases: impl IntoIterator<Item = &'c Planned>) -> Result<(), Failure> {
+    let is_lost = |case: &&Planned| {
+        let place = folder.join(&case.name);
+        let others =
+            || !place.join(CASE).exists() && fs::read_dir(&place).is_ok_and(|mut files| files.next().is_some());
+        state(folder, case) == State::Open && (place.join(RESULT).exists() || others())
+    };
+    let cases: Vec<String> = cases.into_iter().filter(is_lost).map(|case| case.name.clone()).collect();
+    if cases.is_empty() { Ok(()) } else { Err(Failure::Results { folder: folder.to_path_buf(), cases }) }
 }
 
 /// The state of a case of the sweep in `folder`.

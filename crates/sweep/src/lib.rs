@@ -13,7 +13,7 @@ mod pool;
 mod table;
 mod values;
 
-pub use attempt::{State, has_changed};
+pub use attempt::{State, keep_results};
 pub use key::Key;
 pub use plan::{Plan, Planned};
 pub use pool::{Count, ENDS_WITH_INPUT, Launch, run};

@@ -1,6 +1,6 @@
 //! The processes of a sweep.
 
-use crate::attempt::{Attempt, CASE, State, clean, state};
+use crate::attempt::{Attempt, CASE, State, clean, keep_results, state};
 use crate::plan::Planned;
 use percute_core::observer::{Observer, Progress};
 use percute_system::ask_to_end;
@@ -37,7 +37,7 @@ pub struct Launch {
     pub threads: usize,
     /// Whether long runs are allowed.
     pub long: bool,
-    /// Whether cases that are done are run again.
+    /// Whether all cases are run, and replace what is in their folders.
     pub again: bool,
 }
 
@@ -80,7 +80,8 @@ impl Launch {
 /// the others go on. If the observer breaks, all processes are stopped and their attempts removed.
 ///
 /// # Errors
-/// A folder that cannot be written, a program that cannot be started.
+/// Results that would be lost, unless all cases are run again; a folder that cannot be written, a program that cannot be
+/// started.
 pub fn run<'c>(
     folder: &Path,
     cases: impl IntoIterator<Item = &'c Planned>,
@@ -88,8 +89,11 @@ pub fn run<'c>(
     tell: &mut dyn FnMut(&str, &str),
     observer: &mut dyn Observer,
 ) -> Result<Count, Failure> {
-    clean(folder);
     let all: Vec<&Planned> = cases.into_iter().collect();
+    if !launch.again {
+        keep_results(folder, all.iter().copied())?;
+    }
+    clean(folder);
     let is_open = |case: &&&Planned| launch.again || !matches!(state(folder, case), State::Done(_));
     let mut waiting: VecDeque<&Planned> = all.iter().filter(is_open).copied().collect();
     let mut count = Count { found: all.len() - waiting.len(), ..Count::default() };

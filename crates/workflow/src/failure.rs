@@ -35,6 +35,13 @@ pub enum Failure {
         what: &'static str,
         file: PathBuf,
     },
+    /// Results of a sweep that are not to be lost.
+    #[error("{}", kept_results(.folder, .cases, "--force"))]
+    Results {
+        folder: PathBuf,
+        /// The names of their cases.
+        cases: Vec<String>,
+    },
     /// Simulation or estimate failed.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -95,6 +102,20 @@ pub fn inconsistency(file: Option<&Path>, contradiction: &Contradiction, option:
     format!("{file}the history is not consistent: {figure}. {cause}{accept}")
 }
 
+/// Results that a sweep would replace, and the option that lets it do so.
+#[must_use]
+pub fn kept_results(folder: &Path, cases: &[String], option: &str) -> String {
+    let (first, folder) = (cases.first().map_or("", String::as_str), folder.display());
+    let more = match cases.len().saturating_sub(1) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    format!(
+        "{folder}: {first}{more}: the results there are those of another case file or of another version of percute; \
+         name another folder, or give {option} to replace them"
+    )
+}
+
 impl Failure {
     /// Whether the case file, the history or the arguments are wrong, or ask for more memory than there is.
     #[must_use]
@@ -104,6 +125,7 @@ impl Failure {
             | Self::Unreadable { .. }
             | Self::Argument(_)
             | Self::Exists { .. }
+            | Self::Results { .. }
             | Self::NoFolder { .. }
             | Self::History { .. }
             | Self::Inconsistent { .. }

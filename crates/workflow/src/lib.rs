@@ -31,4 +31,4 @@ pub mod until;
 pub mod verify;
 pub mod writable;
 
-pub use failure::{Failure, inconsistency};
+pub use failure::{Failure, inconsistency, kept_results};

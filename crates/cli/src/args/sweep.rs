@@ -30,7 +30,7 @@ pub struct SweepArguments {
     /// Run nothing; print the names of the cases, with their status
     #[arg(long, conflicts_with_all = ["index", "force", "collect"])]
     pub list: bool,
-    /// Run cases that are done again
+    /// Run all cases and replace their results, also those of another case file or version
     #[arg(long)]
     pub force: bool,
     /// Allow runs of more than 1e10 elements times steps, which take minutes to hours

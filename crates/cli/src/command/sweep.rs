@@ -4,7 +4,7 @@ use super::Console;
 use crate::args::SweepArguments;
 use crate::exit::{DONE, FAILED, INTERRUPTED};
 use crate::progress::Watch;
-use percute_sweep::{Count, Launch, Plan, Planned, has_changed, run, states, write};
+use percute_sweep::{Count, Launch, Plan, Planned, run, states, write};
 use percute_workflow::Failure;
 use percute_workflow::effort::Long;
 use percute_workflow::message::counted;
@@ -35,11 +35,6 @@ pub(super) fn command(arguments: &SweepArguments, console: &mut Console<'_>) -> 
     let default = Launch::of(console.itself.to_vec());
     let (jobs, threads) = (arguments.jobs.unwrap_or(default.jobs), arguments.threads.unwrap_or(default.threads));
     let launch = Launch { jobs, threads, long, again: force, ..default };
-    let changed = chosen.iter().filter(|case| has_changed(&plan.folder, case)).count();
-    if changed > 0 && !quiet {
-        let cases = counted(changed, "case");
-        console.say(&format!("{cases} run again: the case file has changed since they were run"));
-    }
     let watch = &mut Watch::new(console.progress && !quiet, console.stop);
     let tell = &mut |name: &str, reason: &str| console.say(&format!("{name}: {}", reason.trim()));
     let count = run(&plan.folder, chosen.iter().copied(), &launch, tell, watch)?;

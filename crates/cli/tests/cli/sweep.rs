@@ -88,6 +88,42 @@ fn failures_are_recorded_and_the_rest_goes_on() {
     assert!(stdout(&again).starts_with("4 cases: 0 done, 2 done before, 2 failed"));
 }
 
+/// Results of another case file, of another version, or of no sweep stay until `--force` says otherwise.
+#[test]
+fn results_are_replaced_by_force_only() {
+    let bench = bench(SWEEP);
+    let sweep = |force: &[&str]| bench.percute(&[&["sweep", "sweep.toml", "--quiet"], force].concat());
+    assert_eq!(sweep(&[]).status.code(), Some(0));
+    let document = bench.path("sweep/nx=5,friction=0.1/result.json");
+    let kept = std::fs::read_to_string(&document).unwrap();
+    let refused = |named: &str| {
+        let output = sweep(&[]);
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        let told = stderr(&output);
+        assert!(told.contains(named) && told.contains("another case file") && told.contains("--force"), "{told}");
+    };
+    std::fs::write(bench.path("case.toml"), BLOCK.replace("young = 70e9", "young = 71e9")).unwrap();
+    refused("nx=5,friction=0.1 and 3 more");
+    assert_eq!(std::fs::read_to_string(&document).unwrap(), kept);
+    let forced = sweep(&["--force"]);
+    assert_eq!(stdout(&forced).lines().next(), Some("4 cases: 4 done"), "{}", stderr(&forced));
+    let replaced = std::fs::read_to_string(&document).unwrap();
+    assert_ne!(replaced, kept);
+    let version = format!("\"percute\": \"{}\"", env!("CARGO_PKG_VERSION"));
+    assert!(replaced.contains(&version), "{replaced}");
+    std::fs::write(&document, replaced.replace(&version, "\"percute\": \"0.0.1\"")).unwrap();
+    refused("nx=5,friction=0.1:");
+    std::fs::write(&document, replaced).unwrap();
+    // A case whose document was removed is run again; a folder of something else is not replaced.
+    std::fs::remove_file(bench.path("sweep/nx=5,friction=0.4/result.json")).unwrap();
+    assert_eq!(stdout(&sweep(&[])).lines().next(), Some("4 cases: 1 done, 3 done before"));
+    std::fs::write(bench.path("sweep.toml"), SWEEP.replace("[5, 6]", "[5, 6, 7]")).unwrap();
+    std::fs::create_dir(bench.path("sweep/nx=7,friction=0.1")).unwrap();
+    std::fs::write(bench.path("sweep/nx=7,friction=0.1/notes.txt"), "of mine").unwrap();
+    refused("nx=7,friction=0.1:");
+    assert!(!bench.path("sweep/nx=7,friction=0.4").exists(), "nothing is run");
+}
+
 #[test]
 fn parts_make_the_whole() {
     let (parts, whole) = (bench(SWEEP), bench(SWEEP));
