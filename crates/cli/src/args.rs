@@ -8,6 +8,7 @@ pub use export::{ExportArguments, Times};
 pub use sweep::SweepArguments;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 use percute_estimator::{Acceleration, MOST_THREADS, Reconstruction, Sampling, UnknownName, UnknownSampling};
 use percute_presentation::About;
 use percute_workflow::case::Instants;
@@ -45,6 +46,8 @@ pub enum Command {
     New(NewArguments),
     /// Print the JSON schema of case files, with which editors complete and check them
     Schema,
+    /// Print a script with which a shell completes commands, options and files
+    Completion(CompletionArguments),
     /// Simulate a case and estimate its error
     Run(RunArguments),
     /// Simulate a case and store its history, to be estimated later
@@ -87,6 +90,13 @@ pub enum Template {
     Block,
     /// A disc falls on the ground: the contact grows and shrinks
     Drop,
+}
+
+/// Arguments of `percute completion`.
+#[derive(Clone, Debug, Args)]
+pub struct CompletionArguments {
+    /// Name of the shell
+    pub shell: Shell,
 }
 
 /// Arguments of `percute run`.

@@ -1,5 +1,6 @@
 //! From arguments to exit code.
 
+mod completion;
 mod estimate;
 mod export;
 mod info;
@@ -68,6 +69,7 @@ where
         Ok(Arguments { command }) => match command {
             Command::New(arguments) => new::command(&arguments, console),
             Command::Schema => schema::command(console),
+            Command::Completion(arguments) => completion::command(&arguments, console),
             Command::Run(arguments) => run::command(&arguments, console),
             Command::Simulate(arguments) => simulate::command(&arguments, console),
             Command::Estimate(arguments) => estimate::command(&arguments, console),

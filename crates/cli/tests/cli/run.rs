@@ -298,3 +298,27 @@ fn planes_are_counted_from_0_in_tables() {
     planes.dedup();
     assert!(planes.iter().all(|plane| [0.0, 1.0].contains(plane)) && planes.len() > 1, "{planes:?}");
 }
+
+/// Each shell has all commands and options, and bash takes its script.
+#[test]
+fn shells_complete_the_command() {
+    let bench = Bench::new(BLOCK);
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let output = bench.percute(&["completion", shell]);
+        let script = stdout(&output);
+        assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""), "{shell}");
+        for word in ["completion", "simulate", "reconstruction", "accept-inconsistent"] {
+            assert!(script.contains(word), "{shell}: {word}");
+        }
+    }
+    let unknown = bench.percute(&["completion", "csh"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(stderr(&unknown).contains("bash, elvish, fish, powershell, zsh"), "{}", stderr(&unknown));
+    let script = format!(
+        "{}\nCOMP_WORDS=(percute run --est); COMP_CWORD=2; _percute percute --est run; echo \"${{COMPREPLY[@]}}\"",
+        stdout(&bench.percute(&["completion", "bash"]))
+    );
+    if let Ok(told) = std::process::Command::new("bash").args(["-c", &script]).output() {
+        assert_eq!(stdout(&told).trim(), "--estimate", "{}", stderr(&told));
+    }
+}
