@@ -115,7 +115,7 @@ def simulate(
         After Ctrl-C, and with ``store`` after the file is closed and complete. Like any exception that stops the run, it has the
         steps done as its ``history``; None before the first.
     """
-    instance("problem", problem, Problem)
+    problem = with_planes_moved(instance("problem", problem, Problem), courant, step, steps)
     file = None if store is None else vtkhdf("store", store)
     keep = kept(every, times, fields, file)
     replace = flag("overwrite", overwrite)
@@ -126,6 +126,13 @@ def simulate(
         data, drift = _percute.simulate(problem._data, grid, absolute(file), keep, replace, tell)
     warn([] if drift is None else [drift], SimulationWarning)
     return History._of(data, problem, "" if file is None else encodable(file))
+
+
+def with_planes_moved(problem: Problem, courant: float | None, step: float | None, steps: ArrayLike | None) -> Problem:
+    """Give the problem with planes moved away on which a body starts and into which it moves."""
+    _, ratio, length, lengths = times_of(None, courant, step, steps)
+    moved = problem._data.with_planes_moved(ratio, length, lengths)
+    return problem if moved is None else Problem._of(moved)
 
 
 def instants_of(

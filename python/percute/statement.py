@@ -97,7 +97,11 @@ class Plane:
     Parameters
     ----------
     point : (dimension,) floats
-        A point of the plane (m); one number for a bar.
+        A point of the plane (m); one number for a bar. Give it or ``gap``.
+    gap : float or "auto"
+        Distance from the nearest node that may touch the plane, at the start (m). With "auto" it is the least gap in which a node
+        can come to rest in the first step of a simulation; also a plane on which a body starts and into which it moves is moved back
+        by this gap, with a warning.
     normal : (dimension,) floats
         A normal of any length, from the plane to the body.
     friction : float
@@ -106,16 +110,24 @@ class Plane:
         Only edges of this group may touch; by default all free ones that face the plane.
     """
 
-    point: Vector | ArrayLike
+    point: Vector | ArrayLike | None = None
     normal: Vector | ArrayLike
+    gap: float | Literal["auto"] | None = None
     friction: float | None = None
     group: str | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "point", vector("point", self.point))
+        if (self.point is None) == (self.gap is None):
+            raise InputError('give the plane either a `point` (m) or a `gap`: "auto", or a number in m')
+        if self.point is not None:
+            object.__setattr__(self, "point", vector("point", self.point))
+        elif isinstance(self.gap, str) and self.gap != "auto":
+            raise wrong("gap", self.gap, '"auto" or a number in m, 0 or more')
+        elif not isinstance(self.gap, str):
+            object.__setattr__(self, "gap", number("gap", self.gap, unit="m"))
         object.__setattr__(self, "normal", vector("normal", self.normal))
         friction = self.friction
-        if friction is None and len(cast("Vector", self.point)) > 1:
+        if friction is None and len(cast("Vector", self.normal)) > 1:
             raise InputError("`friction` is missing: give the coefficient of friction, 0 without friction")
         object.__setattr__(self, "friction", 0.0 if friction is None else number("friction", friction))
         if self.group is not None:

@@ -18,7 +18,7 @@ from percute.errors import InputError
 from percute.estimating import pace, sampling
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
-from percute.simulation import instants_of
+from percute.simulation import instants_of, with_planes_moved
 from percute.words import counted
 
 if TYPE_CHECKING:
@@ -183,7 +183,7 @@ def verify(
     SimulationError, EstimateError
         A run failed.
     """
-    instance("problem", problem, Problem)
+    problem = with_planes_moved(instance("problem", problem, Problem), courant, step, steps)
     count = whole("levels", levels)
     if count > _percute.MOST_LEVELS:
         raise InputError(f"`levels` is {count}; give 1 to {_percute.MOST_LEVELS} refinements")

@@ -104,7 +104,6 @@ BEYOND = {
     "a group that does not face its plane": "the geometry of the mesh",
     "a group that is loaded and may touch": "two groups of the mesh",
     "a plane that only supported edges face": "two groups of the mesh",
-    "a body that starts on the plane and moves into it": "the geometry of the mesh",
     "a start too near to come to rest": "the critical step",
     "a body in mm above a plane in m": "the critical step",
     "a body of some metres that starts too near to its plane, or whose lengths are in another unit": "the critical step",

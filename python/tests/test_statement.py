@@ -1,5 +1,6 @@
 """Stating a problem: values, and every mistake with the name of its argument."""
 
+import json
 import pickle
 import re
 from typing import Any
@@ -7,7 +8,7 @@ from typing import Any
 import numpy as np
 import percute as pc
 import pytest
-from conftest import bar, block
+from conftest import bar, block, block_case
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -195,6 +196,49 @@ def test_a_start_that_is_too_near_names_its_plane() -> None:
     )
     with pytest.raises(pc.InputError, match=re.escape("`obstacles[0].point`: node 0 starts 1.000000e-6 m")):
         pc.simulate(problem, end=1.0, courant=0.9)
+
+
+def test_a_plane_that_is_struck_at_once_is_moved_by_the_least_gap() -> None:
+    """The case and Python move the same plane by the same gap, v Δt/4, and the history has the moved plane."""
+    case = block_case("rectangle = { width = 0.05, height = 0.04, nx = 5, ny = 4 }", speed=4.0, end=4e-6)
+    found = re.search(r"point = \[[^]]*\]", case)
+    assert found is not None
+    stated = block(5, 4)
+    histories = []
+    for place in ({"gap": "auto"}, {"gap": 0.0}, {"point": (0.0, 0.0)}):
+        problem = pc.Problem(
+            stated.mesh, material=stated.material, obstacles=[pc.Plane(normal=(0, 1), friction=0.2, **place)], initial_velocity=(4.0, -4.0)  # type: ignore[arg-type]
+        )
+        assert problem.obstacles[0].point == (0.0, 0.0)
+        with pytest.warns(pc.InputWarning, match=r"`obstacles\[0\].point`: plane 0 was moved back along its normal by .* at 4 m/s"):
+            histories.append(pc.simulate(problem, end=4e-6, courant=0.9))
+        assert problem.obstacles[0].point == (0.0, 0.0)
+        with pytest.raises(pc.InputError, match="leave a gap"):
+            pc.History.from_arrays(problem, time=[0.0, 1e-7], displacement=np.zeros((2, len(stated.mesh.points), 2)))
+    (x, y), step = histories[0].problem.obstacles[0].point, 0.9 * stated.critical_time_step  # type: ignore[misc]
+    # The least gap is rounded up by 1e-5 of it.
+    assert x == 0.0 and -y == pytest.approx(0.25 * 4.0 * step, rel=2e-5)
+    assert all(np.array_equal(each.displacement, histories[0].displacement) for each in histories)
+    with pytest.warns(pc.InputWarning, match="plane 0 was moved back"):
+        estimate = pc.run(case.replace(found[0], 'gap = "auto"'))
+    assert estimate.problem.obstacles[0].point == (x, y)
+    assert "moved_plane" in [each["name"] for each in json.loads(estimate.to_json())["warnings"]]
+    assert estimate.sup == pc.estimate(histories[0]).sup
+    with pytest.warns(pc.InputWarning, match="plane 0 was moved back"):
+        verified = pc.verify(problem, end=4e-6, courant=0.9, levels=1)
+    assert len(verified.elements) == 2
+
+
+def test_a_plane_of_a_rebound_is_moved_too() -> None:
+    bar = pc.Problem(
+        pc.Mesh.bar(0.1, elements=20),
+        material=pc.Elastic(young=70e9, density=2700.0, section=0.02),
+        obstacles=[pc.Plane(gap="auto", normal=1)],
+        initial_velocity=-1.0,
+    )
+    with pytest.warns(pc.InputWarning, match="plane 0 was moved back"):
+        history = pc.simulate(bar, end="rebound", longest=1e-3, courant=0.9)
+    assert history.contact.resultants.normal_force.max() > 0.0 and history.complete
 
 
 def test_variable_steps_are_taken_as_they_are() -> None:

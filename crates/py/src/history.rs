@@ -44,6 +44,7 @@ impl HistoryData {
         motion: (Option<PyReadonlyArray3<'_, f64>>, Option<PyReadonlyArray3<'_, f64>>),
         origin: Option<(Option<String>, Vec<String>)>,
     ) -> PyResult<Self> {
+        problem.check_planes(py)?;
         let times = TimeGrid::from_instants(times).map_err(|error| errors::input(py, error))?;
         let given = Given {
             count: touching.as_array().nrows(),
@@ -74,6 +75,7 @@ impl HistoryData {
         acceleration: Option<PyReadonlyArray3<'_, f64>>,
         program: Option<String>,
     ) -> PyResult<(Self, Option<String>)> {
+        problem.check_planes(py)?;
         let times = TimeGrid::from_instants(times).map_err(|error| errors::input(py, format!("`time`: {error}")))?;
         let given = Given {
             count: times.instants().len(),

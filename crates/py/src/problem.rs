@@ -60,6 +60,14 @@ impl ProblemData {
     }
 }
 
+impl ProblemData {
+    /// Refuses a body that starts on a plane and moves into it, for histories that are not simulated here.
+    pub(crate) fn check_planes(&self, py: Python<'_>) -> PyResult<()> {
+        let checked = each_dimension!(&self.problem, p => p.check_planes());
+        checked.map_err(|error| errors::problem(py, &error, &[]))
+    }
+}
+
 #[pymethods]
 impl ProblemData {
     /// Checks and builds; `materials` pairs each group of elements, or none, with its material. With `automatic` all
@@ -96,6 +104,38 @@ impl ProblemData {
     #[getter]
     fn critical_time_step(&self, py: Python<'_>) -> PyResult<f64> {
         self.critical_step(py)
+    }
+
+    /// The problem with planes moved away that a body is on and moves into, for steps as `simulate` takes them; none
+    /// without such a plane, or if the steps make no sense.
+    fn with_planes_moved(
+        &self,
+        py: Python<'_>,
+        courant: Option<f64>,
+        step: Option<f64>,
+        steps: Option<Vec<f64>>,
+    ) -> PyResult<Option<Self>> {
+        if each_dimension!(&self.problem, p => p.check_planes()).is_ok() {
+            return Ok(None);
+        }
+        let first = match (courant, step, steps.as_deref()) {
+            (Some(courant), None, None) => courant * self.critical_step(py)?,
+            (None, Some(step), None) => step,
+            (None, None, Some([first, ..])) => *first,
+            _ => return Ok(None),
+        };
+        if !(first.is_finite() && first > 0.0) {
+            return Ok(None);
+        }
+        Ok(match &self.problem {
+            ByDimension::Bar(problem) => {
+                problem.with_planes_moved(first).map(|moved| ByDimension::Bar(Arc::new(moved)))
+            }
+            ByDimension::Plane(problem) => {
+                problem.with_planes_moved(first).map(|moved| ByDimension::Plane(Arc::new(moved)))
+            }
+        }
+        .map(Self::new))
     }
 
     #[getter]
@@ -251,7 +291,7 @@ fn assemble<const D: usize, const N: usize>(mesh: &Mesh<D, N>, stated: Stated<D>
     builder = stated.supports.into_iter().fold(builder, |b, support| b.support(support));
     builder = stated.tractions.into_iter().fold(builder, |b, traction| b.traction(traction));
     builder = stated.body_forces.into_iter().fold(builder, |b, force| b.body_force(force));
-    builder.build()
+    builder.planes_to_be_moved().build()
 }
 
 /// Reads each object of a list under its name.

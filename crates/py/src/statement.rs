@@ -70,9 +70,13 @@ pub(crate) fn material<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> 
 /// One plane.
 pub(crate) fn plane<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Obstacle<D>> {
     let py = given.py();
-    let point = vector(py, &format!("{name}.point"), &attribute::<Vec<f64>>(given, "point")?)?;
     let normal = vector(py, &format!("{name}.normal"), &attribute::<Vec<f64>>(given, "normal")?)?;
-    let made = Obstacle::plane(point, normal, attribute(given, "friction")?, attribute(given, "group")?);
+    let (friction, group) = (attribute(given, "friction")?, attribute(given, "group")?);
+    let made = match attribute::<Option<Vec<f64>>>(given, "point")? {
+        Some(point) => Obstacle::plane(vector(py, &format!("{name}.point"), &point)?, normal, friction, group),
+        // A plane that the body strikes at once is moved away by the least gap.
+        None => Obstacle::plane_at_gap(attribute(given, "gap").unwrap_or(0.0), normal, friction, group),
+    };
     // The message begins with the name of the value.
     made.map_err(|error: ObstacleError| errors::input(py, format!("`{name}`: {error}")))
 }

@@ -41,7 +41,7 @@ SOURCES = ("surface", "front", "dispersion", "mesh")
 def planes_of(estimate: Estimate) -> list[Line]:
     """Give the planes; an estimate from a file has them in its report."""
     if estimate.problem is not None:
-        return [(each.point, each.normal) for each in estimate.problem.obstacles]
+        return [(each.point, each.normal) for each in estimate.problem.obstacles if each.point is not None]
     obstacles = json.loads(estimate.to_json())["problem"]["obstacles"]
     return [(each["point"], each["normal"]) for each in obstacles if each["point"] is not None]
 

@@ -98,7 +98,7 @@ def draw_field(
     mesh = history.problem.mesh
     factor, prefix = prefixed(values if span is None else np.array(span))
     label = f"{name} ({prefix}{unit})"
-    planes: list[Line] = [(each.point, each.normal) for each in history.problem.obstacles]
+    planes: list[Line] = [(each.point, each.normal) for each in history.problem.obstacles if each.point is not None]
     limits = None if span is None else Scale(span[0] / factor, span[1] / factor)
     if mesh.dimension == 1:
         draw_bar(axes, mesh.points, mesh.cells, values / factor, label, scale=limits, planes=planes)

@@ -322,3 +322,30 @@ fn shells_complete_the_command() {
         assert_eq!(stdout(&told).trim(), "--estimate", "{}", stderr(&told));
     }
 }
+
+/// A plane that is struck at once is moved back: summary, JSON and standard error say so, the history has the moved
+/// plane, and its estimate is that of the run. The same case runs on each mesh of a sweep.
+#[test]
+fn a_plane_with_the_least_gap() {
+    let case = BLOCK.replace("point = [0.0, -0.0005]", "gap = \"auto\"");
+    assert_ne!(case, BLOCK);
+    let bench = Bench::new(&case);
+    let output = bench.percute(&["run", "case.toml", "--history", "h.vtkhdf"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("warning: case.toml:14: [[obstacle]] 1, point: plane 0 was moved back along its"));
+    assert!(stdout(&output).contains("plane 0 moved back by "), "{}", stdout(&output));
+    let document = json(&case, &[]);
+    assert!(warnings(&document).contains(&"moved_plane".to_string()));
+    let step = at(&document, "time_step").as_f64().unwrap();
+    let least = 0.25 * 400.0 * step;
+    let gap = -document["problem"]["obstacles"][0]["point"][1].as_f64().unwrap();
+    // Rounded up by 1e-5; the step is that before it is fitted to the end.
+    assert!(gap >= least && gap < 1.2 * least, "{gap} against {least}");
+    let later = bench.percute(&["estimate", "h.vtkhdf", "--json"]);
+    assert_eq!(later.status.code(), Some(0), "{}", stderr(&later));
+    let later: Value = serde_json::from_slice(&later.stdout).unwrap();
+    assert_eq!((&later["error"], &later["problem"]), (&document["error"], &document["problem"]));
+    std::fs::write(bench.path("s.toml"), "case = \"case.toml\"\n[grid]\nmesh.rectangle.nx = [4, 5, 9]\n").unwrap();
+    let swept = bench.percute(&["sweep", "s.toml", "--quiet"]);
+    assert_eq!(stdout(&swept).lines().next(), Some("3 cases: 3 done"), "{}", stderr(&swept));
+}

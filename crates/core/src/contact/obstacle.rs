@@ -21,6 +21,12 @@ pub enum ObstacleError {
         point: Vec<f64>,
     },
     /// Negative or not finite.
+    #[error("`gap` is {gap} m; it must be zero or positive, or \"auto\"")]
+    Gap {
+        /// The gap given.
+        gap: f64,
+    },
+    /// Negative or not finite.
     #[error("`friction` is {friction}; the coefficient must be zero or positive")]
     Friction {
         /// The coefficient given.
@@ -40,6 +46,8 @@ pub struct Obstacle<const D: usize> {
     shape: Shape<D>,
     law: Coulomb,
     group: Option<String>,
+    /// Of a plane that is still to be placed, its gap at the start (m).
+    gap: Option<f64>,
 }
 
 /// The kinds of obstacles.
@@ -67,13 +75,43 @@ impl<const D: usize> Obstacle<D> {
         if point.iter().any(|x| !x.is_finite()) {
             return Err(ObstacleError::Point { point: point.to_vec() });
         }
-        Ok(Self { shape: Shape::Plane(shape), law: coulomb::<D>(friction)?, group })
+        Ok(Self { shape: Shape::Plane(shape), law: coulomb::<D>(friction)?, group, gap: None })
+    }
+
+    /// The same plane, `gap` (m) from the nearest node that may touch it at the start.
+    ///
+    /// # Errors
+    /// As [`Obstacle::plane`], and a gap that is negative or not finite.
+    pub fn plane_at_gap(
+        gap: f64,
+        normal: [f64; D],
+        friction: f64,
+        group: Option<String>,
+    ) -> Result<Self, ObstacleError> {
+        if !gap.is_finite() || gap < 0.0 {
+            return Err(ObstacleError::Gap { gap });
+        }
+        Ok(Self { gap: Some(gap), ..Self::plane([0.0; D], normal, friction, group)? })
+    }
+
+    /// Of a plane that is still to be placed, its gap at the start (m).
+    pub(crate) fn gap_to_place(&self) -> Option<f64> {
+        self.gap
+    }
+
+    /// A plane in its place, moved against its normal by a distance (m).
+    pub(crate) fn moved_back(&self, distance: f64) -> Self {
+        let shape = match &self.shape {
+            Shape::Plane(plane) => Shape::Plane(plane.moved_back(distance)),
+            surface @ Shape::Surface(..) => surface.clone(),
+        };
+        Self { shape, gap: None, ..self.clone() }
     }
 
     /// The surface of another body, as a group of facets meets it; `normal` is the unit normal from there to the group.
     /// With `sliding`, the two slide along each other: it is their index in the contact surface.
     pub(crate) fn surface(normal: [f64; D], law: Coulomb, group: String, sliding: Option<usize>) -> Self {
-        Self { shape: Shape::Surface(Frame::new(normal), sliding), law, group: Some(group) }
+        Self { shape: Shape::Surface(Frame::new(normal), sliding), law, group: Some(group), gap: None }
     }
 
     /// The index of the surfaces that slide, if it is one of them.

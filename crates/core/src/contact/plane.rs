@@ -42,6 +42,11 @@ impl<const D: usize> Plane<D> {
         Frame::new(self.normal)
     }
 
+    /// The plane, moved against its normal by a distance (m).
+    pub(super) fn moved_back(&self, distance: f64) -> Self {
+        Self { point: self.point_behind(distance), ..self.clone() }
+    }
+
     /// The stated point (m), moved against the normal by a depth.
     pub(crate) fn point_behind(&self, depth: f64) -> [f64; D] {
         std::array::from_fn(|c| self.point[c] - depth * self.normal[c])

@@ -244,6 +244,24 @@ impl<const D: usize> ContactSurface<D> {
         }
     }
 
+    /// Moves a plane against its normal by a distance (m).
+    pub(crate) fn move_back(&mut self, obstacle: usize, distance: f64) {
+        self.obstacles[obstacle] = self.obstacles[obstacle].moved_back(distance);
+        let Some(plane) = self.obstacles[obstacle].as_plane() else { return };
+        for (contact, point) in self.nodes.iter_mut().zip(&self.points).filter(|(c, _)| c.obstacle == obstacle) {
+            contact.undeformed_gap = plane.gap(point);
+        }
+    }
+
+    /// Puts a plane that states a gap in its place, with these displacements of all nodes of the mesh (m).
+    pub(crate) fn place(&mut self, obstacle: usize, displacement: &[[f64; D]]) {
+        let Some(gap) = self.obstacles[obstacle].gap_to_place() else { return };
+        let nodes = self.nodes.iter().enumerate().filter(|(_, c)| c.obstacle == obstacle && c.free);
+        let gaps = nodes.map(|(at, c)| self.gap(at, &displacement[c.node.index()]));
+        let least = gaps.fold(f64::INFINITY, f64::min);
+        self.move_back(obstacle, gap - least);
+    }
+
     /// Adds two surfaces that slide along each other, of which the nodes and facets have been added.
     pub(crate) fn add_sliding(&mut self, sliding: SlidingSurfaces<D>) {
         self.sliding.push(sliding);

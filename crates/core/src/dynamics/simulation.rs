@@ -39,10 +39,11 @@ pub enum SimulationError {
     /// A node that touches at step 1 from too near: no admissible velocity brings it to rest.
     #[error(
         "node {node} starts {gap:.6e} m from {} at {speed} m/s and touches in the first step of {step:.4e} s, too near \
-         to come to rest there; start at least {:.6e} m away, or with a first step of at most {:.4e} s",
+         to come to rest there; start at least {:.6e} m away{}, or with a first step of at most {:.4e} s",
         if *.plane { "its plane" } else { "the other body" },
         // As they are printed they will do.
         (1.0 + 1e-6) * *.smallest_gap,
+        if *.plane { ", as a plane with the `gap` \"auto\" in place of a point does" } else { "" },
         (1.0 - 1e-4) * *.largest_step
     )]
     StartsTooNear {

@@ -61,6 +61,7 @@ pub struct Builder<const D: usize, const N: usize> {
     obstacles: Vec<Obstacle<D>>,
     contacts: Vec<Contact>,
     automatic: bool,
+    planes_to_be_moved: bool,
 }
 
 impl<const D: usize, const N: usize> Builder<D, N> {
@@ -73,6 +74,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             obstacles: Vec::new(),
             contacts: Vec::new(),
             automatic: false,
+            planes_to_be_moved: false,
         }
     }
 
@@ -170,6 +172,14 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         self
     }
 
+    /// A body may start on a plane and move into it: before a simulation, [`Problem::with_planes_moved`] moves the plane
+    /// away.
+    #[must_use]
+    pub fn planes_to_be_moved(mut self) -> Self {
+        self.planes_to_be_moved = true;
+        self
+    }
+
     /// Materials and body forces are counted in 16 bits.
     fn check_counts(&self) -> Result<(), InputError> {
         let most = usize::from(u16::MAX) - 1;
@@ -234,12 +244,13 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             element_body_loads,
             surface,
             contacts: places,
+            moved_planes: Vec::new(),
             critical_step: OnceLock::new(),
             stated: self.stated,
             mesh: self.mesh.with_facet_groups(groups),
         };
         start_with_supports(&mut problem)?;
-        start_of_contact::check(&problem)?;
+        start_of_contact::check(&problem, self.planes_to_be_moved)?;
         Ok(problem)
     }
 }

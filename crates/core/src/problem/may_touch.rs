@@ -51,9 +51,12 @@ fn planes<const D: usize, const N: usize>(
     let mut surface = ContactSurface::default();
     for (index, obstacle) in obstacles.into_iter().enumerate() {
         let Some(plane) = obstacle.as_plane().cloned() else { continue };
-        in_front(bodies.mesh, &plane, displacement).map_err(|cause| cause.at("obstacle", Some(index), "normal"))?;
+        if obstacle.gap_to_place().is_none() {
+            in_front(bodies.mesh, &plane, displacement).map_err(|cause| cause.at("obstacle", Some(index), "normal"))?;
+        }
         let (held, fixed) = (|f: FacetId| bodies.held[f.index()], |node: NodeId| bodies.fixed[node.index()]);
         candidates::add(&mut surface, bodies.mesh, (obstacle, &plane), held, fixed, |f| bodies.area(f))?;
+        surface.place(surface.obstacles().len() - 1, displacement);
     }
     Ok(surface)
 }

@@ -12,6 +12,7 @@ mod facing_edges;
 mod gaps;
 mod joined;
 mod may_touch;
+mod moved_planes;
 mod pairs;
 mod plausibility;
 mod renumber;
@@ -25,6 +26,7 @@ pub(crate) mod symmetry;
 pub use bodies::{Between, Contact};
 pub use builder::{Builder, Initial, Statement};
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
+pub use moved_planes::MovedPlane;
 pub use plausibility::{
     PlausibilityWarning, RefusedStart, SMALL_ROTATION, cause_of_refused_start, plausibility_warnings,
 };
@@ -89,6 +91,7 @@ pub struct Problem<const D: usize, const N: usize> {
     surface: ContactSurface<D>,
     /// Where each of the interfaces is stated.
     contacts: Vec<Place>,
+    moved_planes: Vec<MovedPlane>,
     /// Δt_c (s), once it is known.
     critical_step: OnceLock<f64>,
 }

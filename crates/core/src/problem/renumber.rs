@@ -44,6 +44,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
             body_loads: self.body_loads.iter().map(body_load).collect(),
             element_body_loads: self.element_body_loads.first().map_or_else(Vec::new, body_forces),
             contacts: self.contacts.clone(),
+            moved_planes: self.moved_planes.clone(),
             critical_step: self.critical_step.clone(),
             surface: self.surface.renumbered(&self.mesh, &new),
             mesh,

@@ -8,20 +8,40 @@ use crate::ids::ElementId;
 /// Bodies that overlap by less than this part of the size of the mesh are not told from those that touch.
 const ROUNDING: f64 = 1e-9;
 
-/// At t = 0 no candidate node may lie behind its obstacle, nor on it with an inward velocity.
-pub(super) fn check<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<(), InputError> {
+/// At t = 0 no candidate node may lie behind its obstacle, nor on it with an inward velocity; with `planes_to_be_moved`,
+/// on other bodies only.
+pub(super) fn check<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    planes_to_be_moved: bool,
+) -> Result<(), InputError> {
     let starts = problem.starts_of_contact();
     check_deepest(problem, &starts)?;
     check_apart(problem)?;
-    let tolerance = problem.contact_tolerance();
-    for (at, contact) in problem.surface().nodes().iter().enumerate().filter(|&(at, _)| problem.surface().leads(at)) {
-        let (gap, normal) = starts[at];
-        if gap <= tolerance && normal < -problem.speed_tolerance() && contact.free {
-            let cause = Cause::StrikesAtStart { node: contact.node.index(), gap, speed: -normal };
-            return Err(InputError { place: problem.place_of_obstacle(contact.obstacle), cause });
-        }
+    let is_plane = |at: &usize| problem.obstacles()[problem.surface().nodes()[*at].obstacle].as_plane().is_some();
+    match striking(problem, &starts).find(|at| !(planes_to_be_moved && is_plane(at))) {
+        Some(at) => Err(strikes(problem, at, starts[at])),
+        None => Ok(()),
     }
-    Ok(())
+}
+
+/// The candidate nodes on their obstacles that move into them, as positions in the contact surface.
+pub(super) fn striking<'a, const D: usize, const N: usize>(
+    problem: &'a Problem<D, N>,
+    starts: &'a [(f64, f64)],
+) -> impl Iterator<Item = usize> + 'a {
+    let (surface, tolerance) = (problem.surface(), problem.contact_tolerance());
+    let strikes = move |(gap, normal): (f64, f64)| gap <= tolerance && normal < -problem.speed_tolerance();
+    (0..starts.len()).filter(move |&at| surface.leads(at) && surface.nodes()[at].free && strikes(starts[at]))
+}
+
+pub(super) fn strikes<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    at: usize,
+    (gap, normal): (f64, f64),
+) -> InputError {
+    let contact = &problem.surface().nodes()[at];
+    let cause = Cause::StrikesAtStart { node: contact.node.index(), gap, speed: -normal };
+    InputError { place: problem.place_of_obstacle(contact.obstacle), cause }
 }
 
 /// The gap of the deepest node, for which contact is solved, is not negative.

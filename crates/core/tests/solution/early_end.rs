@@ -78,6 +78,80 @@ fn a_start_too_near_names_what_will_do() {
     assert!(simulate_at(4.0 * smallest_gap, dt).is_ok());
 }
 
+/// A bar that starts on its plane, and one at a stated gap; in the same place the two are the same.
+#[test]
+fn a_plane_is_placed_by_its_gap() {
+    for gap in [0.0, 1e-6, 0.25] {
+        let stated = |plane| {
+            BarProblem::builder(BarMesh::uniform_bar(0.1, 10).unwrap())
+                .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
+                .initial_displacement(Initial::Uniform([0.5]))
+                .obstacle(plane)
+                .build()
+                .unwrap()
+        };
+        let placed = stated(Obstacle::plane_at_gap(gap, [2.0], 0.0, None).unwrap());
+        let plane = placed.obstacles()[0].as_plane().unwrap();
+        // Node 0 is at 0.5 at the start; rounding of one difference.
+        assert!((plane.point()[0] - (0.5 - gap)).abs() < 1e-16 && (placed.initial_gap(0) - gap).abs() < 1e-16);
+        let again = stated(Obstacle::plane(*plane.point(), [2.0], 0.0, None).unwrap());
+        assert_eq!((placed.obstacles(), placed.surface()), (again.obstacles(), again.surface()));
+    }
+    assert!([-1e-9, f64::NAN, f64::INFINITY].iter().all(|gap| Obstacle::plane_at_gap(*gap, [1.0], 0.0, None).is_err()));
+}
+
+/// A block on a plane in any direction, of which the nodes have velocities of their own: the simulation takes the plane
+/// that was moved, refuses it half a percent nearer, and the moved plane is the same problem as one stated there.
+#[test]
+fn a_plane_that_is_struck_at_once_is_moved_by_the_least_gap() {
+    for seed in 0..20 {
+        let mut random = Random::new(seed);
+        let mesh = random_rectangle(0.05, 0.04, 5, 4).unwrap();
+        // The longer side of the block is along the plane, or a corner is nearest.
+        let angle = if seed % 2 == 0 { 0.0 } else { random.between(-0.7, 0.7) };
+        let normal = [f64::sin(angle), f64::cos(angle)];
+        let mut velocity = |_| std::array::from_fn(|c| -10.0 * normal[c] + random.between(-2.0, 2.0));
+        let velocity: Vec<[f64; 2]> = (0..mesh.node_count()).map(&mut velocity).collect();
+        let stated = |plane: Obstacle<2>| {
+            TriangleProblem::builder(mesh.clone())
+                .material(aluminium())
+                .initial_velocity(Initial::Nodal(velocity.clone()))
+                .obstacle(plane)
+        };
+        let touching = || stated(Obstacle::plane_at_gap(0.0, normal, 0.3, None).unwrap());
+        assert!(touching().build().is_err(), "a problem that is not simulated keeps its plane");
+        let struck = touching().planes_to_be_moved().build().unwrap();
+        assert!(struck.check_planes().is_err() && struck.moved_planes().is_empty());
+        let times = TimeGrid::with_step(1e-6, 0.9 * critical_time_step(&struck)).unwrap();
+        let moved = struck.with_planes_moved(times.step(0)).unwrap();
+        assert!(moved.with_planes_moved(times.step(0)).is_none(), "seed {seed}");
+        simulate(&moved, &times, &mut Discard, &mut Unobserved).unwrap();
+        let [told] = moved.moved_planes() else { panic!("seed {seed}") };
+        let at = |point: [f64; 2]| stated(Obstacle::plane(point, normal, 0.3, None).unwrap()).build().unwrap();
+        let [from, to] = [&struck, &moved].map(|problem| *problem.obstacles()[0].as_plane().unwrap().point());
+        assert_eq!((at(to).obstacles(), at(to).surface()), (moved.obstacles(), moved.surface()));
+        let distance = (0..2).map(|c| (from[c] - to[c]) * normal[c]).sum::<f64>();
+        // Rounding of coordinates of centimetres, over micrometres.
+        assert!((distance / told.distance - 1.0).abs() < 1e-10, "seed {seed}: {distance} {told:?}");
+        let nearer = at(std::array::from_fn(|c| from[c] + 0.995 * (to[c] - from[c])));
+        let nearer = simulate(&nearer, &times, &mut Discard, &mut Unobserved);
+        assert!(matches!(nearer, Err(SimulationError::StartsTooNear { .. })), "seed {seed}");
+    }
+}
+
+/// Who rests on a plane, or leaves it, stays on it.
+#[test]
+fn a_plane_that_is_not_struck_stays() {
+    for speed in [0.0, 3.0] {
+        let bar = BarProblem::builder(BarMesh::uniform_bar(0.1, 10).unwrap())
+            .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
+            .initial_velocity(Initial::Uniform([speed]))
+            .obstacle(Obstacle::plane([0.0], [1.0], 0.0, None).unwrap());
+        let bar = bar.planes_to_be_moved().build().unwrap();
+        assert!(bar.with_planes_moved(1e-6).is_none() && bar.initial_gap(0) == 0.0);
+    }
+}
+
 /// A step is done when it was handed on: what an interrupted run hands on is the beginning of the
 /// whole run, bit by bit.
 #[test]

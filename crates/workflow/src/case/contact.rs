@@ -37,7 +37,7 @@ fn one<const D: usize>(table: &Table<'_>, shape: Shape, parts: usize) -> Result<
     Contact::new::<D>(between, friction, matching).map_err(|error| {
         let key = match error {
             ObstacleError::Friction { .. } | ObstacleError::FrictionInOneDimension { .. } => "friction",
-            ObstacleError::Normal { .. } | ObstacleError::Point { .. } => "groups",
+            ObstacleError::Normal { .. } | ObstacleError::Point { .. } | ObstacleError::Gap { .. } => "groups",
         };
         table.get(key).map_or_else(|| table.error(error.to_string()), |value| value.error(error.to_string()))
     })

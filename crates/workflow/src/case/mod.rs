@@ -13,7 +13,7 @@
 //! - `[material]`, or several `[[material]]` each with a `group` of elements: `young`, `density`, and
 //!   `poisson`, `plane` (`"stress"` or `"strain"`), `thickness` (1 unless given); a bar: `section`;
 //! - `[initial]`: `velocity`, `displacement`, zero unless given; uniform, or one entry for each node;
-//! - `[[obstacle]]`: `point`, `normal`, `friction` (not for bars), `group`;
+//! - `[[obstacle]]`: `point` or `gap` (m, or "auto"), `normal`, `friction` (not for bars), `group`;
 //! - `[[contact]]`: `bodies`, two names, or `groups`, a group of edges of each, or neither for all other bodies;
 //!   `friction` (not for bars), `matching`;
 //! - `[[support]]`: `group`, `components`, `velocity = { time, value }` with a number per instant for
@@ -221,14 +221,15 @@ fn read<const D: usize, const N: usize>(
     let wanted = time::read(root)?;
     let problem = problem()?;
     let critical_step = percute_core::dynamics::critical_time_step(&problem);
+    let problem = problem.with_planes_moved(wanted.first_step(critical_step)).unwrap_or(problem);
     let (times, until) = (wanted.grid(critical_step)?, wanted.until(&problem, critical_step)?);
     output::check(root, &output, times.end())?;
     let (source, unended) = (source.clone(), None);
     Ok(CaseOf { source, problem, times, until, unended, critical_step, options, output, mesh_files })
 }
 
-/// The place and the cause of a start that the simulation refuses: a wrong unit, if there seems to be one, else the
-/// obstacle. Beside a unit that is hardly right there is no other remedy.
+/// The place and the cause of a start that the simulation refuses: a unit that is hardly right, beside which there is no
+/// other remedy, else the obstacle.
 #[must_use]
 pub fn refused_start<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
@@ -240,7 +241,10 @@ pub fn refused_start<const D: usize, const N: usize>(
         Some(RefusedStart { cause, likely: true }) => {
             (cause.place, format!("{}. As it is, the body starts too near to its plane", cause.message))
         }
-        Some(RefusedStart { cause, .. }) => (cause.place, format!("{}. As it is, {error}", cause.message)),
+        // Many bodies are so large, and all may start too near.
+        Some(RefusedStart { cause, .. }) => {
+            (problem.place_of_obstacle(obstacle), format!("{error}. Else check the unit: {}", cause.message))
+        }
         None => (problem.place_of_obstacle(obstacle), error.to_string()),
     }
 }

@@ -15,7 +15,8 @@ pub(super) fn read<const D: usize, const N: usize>(
     mesh: Mesh<D, N>,
 ) -> Result<Problem<D, N>, CaseError> {
     let import_warnings = mesh.import_warnings().to_vec();
-    with_start(root, mesh)?.build().map_err(|error| located(root, &error, &import_warnings))
+    let builder = with_start(root, mesh)?.planes_to_be_moved();
+    builder.build().map_err(|error| located(root, &error, &import_warnings))
 }
 
 /// Reads all that makes the problem of several bodies.
@@ -25,6 +26,7 @@ pub(super) fn of_bodies<const D: usize, const N: usize>(
 ) -> Result<Problem<D, N>, CaseError> {
     let Bodies { mesh, materials, velocity, .. } = bodies;
     let mut builder = Problem::builder(mesh).initial_velocity(Initial::Nodal(velocity)).automatic_contact();
+    builder = builder.planes_to_be_moved();
     for (body, law) in materials {
         builder = builder.material_of(body, law);
     }

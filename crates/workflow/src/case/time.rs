@@ -102,12 +102,16 @@ impl Wanted<'_> {
         if let Some(told) = no_rebound(problem) {
             return Err(end.error(format!("= {told}")));
         }
-        let step = match self.steps {
+        Ok(Some(Until::new(problem, *longest, *after, self.first_step(critical))))
+    }
+
+    /// The first step as it was stated (s): before it is fitted to an end, which hardly makes it longer.
+    pub(super) fn first_step(&self, critical: f64) -> f64 {
+        match &self.steps {
             Steps::Courant(courant, _) => courant * critical,
-            Steps::Step(step, _) => step,
-            Steps::Each(..) => return Ok(None),
-        };
-        Ok(Some(Until::new(problem, *longest, *after, step)))
+            Steps::Step(step, _) => *step,
+            Steps::Each(steps, _) => steps.first().copied().unwrap_or(critical),
+        }
     }
 
     /// The instants, with no step above the critical one; to the latest end, if the run ends with the rebound.

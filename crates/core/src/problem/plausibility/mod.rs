@@ -2,6 +2,7 @@
 
 mod held;
 mod motion;
+mod moved;
 mod spin;
 mod time;
 mod units;
@@ -37,7 +38,8 @@ pub fn plausibility_warnings<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
 ) -> Vec<PlausibilityWarning> {
-    let mut all = units::plausibility_warnings(problem);
+    let mut all: Vec<_> = moved::plausibility_warnings(problem).collect();
+    all.extend(units::plausibility_warnings(problem));
     // Checks that use the wave speed are left out if the units of the mesh or of a material are already in question.
     let mixed = all.iter().any(|plausibility_warning| {
         plausibility_warning.name == "units" && ["mesh", "material"].contains(&plausibility_warning.place.table)
