@@ -2,7 +2,7 @@
 //! filled.
 
 use crate::failure::Failure;
-use crate::foreign::{Between, Checked, Completed, Found, Lacks, Origin, Refusal, check, started};
+use crate::foreign::{Between, Checked, Completed, Found, Lacks, Origin, Refusal, check, first_look, started};
 use crate::run::{self, Analysis, Results};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, StepSource};
@@ -34,11 +34,14 @@ pub fn estimate<const D: usize, const N: usize>(
     analysis: &Analysis,
     observer: &mut dyn Observer,
 ) -> Result<Graded<D>, Failure> {
+    let critical = critical_time_step(problem);
+    let refuse = |refusal| refused(refusal, origin);
+    let unfit = first_look(problem, source, critical, origin).map_err(refuse)?;
     let complete = Completed::new(problem, source, origin.lacks).map_err(unread)?;
     let derived = [complete.derived(), &origin.derived].concat();
-    let critical = critical_time_step(problem);
     let Found { consistency, samples, shifted, contradiction } =
-        check(problem, &complete, critical, &derived, origin.accept).map_err(|refusal| refused(refusal, origin))?;
+        check(problem, &complete, critical, &derived, origin.accept).map_err(refuse)?;
+    let contradiction = unfit.or(contradiction);
     let program = origin.program.clone();
     let mut checked =
         Checked { program, derived, left_out: complete.left_out(), consistency, samples, shifted, contradiction };

@@ -32,6 +32,7 @@ mod skipped;
 mod start;
 mod surface;
 mod suspect;
+mod travel;
 mod tried;
 mod units;
 mod velocities;
@@ -41,13 +42,13 @@ pub use complete::{Completed, Derived, Lacks};
 pub use figures::Consistency;
 pub(crate) use samples::Between;
 pub use samples::Samples;
-use samples::lacking;
+use samples::{lacking, too_far};
 pub(crate) use start::started;
 
 use crate::through::Through;
 pub(crate) use causes::REVERSED;
 pub(crate) use ends::runs_backwards;
-use limits::{Excess, exceeded, through_planes};
+use limits::{BALANCE, Excess, exceeded, through_planes};
 pub(crate) use limits::{by_a_penalty, is_off_contact, off_contact};
 use measure::measure;
 use percute_core::dynamics::{Balancing, Evaluation};
@@ -122,6 +123,31 @@ impl From<SinkError> for Refusal {
     fn from(error: SinkError) -> Self {
         Self::Unread(error)
     }
+}
+
+/// What can be told before any work: displacements that do not fit the velocities, and samples that are too far apart
+/// for an estimate, with the likely cause.
+pub(crate) fn first_look<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    source: &dyn StepSource<D>,
+    critical: f64,
+    origin: &Origin,
+) -> Result<Option<Contradiction>, Refusal> {
+    let unfit = travel::contradiction(problem, source)?;
+    if let Some(contradiction) = unfit.clone().filter(|_| !origin.accept) {
+        return Err(Refusal::Inconsistent(contradiction));
+    }
+    let derived: Vec<Derived> = origin.lacks.reaction.then_some(Derived::Reaction).into_iter().collect();
+    if let Some((figure, way_out)) = too_far(source.times(), critical) {
+        let (found, evidence) = measure(problem, source, &derived, 0)?;
+        if evidence.given == [true; 2] {
+            let suspect = Suspect { problem, source, derived: &derived, found: &found, evidence: &evidence };
+            let cause = if found.balance > BALANCE { of_balance::changed(&suspect)? } else { None };
+            let cause = Some(cause.unwrap_or(way_out));
+            return Err(Refusal::Inconsistent(Contradiction { figure, cause, can_be_accepted: false }));
+        }
+    }
+    Ok(unfit)
 }
 
 /// The figures of a history, of which parts were `derived`; figures over their limits are an error, with the likely

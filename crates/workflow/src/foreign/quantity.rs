@@ -6,12 +6,14 @@ use crate::message::times;
 const AGREE: f64 = 0.02;
 
 /// A quantity, the factor that its numbers need, and the unit in which they are.
-const UNITS: [(Quantity, f64, &str); 14] = [
+const UNITS: [(Quantity, f64, &str); 16] = [
     (Quantity::Length, 1e-3, "mm"),
     (Quantity::Length, 1e-2, "cm"),
     (Quantity::Length, 1e-6, "µm"),
     (Quantity::Time, 1e-3, "ms"),
     (Quantity::Time, 1e-6, "µs"),
+    (Quantity::Velocity, 1e-3, "mm/s"),
+    (Quantity::Velocity, 1e-2, "cm/s"),
     (Quantity::Modulus, 1e3, "kPa"),
     (Quantity::Modulus, 1e6, "MPa"),
     (Quantity::Modulus, 1e9, "GPa"),
@@ -28,6 +30,7 @@ const UNITS: [(Quantity, f64, &str); 14] = [
 pub(super) enum Quantity {
     Length,
     Time,
+    Velocity,
     Modulus,
     Density,
     Force,

@@ -18,6 +18,10 @@ const EXACT: f64 = 1e-6;
 /// Samples at most so many critical steps apart have the mean of all steps within some 10 % (docs/foreign.md).
 const GOOD: f64 = 5.0;
 
+/// Between samples that are more critical steps apart, nothing of the motion is known: waves have crossed 50 elements
+/// or more. The estimate of the bar is several times too large at 40 (docs/foreign.md).
+const FAR: f64 = 50.0;
+
 /// The samples of a history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Samples {
@@ -75,23 +79,43 @@ pub(super) fn lacking<const D: usize>(
         }
         None => format!("its instants are up to {} critical steps apart (limit 1)", trimmed(distance / critical, 3)),
     };
-    let instants = |apart: f64| (times.end() / apart).ceil() as usize + 1;
-    let text = format!(
+    let way_out = if slides {
+        ", since contact forces of surfaces that slide are not derived between samples".to_string()
+    } else {
+        format!(", or give {} too, {}", missing(given), near(times, critical))
+    };
+    Some((figure, format!("{}{way_out}; or `time` is not in seconds", all_steps(times, critical))))
+}
+
+/// That samples with velocities and accelerations are too far apart, and the way out.
+pub(super) fn too_far(times: &TimeGrid, critical: f64) -> Option<(String, String)> {
+    let apart = times.longest_step() / critical;
+    (apart > FAR).then(|| {
+        let figure = format!("its instants are up to {} critical steps apart (limit {FAR})", trimmed(apart, 3));
+        let every = format!("store each n-th step, {}", near(times, critical));
+        (figure, format!("{}, or {every}; or `time` is not in seconds", all_steps(times, critical)))
+    })
+}
+
+/// The first way out of samples: all steps.
+fn all_steps(times: &TimeGrid, critical: f64) -> String {
+    format!(
         "the instants are samples, not the steps of the solver: give all steps, at most {} s apart ({} instants or \
-         more){}; or `time` is not in seconds",
+         more)",
         trimmed(critical, 4),
-        instants(critical),
-        if slides {
-            ", since contact forces of surfaces that slide are not derived between samples".to_string()
-        } else {
-            let (needs, count) = (missing(given), instants(GOOD * critical));
-            format!(
-                ", or give {needs} too, at most {GOOD} critical steps apart for a good estimate ({count} instants or \
-                 more)"
-            )
-        }
-    );
-    Some((figure, text))
+        instants(times, critical)
+    )
+}
+
+/// How near samples should be.
+fn near(times: &TimeGrid, critical: f64) -> String {
+    let count = instants(times, GOOD * critical);
+    format!("at most {GOOD} critical steps apart for a good estimate ({count} instants or more)")
+}
+
+/// The number of instants so far apart (s).
+fn instants(times: &TimeGrid, apart: f64) -> usize {
+    (times.end() / apart).ceil() as usize + 1
 }
 
 /// What samples need that is not `given`.

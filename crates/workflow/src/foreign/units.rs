@@ -153,8 +153,13 @@ fn force(factor: f64, context: Context) -> String {
     format!("the contact forces {}{hint}{other}", should(factor, Quantity::Force))
 }
 
+/// The factor that the steps need.
+pub(super) fn steps(factor: f64) -> String {
+    format!("the steps should be {} as long{}", times(factor), Quantity::Time.hint(factor))
+}
+
 /// A factor of the displacements.
-fn displaced(factor: f64) -> String {
+pub(super) fn displaced(factor: f64) -> String {
     if agree(factor, -1.0) {
         return "the sign of the displacements is wrong".to_string();
     }
@@ -185,7 +190,7 @@ fn mass(factor: f64, context: Context) -> String {
     if let Some(text) = mesh(scale, context) {
         return text;
     }
-    let time = format!("the steps should be {} as long{}", times(1.0 / scale), Quantity::Time.hint(1.0 / scale));
+    let time = steps(1.0 / scale);
     let density = format!("it {}", should(factor, Quantity::Density));
     let modulus = format!("`young` {}", should(1.0 / factor, Quantity::Modulus));
     let plain = |text: String, certain: bool| match lengths(scale, context).or_else(|| mesh_alone(scale, context)) {
