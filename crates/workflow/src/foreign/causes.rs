@@ -1,17 +1,14 @@
 //! The likely cause of an inconsistency.
 
 use super::complete::Derived;
-use super::limits::{BALANCE, Excess, PLACE, THROUGH_PLANES};
+use super::limits::{BALANCE, DRIFT, Excess, PLACE, THROUGH_PLANES, by_a_penalty};
 use super::nearness::NEAR;
 use super::suspect::Suspect;
 use super::tried::FALL;
-use super::{of_balance, planes, skipped, units};
+use super::{of_balance, penalty, planes, skipped, units};
 use crate::message::{percent, times, trimmed, vector};
 use percute_core::history::SinkError;
 
-/// Energy that drifts by more than this, relatively, comes from unstable steps; the histories of percute have up to
-/// 0.02.
-const DRIFT: f64 = 0.1;
 /// The cause of a history that runs backwards.
 pub(crate) const REVERSED: &str = "the order in time is reversed: the last instants fit the initial state";
 
@@ -21,6 +18,9 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         let over = |name: &str| exceeded.iter().any(|excess| excess.name == name);
         if let Some(reversed) = self.reversed(over("initial_velocity") || over("initial_displacement")) {
             return Ok(Some(reversed));
+        }
+        if let Some(shift) = self.evidence.ends.shift(self.problem).filter(|_| over("initial_displacement")) {
+            return Ok(Some(shift));
         }
         if over("balance") || over("long_step") {
             if !over("initial_displacement") {
@@ -56,8 +56,9 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         if let Some(text) = self.evidence.rates.cause().filter(|_| over("velocity")) {
             return Some(text);
         }
-        let told: [(&str, &dyn Fn() -> String); 9] = [
+        let told: [(&str, &dyn Fn() -> String); 10] = [
             ("initial_velocity", &|| self.velocity_at_start()),
+            (penalty::UNSTABLE, &|| self.unstable()),
             ("energy", &|| self.unstable()),
             (THROUGH_PLANES, &|| self.without_contact()),
             ("opposite", &|| self.evidence.contact.not_opposite()),
@@ -94,11 +95,14 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
 
     /// Contact forces that throw nodes off their plane.
     fn unstable(&self) -> String {
-        format!(
-            "the contact is unstable, and the energy drifts by {}: is a penalty too stiff for the steps? Otherwise the \
-             `point` of a plane is not that of the history",
-            percent(self.found.energy)
-        )
+        let drift = percent(self.found.energy);
+        match penalty::cause(self).filter(|_| by_a_penalty(self.found)) {
+            Some(text) => format!("{text}. The energy drifts by {drift}"),
+            None => format!(
+                "the contact is unstable, and the energy drifts by {drift}: is a penalty too stiff for the steps? \
+                 Otherwise the `point` of a plane is not that of the history"
+            ),
+        }
     }
 
     fn without_contact(&self) -> String {

@@ -53,6 +53,8 @@ pub(super) struct Contact<'p, const D: usize, const N: usize> {
     largest: [f64; 4],
     /// ∑R p (N m), ∑R² (N²) and ∑p² (m²) of normal forces and penetrations at the same instant.
     pressed: [f64; 3],
+    /// ∑R p (N m) and ∑p² (m²) of each node, while it is pressed behind its plane.
+    springs: Vec<[f64; 2]>,
     /// The largest rounding of displacements (m).
     unsure: f64,
     /// Disagreements of status and force: as given, if the status is a step early, and if it is a step late.
@@ -72,6 +74,7 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
             forced: vec![false; problem.surface().nodes().len()],
             largest: [0.0; 4],
             pressed: [0.0; 3],
+            springs: vec![[0.0; 2]; problem.surface().nodes().len()],
             unsure: 0.0,
             disagree: [0; 3],
             changes: [0; 2],
@@ -105,7 +108,7 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
             let node = contact.node.index();
             let frame = problem.surface().frame(at, &now.displacement[node]);
             self.forced[at] |= now.reaction[at] != [0.0; D];
-            self.press(contact, &frame, &forces[at], before.as_ref().map(|(_, gaps)| gaps[at]));
+            self.press(at, &frame, &forces[at], before.as_ref().map(|(_, gaps)| gaps[at]));
             let (Some(after), Some(motion)) = (window.after, motion) else { continue };
             if !conditions.holds(at) {
                 continue;
@@ -129,7 +132,8 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
     }
 
     /// The cone, and penetration, from the gap at this instant (m).
-    fn press(&mut self, contact: &ContactNode, frame: &Frame<D>, force: &[f64; D], gap: Option<f64>) {
+    fn press(&mut self, at: usize, frame: &Frame<D>, force: &[f64; D], gap: Option<f64>) {
+        let contact = &self.problem.surface().nodes()[at];
         let [slip, tension] = self.problem.obstacles()[contact.obstacle].law().excess(frame, force);
         let slip = if contact.guided { 0.0 } else { slip };
         let normal = frame.split(force).0;
@@ -140,6 +144,9 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
             if normal > 0.0 {
                 let terms = [-gap * normal, normal * normal, gap * gap];
                 self.pressed.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+                if gap < 0.0 {
+                    self.springs[at].iter_mut().zip([terms[0], terms[2]]).for_each(|(sum, term)| *sum += term);
+                }
             }
         }
     }
@@ -220,6 +227,12 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         let (k, plane) = planes.max_by(|(_, a), (_, b)| a.misfit().abs().total_cmp(&b.misfit().abs()))?;
         let [_, normal, tangential] = plane.slide;
         (normal > 0.0).then(|| (k, tangential / normal))
+    }
+
+    /// The normal force over the penetration (N/m) of each position that was pressed behind its plane.
+    pub(super) fn springs(&self) -> impl Iterator<Item = (usize, f64)> {
+        let pressed = self.springs.iter().enumerate().filter(|(_, [_, square])| *square > 0.0);
+        pressed.map(|(at, [product, square])| (at, product / square))
     }
 
     /// Whether a force acts on surfaces that slide.

@@ -1,11 +1,16 @@
 //! The start of a history against the initial state of its problem, and its end against the same.
 
-use super::balance::{Balance, Motion, dot, rate};
+use super::balance::{Balance, Motion, dot, norm, rate};
 use super::figures::Consistency;
+use super::limits::PLACE;
 use super::tried::FALL;
 use super::window::Window;
 use super::{ratio, widest};
+use crate::message::{trimmed, vector};
 use percute_core::problem::Problem;
+
+/// Offsets that differ by less than this share are the same: digits of single precision, on the way of many steps.
+const RIGID: f64 = 1e-3;
 
 /// What start and end say.
 #[derive(Clone, Debug)]
@@ -84,6 +89,34 @@ impl<const D: usize> Ends<D> {
         let speed = apart(&back, problem.initial_velocity());
         let [place, _] = widest(&window.now.displacement, problem.initial_displacement());
         self.reversed = [speed, place / problem.mesh().size()];
+    }
+}
+
+impl<const D: usize> Ends<D> {
+    /// That the displacements are those of the problem, shifted by the same everywhere.
+    pub(super) fn shift<const N: usize>(&self, problem: &Problem<D, N>) -> Option<String> {
+        let first = *self.offset.first()?;
+        let size = norm(&first);
+        let apart = self.offset.iter().flat_map(|u| u.iter().zip(first).map(|(a, b)| (a - b).abs()));
+        if size <= PLACE * problem.mesh().size() || apart.fold(0.0, f64::max) > RIGID * size {
+            return None;
+        }
+        let axes: Vec<&str> = (0..D).filter(|&c| first[c].abs() > RIGID * size).map(|c| ["x", "y", "z"][c]).collect();
+        let (along, shift) = (axes.join(" and "), vector(&first, 6));
+        let subtract =
+            format!("all displacements have the same offset of {shift} m, along {along}: subtract it from all");
+        let velocity = problem.initial_velocity()[0];
+        let time = dot(&first, &velocity) / dot(&velocity, &velocity);
+        let way = first.iter().zip(velocity).map(|(u, v)| (u - time * v).abs()).fold(0.0, f64::max);
+        Some(if time > 0.0 && way <= RIGID * size {
+            format!(
+                "{subtract}, if their origin is another one; or the start is missing: it is the way of {} s at the \
+                     initial velocity, give the history from t_0 on",
+                trimmed(time, 4)
+            )
+        } else {
+            subtract
+        })
     }
 }
 

@@ -45,6 +45,10 @@ const SLIP: f64 = 0.05;
 /// Limit of `plane`, in elements: nodes at a larger distance are not in contact.
 pub(super) const PLANE: f64 = NEAR;
 
+/// Energy that drifts by more than this, relatively, comes from unstable steps; the histories of percute have up to
+/// 0.02.
+pub(super) const DRIFT: f64 = 0.1;
+
 /// The largest distance of a node from its plane under a contact force or behind it, over the element size.
 pub(crate) fn off_contact(found: &Consistency) -> f64 {
     // A figure that is no number must not pass.

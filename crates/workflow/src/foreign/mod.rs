@@ -23,6 +23,7 @@ mod of_balance;
 mod opposite;
 mod orders;
 mod pairs;
+mod penalty;
 mod planes;
 mod quantity;
 mod residual;
@@ -32,6 +33,7 @@ mod skipped;
 mod start;
 mod surface;
 mod suspect;
+mod systems;
 mod travel;
 mod tried;
 mod units;
@@ -176,6 +178,7 @@ pub(crate) fn check<const D: usize, const N: usize>(
     let lacking = lacking(source, &found, (evidence.given, [touches, evidence.contact.slides()]), critical);
     exceeded.extend(through_planes(&found).filter(|_| !touches));
     let suspect = Suspect { problem, source, derived, found: &found, evidence: &evidence };
+    exceeded.extend(penalty::excess(&suspect).filter(|_| samples.is_none()));
     let contradiction = contradiction(&suspect, lacking, &exceeded)?;
     if let Some(contradiction) = contradiction.clone().filter(|_| !accept) {
         return Err(Refusal::Inconsistent(contradiction));

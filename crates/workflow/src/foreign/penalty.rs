@@ -1,0 +1,70 @@
+//! Contact by a penalty that is too stiff for the steps.
+
+use super::limits::{DRIFT, Excess, by_a_penalty};
+use super::suspect::Suspect;
+use crate::message::{percent, trimmed};
+use percute_core::dynamics::Dynamics;
+
+/// The name of what is over its limit where a penalty makes the run unstable.
+pub(super) const UNSTABLE: &str = "penalty";
+
+/// That the energy drifts by a penalty that is too stiff for the steps.
+pub(super) fn excess<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<Excess> {
+    if !by_a_penalty(suspect.found) || suspect.found.energy <= DRIFT {
+        return None;
+    }
+    cause(suspect).map(|_| {
+        let [drift, limit] = [suspect.found.energy, DRIFT].map(percent);
+        let what = format!("contact is by a penalty, and the energy drifts by {drift} (limit {limit})");
+        Excess { what, name: UNSTABLE }
+    })
+}
+
+/// The node at which the contact stiffness makes the longest step unstable most, with the way out.
+///
+/// ω² of the body with the springs is at least (k + n·K n)/m of any node: central differences are unstable above
+/// Δt = 2/ω.
+pub(super) fn cause<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<String> {
+    let (problem, contact) = (suspect.problem, &suspect.evidence.contact);
+    let mass = |at: usize| problem.surface().moved_mass(at, problem.mass());
+    let springs = contact.springs().filter(|(_, stiffness)| stiffness.is_finite());
+    let (at, stiffness) = springs.max_by(|(a, k), (b, l)| (k / mass(*a)).total_cmp(&(l / mass(*b))))?;
+    let node = problem.surface().nodes()[at].node.index();
+    let (times, own) = (suspect.source.times(), own_stiffness(suspect, at));
+    let (step, mass) = (times.longest_step(), mass(at));
+    let stable = 2.0 * (mass / (stiffness + own)).sqrt();
+    if step <= stable {
+        return None;
+    }
+    let most = 4.0 * mass / (step * step) - own;
+    let lower = if most > 0.0 {
+        format!("lower it to less than {} N/m there, or take", trimmed(most, 3))
+    } else {
+        "take".to_string()
+    };
+    Some(format!(
+        "the penalty is too stiff for the steps, and the contact is unstable: the force on node {node} is {} N/m times \
+         its penetration; with its mass of {} kg, steps above {} s are unstable, and they are {} s; {lower} shorter \
+         steps",
+        trimmed(stiffness, 3),
+        trimmed(mass, 3),
+        trimmed(stable, 3),
+        trimmed(step, 3)
+    ))
+}
+
+/// n·K n of a node at a plane (N/m); 0 of two nodes, whose relative motion both share.
+fn own_stiffness<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, at: usize) -> f64 {
+    let problem = suspect.problem;
+    let contact = &problem.surface().nodes()[at];
+    let (obstacle, node) = (&problem.obstacles()[contact.obstacle], contact.node.index());
+    if obstacle.as_plane().is_none() {
+        return 0.0;
+    }
+    let frame = obstacle.flat_frame();
+    let nodes = problem.mesh().node_count();
+    let (mut displacement, mut force) = (vec![[0.0; D]; nodes], vec![[0.0; D]; nodes]);
+    displacement[node] = *frame.normal();
+    Dynamics::new(problem, suspect.source.times()).stiffness().subtract_internal_forces(&displacement, &mut force);
+    -frame.split(&force[node]).0
+}
