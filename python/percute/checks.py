@@ -226,11 +226,22 @@ def _holds(rows: list[Any] | tuple[Any, ...], wanted: tuple[type, ...]) -> bool:
     return False
 
 
+_CONVERT = {
+    "c": "; if all imaginary parts are zero, give its real part, array.real",
+    "O": "; if all are numbers, convert them with astype(float)",
+    "U": "; if all are numbers, convert them with astype(float)",
+}
+"""Ways out for arrays of other types, by the kinds of their elements."""
+
+
 def numbers(name: str, value: object, *, most: int, finite: bool = False) -> NDArray[np.float64]:
     """Give an array of numbers with a maximum number of dimensions."""
     array = _array(name, value)
     if array.dtype.kind not in "fiu":
-        raise wrong(name, value, f"numbers in rows of equal length{_no_truth(value)}")
+        allowed = f"numbers in rows of equal length{_no_truth(value)}"
+        if hasattr(value, "dtype") or array.dtype.kind == "c":
+            raise InputError(f"`{name}` is an array of {array.dtype}; it must be {allowed}{_CONVERT.get(array.dtype.kind, '')}")
+        raise wrong(name, value, allowed)
     if array.ndim > most:
         raise InputError(f"`{name}` has the shape {array.shape}; it must have at most {most} dimensions")
     if finite and not np.all(np.isfinite(array)):
@@ -251,7 +262,7 @@ def integers(name: str, value: object, columns: int | None) -> NDArray[np.int64]
     if array.size == 0 and array.dtype.kind == "f":
         array = array.astype(np.int64)
     if array.dtype.kind not in "iu" or (array.dtype.kind == "u" and array.max(initial=0) > LARGEST):
-        kind = f"an array of {array.dtype}" if array.dtype.kind in "fcbu" else _told(value)
+        kind = f"an array of {array.dtype}" if array.dtype.kind in "fcbu" or hasattr(value, "dtype") else _told(value)
         whole = "; convert floating-point numbers with astype(int)" if array.dtype.kind == "f" else ""
         raise InputError(f"`{name}` is {kind}; it must be whole numbers in rows of equal length, counted from 0{whole}{_no_truth(value)}")
     if columns == 1 and array.ndim == 1:

@@ -2,8 +2,12 @@
 
 use super::{ElementGroups, FacetGroups, Mesh, MeshError};
 use crate::ids::{ElementId, FacetId, NodeId};
+use crate::message::{short, vector};
 use crate::simplex::{Element, Simplex};
 use std::collections::BTreeMap;
+
+/// Nodes that are inside by less than this share of the larger body touch it: rounding of places.
+const ROUNDING: f64 = 1e-12;
 
 impl<const D: usize, const N: usize> Mesh<D, N>
 where
@@ -53,11 +57,36 @@ where
         let MeshError::PartsTouch { elements: [first, second] } = *error else { return None };
         let (first, second) = (body_of(first)?, body_of(second)?);
         let message = format!(
-            "overlaps \"{}\"; bodies may touch where they do not move against each other; else leave a gap between \
+            "overlaps \"{}\"{}; bodies may touch where they do not move against each other; else leave a gap between \
              them, of more than a quarter of their relative speed times the first step",
-            bodies[first].0
+            bodies[first].0,
+            Self::deepest(bodies, [second, first]).unwrap_or_default()
         );
         Some((second, message))
+    }
+
+    /// The deepest node of either of two bodies inside the other one.
+    fn deepest(bodies: &[(&str, &Self)], pair: [usize; 2]) -> Option<String> {
+        let [second, first] = pair;
+        let tolerance = ROUNDING * bodies[first].1.size().max(bodies[second].1.size());
+        let inside = [[second, first], [first, second]].into_iter().filter_map(|[own, other]| {
+            bodies[own].1.deepest_in(bodies[other].1, tolerance).map(|inside| (own, other, inside))
+        });
+        let (own, other, inside) = inside.max_by(|a, b| a.2.depth.total_cmp(&b.2.depth))?;
+        let surface = |body: usize, k: usize| {
+            let group = bodies[body].1.groups_of(inside.facets[k]).next();
+            group.map_or_else(|| format!("\"{}\"", bodies[body].0), |group| format!("\"{}.{group}\"", bodies[body].0))
+        };
+        let before: usize = bodies[..own].iter().map(|(_, mesh)| mesh.node_count()).sum();
+        let place = bodies[own].1.points()[inside.node.index()];
+        Some(format!(
+            ": node {} of {} at {} m is {} m inside, behind {}",
+            before + inside.node.index(),
+            surface(own, 0),
+            vector(&place),
+            short(inside.depth),
+            surface(other, 1)
+        ))
     }
 
     /// The elements of a group as a mesh of their own, with the parts of all groups that lie in it; none if there is no

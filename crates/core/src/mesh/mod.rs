@@ -7,6 +7,7 @@ mod check;
 mod generator;
 mod geometry;
 mod import_warning;
+mod inside;
 mod join;
 mod order;
 mod parts;

@@ -253,11 +253,21 @@ pub enum Cause {
     NothingSees { bodies: [String; 2] },
     /// An edge that could touch two bodies.
     #[error(
-        "the {} of \"{}\" or \"{}\" could touch a third body as well, and a node can touch one only; name the surfaces \
-         by `groups` that share no node, or give the bodies a gap of more than an edge", facet(.nodes), .bodies[0],
-        .bodies[1]
+        "the {} of \"{}\" or \"{}\" {}, and a node can touch one only; name the surfaces by `groups` that share no \
+         node, or give the bodies a gap of more than an edge", facet(.nodes), .bodies[0], .bodies[1],
+        if *.stated {
+            "is already in a contact by `groups`: if that is the contact of these two, leave one of the two out; else \
+             it would touch two"
+        } else {
+            "could touch a third body as well"
+        }
     )]
-    Contested { nodes: Vec<usize>, bodies: Box<[String; 2]> },
+    Contested {
+        nodes: Vec<usize>,
+        bodies: Box<[String; 2]>,
+        /// Whether that is stated, and not found.
+        stated: bool,
+    },
     /// An interface of a body with itself.
     #[error(
         "\"{}\" and \"{}\" belong to one body, which cannot touch itself; name groups of two bodies",
@@ -332,6 +342,11 @@ pub enum Cause {
          make it false"
     )]
     SharedPairs { node: usize },
+    /// Two contacts of the same surfaces.
+    #[error(
+        "contact of \"{}\" and \"{}\" is already stated; leave one of the two out", .groups[0], .groups[1]
+    )]
+    SameSurfaces { groups: Box<[String; 2]> },
     /// A node of an interface that may touch something else.
     #[error(
         "node {node} may already touch another obstacle, and a node can touch one only; if that is a plane, name by \
@@ -347,10 +362,15 @@ pub enum Cause {
     TouchUnstated { elements: [usize; 2] },
     /// Bodies that overlap.
     #[error(
-        "the bodies overlap: node {node} starts {} m inside the other body; move them apart by more than that along \
-         the normal", short(*.depth)
+        "the bodies overlap: node {node} of \"{}\" starts {} m inside the other body, behind \"{}\"; move them apart by \
+         more than that along the normal", .groups[0], short(*.depth), .groups[1]
     )]
-    Overlaps { node: usize, depth: f64 },
+    Overlaps {
+        node: usize,
+        depth: f64,
+        /// That of the node, and the other one.
+        groups: Box<[String; 2]>,
+    },
     /// Bodies that overlap beside the surfaces that may touch, which displacements at the start may do.
     #[error(
         "elements {} and {} of two bodies overlap with the displacements of the start; change these, or move the \

@@ -64,7 +64,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         }
         self.check_directions([&sides[0], &sides[1]], &normal)?;
         let partners = partners?;
-        check_nodes(surface, &sides)?;
+        check_nodes(surface, &sides, interface)?;
         Ok((sides, normal, partners))
     }
 

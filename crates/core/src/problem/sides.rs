@@ -4,7 +4,7 @@ use super::alignment::{FACES, outward, unit};
 use super::candidates::along_the_boundary;
 use super::symmetry::{self, Motion, NodeLines, SymmetryLine};
 use super::{Cause, HeldBy, boundary};
-use crate::contact::{ContactSurface, Interface, dot};
+use crate::contact::{ContactSurface, Interface, Obstacle, dot};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
@@ -168,13 +168,24 @@ impl<const D: usize> Side<D> {
 }
 
 /// Whether no node may touch anything else.
-pub(super) fn check_nodes<const D: usize>(surface: &ContactSurface<D>, sides: &[Side<D>; 2]) -> Result<(), Cause> {
-    for node in sides.iter().flat_map(|side| &side.nodes) {
-        if surface.nodes().iter().any(|contact| contact.node == *node) {
-            return Err(Cause::TwoContacts { node: node.index() });
-        }
-    }
-    Ok(())
+pub(super) fn check_nodes<const D: usize>(
+    surface: &ContactSurface<D>,
+    sides: &[Side<D>; 2],
+    interface: &Interface,
+) -> Result<(), Cause> {
+    let nodes = sides.iter().flat_map(|side| &side.nodes);
+    let Some(node) = nodes.into_iter().find(|node| surface.nodes().iter().any(|contact| contact.node == **node)) else {
+        return Ok(());
+    };
+    let groups = interface.groups();
+    let surfaces = surface.obstacles().iter().filter(|obstacle| obstacle.as_plane().is_none());
+    // The two of an interface follow each other.
+    let named: Vec<_> = surfaces.map(Obstacle::group).collect();
+    let same = |pair: &[Option<&str>]| groups.iter().all(|group| pair.contains(&Some(*group)));
+    Err(match named.chunks(2).any(same) {
+        true => Cause::SameSurfaces { groups: Box::new(groups.map(str::to_string)) },
+        false => Cause::TwoContacts { node: node.index() },
+    })
 }
 
 /// Elements of different bodies that touch have nodes on the two sides of an interface.

@@ -27,7 +27,7 @@ pub(super) fn add<const D: usize, const N: usize>(
     displacement: &[[f64; D]],
 ) -> Result<(), Cause> {
     let sides = bodies.sides(interface)?;
-    check_nodes(surface, &sides)?;
+    check_nodes(surface, &sides, interface)?;
     let roles = bodies.roles(&sides, displacement);
     let with = |roles: Roles| -> Result<ContactSurface<D>, Cause> {
         let mut surface = surface.clone();

@@ -80,6 +80,15 @@ fn check_apart<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Resul
     Ok(())
 }
 
+/// The group of a node that faces another body, and that of the other surface.
+fn groups<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize) -> Box<[String; 2]> {
+    let surface = problem.surface();
+    // The two obstacles of an interface follow each other, after all planes.
+    let (own, planes) = (surface.nodes()[at].obstacle, problem.planes());
+    let other = planes + ((own - planes) ^ 1);
+    Box::new([own, other].map(|obstacle| surface.obstacles()[obstacle].group().unwrap_or_default().to_string()))
+}
+
 fn gaps<'a, const D: usize, const N: usize>(
     problem: &'a Problem<D, N>,
     sliding: &'a SlidingSurfaces<D>,
@@ -93,7 +102,7 @@ fn behind<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize, de
     // Surfaces that look away from each other are behind each other, too.
     let rounding = depth <= ROUNDING * problem.mesh().size();
     if rounding || problem.mesh().encloses_after(&problem.initial_displacement, node) {
-        return Cause::Overlaps { node: node.index(), depth };
+        return Cause::Overlaps { node: node.index(), depth, groups: groups(problem, at) };
     }
     behind_surface(problem, at, depth)
 }
@@ -106,12 +115,8 @@ fn behind_surface<const D: usize, const N: usize>(problem: &Problem<D, N>, at: u
     }
     let surface = problem.surface();
     let contact = &surface.nodes()[at];
-    // The two obstacles of an interface follow each other, after all planes.
-    let planes = problem.planes();
-    let other = planes + ((contact.obstacle - planes) ^ 1);
-    let group = |obstacle: usize| surface.obstacles()[obstacle].group().unwrap_or_default().to_string();
     // A few digits are enough to be shown.
     let normal = surface.obstacles()[contact.obstacle].flat_frame().normal().map(|n| (1e3 * n).round() / 1e3);
-    let groups = Box::new([group(contact.obstacle), group(other)]);
+    let groups = groups(problem, at);
     Cause::BehindSurface { node: contact.node.index(), depth, groups, normal: Box::new(normal) }
 }

@@ -22,6 +22,63 @@ const BEGINNINGS: [(&[u8], &str); 8] = [
     (b"<", "XML, such as an SVG picture, an HTML page or a VTU file, not a case"),
 ];
 
+/// Endings of mesh files that meshlane reads, and their formats.
+const MESHES: [(&[&str], &str); 16] = [
+    (&["inp"], "Abaqus"),
+    (&["bdf", "nas", "fem"], "Nastran"),
+    (&["vtu", "vtk"], "VTK"),
+    (&["med"], "MED"),
+    (&["xdmf", "xmf"], "XDMF"),
+    (&["mesh", "meshb"], "Medit"),
+    (&["cdb"], "Ansys"),
+    (&["dat", "tec"], "Tecplot"),
+    (&["e", "ex2", "exo"], "Exodus"),
+    (&["cgns"], "CGNS"),
+    (&["su2"], "SU2"),
+    (&["stl", "ply", "off", "obj"], "surface triangles"),
+    (&["vol"], "Netgen"),
+    (&["avs"], "AVS"),
+    (&["mdpa"], "Kratos"),
+    (&["ugrid"], "UGRID"),
+];
+/// Endings of files that Gmsh opens, but meshlane does not read.
+const OF_GMSH: [(&[&str], &str); 4] = [
+    (&["step", "stp"], "a geometry (STEP)"),
+    (&["iges", "igs"], "a geometry (IGES)"),
+    (&["brep"], "a geometry (BREP)"),
+    (&["unv"], "a mesh (I-deas UNV)"),
+];
+/// Endings of other input.
+const DYNA: [&str; 3] = ["k", "key", "dyn"];
+
+/// What a mesh or a geometry of another program is, by the ending of its name, and the way to a mesh file of Gmsh.
+fn of_mesh(file: &Path, ending: &str) -> Option<String> {
+    let of = |table: &[(&[&str], &'static str)]| {
+        table.iter().find(|(endings, _)| endings.contains(&ending)).map(|(_, format)| *format)
+    };
+    let name = file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let stem = file.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    if let Some(format) = of(&MESHES) {
+        return Some(format!(
+            "a mesh ({format}), which the command does not read: in Python, `pc.Mesh.read(\"{name}\").write(\"{stem}.msh\")` \
+             makes a mesh file of Gmsh (it needs meshlane: pip install 'percute[mesh]'), or open it in Gmsh and export \
+             .msh; the command reads that"
+        ));
+    }
+    if let Some(what) = of(&OF_GMSH) {
+        return Some(format!(
+            "{what}, which percute does not read: Gmsh opens it, makes a mesh of triangles (`gmsh -2`), and saves it as \
+             \"{stem}.msh\""
+        ));
+    }
+    DYNA.contains(&ending).then(|| {
+        format!(
+            "an input deck (LS-DYNA), which percute does not read: write its mesh in a format that Gmsh opens, as \
+             Nastran or Abaqus, and save it from Gmsh as \"{stem}.msh\""
+        )
+    })
+}
+
 /// The first bytes of HDF5.
 const HDF5: &[u8] = b"\x89HDF";
 
@@ -46,6 +103,11 @@ pub fn stranger(file: &Path, content: &[u8]) -> Option<String> {
     let begins = content.trim_ascii_start();
     let known = BEGINNINGS.iter().find(|(beginning, _)| begins.starts_with(beginning)).map(|(_, kind)| *kind);
     let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let is_mesh = ending.as_deref().and_then(|ending| of_mesh(file, ending));
+    if let Some(found) = is_mesh.filter(|_| std::str::from_utf8(content).map_or(true, |text| !text.contains("[time]")))
+    {
+        return Some(format!("this is {found}"));
+    }
     let hdf5 = matches!(ending.as_deref(), Some("vtkhdf" | "h5" | "hdf5"));
     let found = match known {
         Some(kind) => kind.to_string(),
@@ -77,6 +139,13 @@ mod tests {
             ("a.npy", b"\x93NUMPY\x01", "`pc.History.from_arrays` (docs/foreign.md)"),
             ("a.h5", b"\x89HDF\r\n\x1a\n", "neither a history nor an estimate file"),
             ("a.svg", b"<svg/>", "an SVG picture"),
+            ("part.inp", b"*Heading\n*Node", "a mesh (Abaqus), which the command does not read"),
+            ("Part.INP", b"", "`pc.Mesh.read(\"Part.INP\").write(\"Part.msh\")`"),
+            ("part.bdf", b"BEGIN BULK", "a mesh (Nastran)"),
+            ("part.vtu", b"<VTKFile>", "percute[mesh]"),
+            ("part.med", b"\x89HDF\r\n\x1a\n", "a mesh (MED)"),
+            ("part.step", b"ISO-10303-21;", "a geometry (STEP)"),
+            ("part.k", b"*KEYWORD", "(LS-DYNA)"),
             ("a.vtkhdf", b"\x89PNG\r\n\x1a\n", "a picture (PNG)"),
         ] {
             assert!(of(name, content).is_some_and(|told| told.contains(says)), "{name}");
@@ -85,6 +154,11 @@ mod tests {
             [&b""[..], b"[mesh]", b"# A case\n[mesh]", b"mesh = {}", b"hello", b"$MeshFormat", b"\xef\xbb\xbf[mesh]"]
         {
             assert_eq!(of("a.toml", case), None);
+        }
+        // A case with an odd name is one.
+        assert_eq!(of("case.dat", b"[mesh]\n[time]"), None);
+        for case in [&b"[mesh]"[..]] {
+            assert_eq!(of("case.txt", case), None);
         }
     }
 }

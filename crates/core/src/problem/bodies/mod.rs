@@ -287,7 +287,8 @@ fn claimed(
             if let Some(&(at, _)) = side.seeing.iter().find(contested) {
                 let bodies = Box::new(wanted.pair.map(|body| outlines[body].name.clone()));
                 let nodes = edges[at].nodes.iter().map(|node| node.index()).collect();
-                return Err((*place, Cause::Contested { nodes, bodies }));
+                let stated = other(at).and_then(|node| owner.get(node)) == Some(&usize::MAX);
+                return Err((*place, Cause::Contested { nodes, bodies, stated }));
             }
             side.seeing.retain(|&(at, _)| other(at).is_none());
             owner.extend(side.seeing.iter().flat_map(|&(at, _)| &edges[at].nodes).map(|&node| (node, k)));

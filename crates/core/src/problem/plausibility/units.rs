@@ -22,6 +22,8 @@ const SLOW: f64 = 10.0;
 const FAST: f64 = 2e4;
 /// Larger than all but a few bodies that strike something: piles have tens of metres.
 pub(super) const LARGE: f64 = 60.0;
+/// Wider and higher than plane bodies that strike something: ships and buildings apart.
+const BROAD: f64 = 5.0;
 /// If the start is refused, a body above this size is more likely in millimetres: its steps are too long.
 pub(super) const LARGE_IF_REFUSED: f64 = 1.0;
 /// A bar so many times as wide as it is long, or a plane body so many times as thick as it is large, is more likely one
@@ -39,7 +41,9 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
     let size = problem.mesh().size();
     // An import warning of the mesh file names the key that corrects it.
     let reported = problem.mesh().import_warnings().iter().any(|import_warning| import_warning.name == "large_mesh");
-    let mut all: Vec<PlausibilityWarning> = size_of_body(size, LARGE).filter(|_| !reported).into_iter().collect();
+    let broad = narrowest(problem.mesh().points()) > BROAD && D == 2;
+    let large = if broad { size_of_body(size, 0.0) } else { size_of_body(size, LARGE) };
+    let mut all: Vec<PlausibilityWarning> = large.filter(|_| !reported).into_iter().collect();
     for (index, material) in problem.materials().iter().enumerate() {
         all.extend([density(material, index), stiffness(material, size, index)].into_iter().flatten().take(1));
         all.extend(extent(material, size, index));
@@ -63,6 +67,16 @@ fn units(table: &'static str, index: Option<usize>, key: &'static str, message: 
         key => format!("{table}, {key}: did you mix units?"),
     };
     Some(plausibility_warning(at(table, index, key), "units", brief, message))
+}
+
+/// The least extent of points along an axis (m).
+fn narrowest<const D: usize>(points: &[[f64; D]]) -> f64 {
+    let extent = |c: usize| {
+        let ends =
+            points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p[c]), high.max(p[c])]);
+        ends[1] - ends[0]
+    };
+    (0..D).map(extent).fold(f64::INFINITY, f64::min)
 }
 
 pub(super) fn size_of_body(size: f64, large: f64) -> Option<PlausibilityWarning> {

@@ -147,7 +147,8 @@ fn surfaces_lean_together_where_they_are() {
 fn a_node_touches_one_thing_only() {
     let blocks = Blocks::oblique();
     let twice = blocks.bodies(blocks.mesh(), |v| v).interface(blocks.interface()).interface(blocks.interface());
-    assert!(matches!(cause(twice.build()), Some(Cause::TwoContacts { .. })));
+    let Some(Cause::SameSurfaces { groups }) = cause(twice.build()) else { panic!("not refused") };
+    assert_eq!(groups.each_ref().map(String::as_str), blocks.interface().groups());
     let floor = Obstacle::plane([0.0, -GAP], [0.0, 1.0], 0.0, None).unwrap();
     let plane = blocks.bodies(blocks.mesh(), |v| v).interface(blocks.interface()).obstacle(floor);
     // Without a group, the plane may touch all that faces it: the bottom of the upper block, too.

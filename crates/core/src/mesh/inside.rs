@@ -1,0 +1,100 @@
+//! How far a body is inside another one.
+
+use super::Mesh;
+use crate::ids::{FacetId, NodeId};
+
+/// The node of a body that is deepest inside another one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Inside {
+    pub(super) node: NodeId,
+    /// The way to the boundary of the other body (m).
+    pub(super) depth: f64,
+    /// The facet of the node that looks most against the other body, and the nearest one of that.
+    pub(super) facets: [FacetId; 2],
+}
+
+impl<const D: usize, const N: usize> Mesh<D, N> {
+    /// The node of the boundary that is deepest inside another mesh, by more than a tolerance (m).
+    pub(super) fn deepest_in(&self, other: &Self, tolerance: f64) -> Option<Inside> {
+        let mut nodes: Vec<NodeId> = self.boundary().flat_map(|facet| self.facets()[facet.index()].nodes).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let outline: Vec<(FacetId, [[f64; D]; D])> = other.boundary().map(|facet| (facet, other.ends(facet))).collect();
+        let depth = |node: NodeId| {
+            let point = &self.points()[node.index()];
+            if !other.encloses(point) {
+                return None;
+            }
+            let ways = outline.iter().map(|(facet, ends)| (way(point, ends), *facet));
+            ways.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(depth, nearest)| (node, depth, nearest))
+        };
+        let deepest = nodes.into_iter().filter_map(depth).filter(|(_, depth, _)| *depth > tolerance);
+        let (node, depth, nearest) = deepest.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let normal = other.facet_normal(nearest).0;
+        let against =
+            |facet: &FacetId| -> f64 { self.facet_normal(*facet).0.iter().zip(normal).map(|(a, b)| a * b).sum() };
+        let own = self.boundary().filter(|facet| self.facets()[facet.index()].nodes.contains(&node));
+        let own = own.min_by(|a, b| against(a).total_cmp(&against(b)))?;
+        Some(Inside { node, depth, facets: [own, nearest] })
+    }
+
+    /// The names of the groups of a facet of the boundary.
+    pub(super) fn groups_of(&self, facet: FacetId) -> impl Iterator<Item = &str> {
+        self.facet_groups().iter().filter(move |(_, all)| all.contains(&facet)).map(|(name, _)| name.as_str())
+    }
+
+    fn ends(&self, facet: FacetId) -> [[f64; D]; D] {
+        self.facets()[facet.index()].nodes.map(|node| self.points()[node.index()])
+    }
+
+    /// Whether a point is in an element, or on its boundary.
+    fn encloses(&self, point: &[f64; D]) -> bool {
+        self.cells().iter().any(|cell| {
+            let corners = cell.map(|corner| self.points()[corner.index()]);
+            let beside = |c: usize| {
+                let [low, high] = [f64::min, f64::max].map(|pick| corners.iter().map(|p| p[c]).reduce(pick));
+                low.is_some_and(|low| point[c] < low) || high.is_some_and(|high| point[c] > high)
+            };
+            !(0..D).any(beside)
+                && (0..N).all(|k| {
+                    let mut parts = corners;
+                    parts[k] = *point;
+                    self.simplex().signed_volume(&parts) >= 0.0
+                })
+        })
+    }
+}
+
+/// The distance of a point from a facet (m): a point, or a line between two.
+fn way<const D: usize>(point: &[f64; D], ends: &[[f64; D]; D]) -> f64 {
+    let from = |end: &[f64; D]| -> [f64; D] { std::array::from_fn(|c| point[c] - end[c]) };
+    let dot = |a: &[f64; D], b: &[f64; D]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
+    let (start, last) = (from(&ends[0]), &ends[D - 1]);
+    let along: [f64; D] = std::array::from_fn(|c| last[c] - ends[0][c]);
+    let length = dot(&along, &along);
+    let at = if length > 0.0 { (dot(&start, &along) / length).clamp(0.0, 1.0) } else { 0.0 };
+    let rest: [f64; D] = std::array::from_fn(|c| start[c] - at * along[c]);
+    dot(&rest, &rest).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_deepest_node_is_found_with_its_surfaces() {
+        let block = |x: f64, y: f64| Mesh::<2, 3>::rectangle(4.0, 2.0, 8, 4).unwrap().placed(&[x, y], 0.0).unwrap();
+        let (lower, upper) = (block(0.0, 0.0), block(1.0, 1.9));
+        let inside = upper.deepest_in(&lower, 1e-9).unwrap();
+        // The lower side of the upper block is 0.1 m below the upper side of the lower one.
+        assert!((inside.depth - 0.1).abs() < 1e-12, "{inside:?}");
+        let groups = [(&upper, inside.facets[0]), (&lower, inside.facets[1])];
+        assert_eq!(groups.map(|(mesh, facet)| mesh.groups_of(facet).collect::<Vec<_>>()), [["bottom"], ["top"]]);
+        // Blocks that touch, and such that are apart.
+        assert_eq!(block(1.0, 2.0).deepest_in(&lower, 1e-9), None);
+        assert_eq!(block(1.0, 2.1).deepest_in(&lower, 1e-9), None);
+        let bar = |x: f64| Mesh::<1, 2>::uniform_bar(1.0, 10).unwrap().placed(&[x], 0.0).unwrap();
+        let inside = bar(0.75).deepest_in(&bar(0.0), 1e-9).unwrap();
+        assert!((inside.depth - 0.25).abs() < 1e-12 && inside.node.index() == 0, "{inside:?}");
+    }
+}
