@@ -69,9 +69,13 @@ pub(crate) fn by_a_penalty(found: &Consistency) -> bool {
 /// The name of what is over its limit where nodes go through their plane without a contact force.
 pub(super) const THROUGH_PLANES: &str = "through_planes";
 
-/// The figures over their limits, the most telling first.
-pub(crate) fn exceeded(found: &Consistency) -> Vec<Excess> {
-    of_motion(found).into_iter().chain(of_contact(found)).flatten().collect()
+/// Figures that compare an instant with the next step of the solver, which a sample does not have.
+const OF_STEPS: [&str; 5] = ["velocity", "touching", "slip", "plane", "gap_under_force"];
+
+/// The figures over their limits, the most telling first; of samples, those that they have.
+pub(crate) fn exceeded(found: &Consistency, sampled: bool) -> Vec<Excess> {
+    let all = of_motion(found).into_iter().chain(of_contact(found)).flatten();
+    all.filter(|excess| !sampled || !OF_STEPS.contains(&excess.name)).collect()
 }
 
 /// The penetration of a history in which no contact force acts.

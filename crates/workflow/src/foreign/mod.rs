@@ -170,10 +170,7 @@ pub(crate) fn check<const D: usize, const N: usize>(
     let (mut found, evidence) = measure(problem, &watched, derived, 0)?;
     found.energy = energies.into_inner().1.finish().last().map_or(0.0, |last| last.energy_drift);
     let samples = Samples::of(source, &found, evidence.given, critical);
-    let mut exceeded = exceeded(&found);
-    // These compare an instant with the next step of the solver, which a sample does not have.
-    let of_steps = ["velocity", "touching", "slip", "plane", "gap_under_force"];
-    exceeded.retain(|excess| samples.is_none() || !of_steps.contains(&excess.name));
+    let mut exceeded = exceeded(&found, samples.is_some());
     let touches = evidence.contact.forced.contains(&true);
     let lacking = lacking(source, &found, (evidence.given, [touches, evidence.contact.slides()]), critical);
     exceeded.extend(through_planes(&found).filter(|_| !touches));

@@ -122,7 +122,12 @@ impl Residual {
 
     /// The same inside the body, where no contact force acts.
     pub(super) fn inside(&self) -> f64 {
-        norm(&self.products[0], [1.0; 4])
+        self.inside_with([1.0; 4])
+    }
+
+    /// The same with such factors of its terms.
+    pub(super) fn inside_with(&self, factors: [f64; 4]) -> f64 {
+        norm(&self.products[0], factors)
     }
 
     /// The square of the residual (N²), and that of the norm of all terms.

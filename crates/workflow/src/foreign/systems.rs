@@ -6,9 +6,12 @@
 use super::complete::{Completed, Derived, Lacks};
 use super::limits::exceeded;
 use super::measure::measure;
+use super::residual::{INERTIA, REACTION, STIFFNESS};
+use super::samples::Samples;
 use super::suspect::Suspect;
-use super::tried::{Tried, best};
+use super::tried::{FALL, Tried, best};
 use crate::message::trimmed;
+use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, Step, StepSource};
 use percute_core::time::TimeGrid;
 
@@ -118,7 +121,7 @@ pub(super) fn whole<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
         let mut fit = Vec::new();
         for system in SYSTEMS.map(|system| if inverse { system.inverse() } else { system }) {
             // One array in another unit is no other system.
-            if system.factors(given, forces).len() < 2 {
+            if system.factors(given, forces).len() < 2 || !balances(suspect, system) {
                 continue;
             }
             if let Some(left) = left(suspect, system, derived)? {
@@ -135,6 +138,13 @@ pub(super) fn whole<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
     Ok(None)
 }
 
+/// Whether the factors of all terms leave little of the residual; those of derived forces do not count.
+fn balances<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, system: System) -> bool {
+    let mut factors = [1.0; 4];
+    (factors[INERTIA], factors[STIFFNESS], factors[REACTION]) = (system.acceleration(), system.length, system.force);
+    suspect.evidence.residual.inside_with(factors) <= FALL * suspect.evidence.residual.inside()
+}
+
 /// The norm of the residual in SI units, if nothing contradicts the problem then.
 fn left<const D: usize, const N: usize>(
     suspect: &Suspect<'_, D, N>,
@@ -148,9 +158,8 @@ fn left<const D: usize, const N: usize>(
     let lacks = Lacks { reaction: derived, touching: derived };
     let Ok(complete) = Completed::new(problem, &scaled, lacks) else { return Ok(None) };
     let (found, evidence) = measure(problem, &complete, complete.derived(), 0)?;
-    // Velocities of samples are not those of their displacements; those that fit no system fail before.
-    let fits = exceeded(&found).iter().all(|excess| excess.name == "velocity" && evidence.given == [true; 2]);
-    Ok(fits.then(|| evidence.residual.norm([1.0; 4])))
+    let samples = Samples::of(&complete, &found, evidence.given, critical_time_step(problem));
+    Ok(exceeded(&found, samples.is_some()).is_empty().then(|| evidence.residual.norm([1.0; 4])))
 }
 
 fn told(system: System, names: &str, inverse: bool, factors: &[(&str, f64)]) -> String {
