@@ -239,7 +239,7 @@ def numbers(name: str, value: object, *, most: int, finite: bool = False) -> NDA
     array = _array(name, value)
     if array.dtype.kind not in "fiu":
         allowed = f"numbers in rows of equal length{_no_truth(value)}"
-        if hasattr(value, "dtype") or array.dtype.kind == "c":
+        if hasattr(value, "dtype"):
             raise InputError(f"`{name}` is an array of {array.dtype}; it must be {allowed}{_CONVERT.get(array.dtype.kind, '')}")
         raise wrong(name, value, allowed)
     if array.ndim > most:
