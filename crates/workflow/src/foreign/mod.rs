@@ -139,12 +139,14 @@ pub(crate) fn first_look<const D: usize, const N: usize>(
     if let Some(contradiction) = unfit.clone().filter(|_| !origin.accept) {
         return Err(Refusal::Inconsistent(contradiction));
     }
-    let derived: Vec<Derived> = origin.lacks.reaction.then_some(Derived::Reaction).into_iter().collect();
+    let lacks = [(origin.lacks.reaction, Derived::Reaction), (origin.lacks.touching, Derived::Touching)];
+    let lacks = lacks.into_iter().filter(|(lacks, _)| *lacks).map(|(_, part)| part);
+    let derived: Vec<Derived> = origin.derived.iter().copied().chain(lacks).collect();
     if let Some((figure, way_out)) = too_far(source.times(), critical) {
         let (found, evidence) = measure(problem, source, &derived, 0)?;
         if evidence.given == [true; 2] {
             let suspect = Suspect { problem, source, derived: &derived, found: &found, evidence: &evidence };
-            let cause = if found.balance > BALANCE { of_balance::changed(&suspect)? } else { None };
+            let cause = if found.balance > BALANCE { suspect.in_other_units()? } else { None };
             let cause = Some(cause.unwrap_or(way_out));
             return Err(Refusal::Inconsistent(Contradiction { figure, cause, can_be_accepted: false }));
         }
@@ -194,7 +196,7 @@ fn contradiction<const D: usize, const N: usize>(
     let balance = exceeded.iter().find(|excess| excess.name == "balance");
     let can_be_accepted = exceeded.iter().all(|excess| excess.name != "initial_displacement");
     if let Some((figure, way_out)) = lacking {
-        let changed = balance.map(|_| of_balance::changed(suspect)).transpose()?.flatten();
+        let changed = balance.map(|_| suspect.in_other_units()).transpose()?.flatten();
         let figure = balance.filter(|_| changed.is_some()).map_or(figure, |excess| excess.what.clone());
         return Ok(Some(Contradiction { figure, cause: changed.or(Some(way_out)), can_be_accepted }));
     }

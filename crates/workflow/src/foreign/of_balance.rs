@@ -6,7 +6,7 @@ use super::limits::BALANCE;
 use super::residual::Residual;
 use super::suspect::Suspect;
 use super::tried::{FALL, ROUNDING, Tried, best};
-use super::{instants, lost, mass, moduli, orders, planes, rounded, skipped, surface, systems, units};
+use super::{instants, lost, mass, moduli, orders, planes, rounded, skipped, surface, units};
 use crate::message::{numbered, percent, trimmed};
 use crate::through::Through;
 use percute_core::dynamics::critical_time_step;
@@ -39,9 +39,6 @@ pub(super) fn cause<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
 pub(super) fn changed<const D: usize, const N: usize>(
     suspect: &Suspect<'_, D, N>,
 ) -> Result<Option<String>, SinkError> {
-    if let Some(text) = systems::whole(suspect)? {
-        return Ok(Some(text));
-    }
     let mut tried = shifts(suspect)?;
     tried.extend(lost::tried(suspect));
     tried.extend(units::one_term(suspect.problem, suspect.evidence, suspect.derived));

@@ -115,7 +115,6 @@ impl<const D: usize> StepSource<D> for Scaled<'_, D> {
 
 /// The systems in which the arrays fit the problem in all, if they do not as they are.
 pub(super) fn whole<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Option<String>, SinkError> {
-    let derived = suspect.derived.contains(&Derived::Reaction);
     let (given, forces) = (suspect.evidence.given, suspect.has_forces());
     for inverse in [false, true] {
         let mut fit = Vec::new();
@@ -124,7 +123,7 @@ pub(super) fn whole<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
             if system.factors(given, forces).len() < 2 || !balances(suspect, system) {
                 continue;
             }
-            if let Some(left) = left(suspect, system, derived)? {
+            if let Some(left) = left(suspect, system)? {
                 fit.push((system, left));
             }
         }
@@ -138,25 +137,22 @@ pub(super) fn whole<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
     Ok(None)
 }
 
-/// Whether the factors of all terms leave little of the residual; those of derived forces do not count.
+/// Whether the factors of all terms leave little of a residual inside the body.
 fn balances<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, system: System) -> bool {
     let mut factors = [1.0; 4];
     (factors[INERTIA], factors[STIFFNESS], factors[REACTION]) = (system.acceleration(), system.length, system.force);
-    suspect.evidence.residual.inside_with(factors) <= FALL * suspect.evidence.residual.inside()
+    suspect.evidence.residual.inside_with(factors) <= FALL
 }
 
 /// The norm of the residual in SI units, if nothing contradicts the problem then.
-fn left<const D: usize, const N: usize>(
-    suspect: &Suspect<'_, D, N>,
-    system: System,
-    derived: bool,
-) -> Result<Option<f64>, SinkError> {
+fn left<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, system: System) -> Result<Option<f64>, SinkError> {
     let (problem, source) = (suspect.problem, suspect.source);
+    // What was derived in the units that are given is derived again.
+    let [reaction, touching] = [Derived::Reaction, Derived::Touching].map(|part| suspect.derived.contains(&part));
     let instants = source.times().instants().iter().map(|t| system.time * t).collect();
     let Ok(times) = TimeGrid::from_instants(instants) else { return Ok(None) };
-    let scaled = Scaled { source, times, system, without_forces: derived };
-    let lacks = Lacks { reaction: derived, touching: derived };
-    let Ok(complete) = Completed::new(problem, &scaled, lacks) else { return Ok(None) };
+    let scaled = Scaled { source, times, system, without_forces: reaction };
+    let Ok(complete) = Completed::new(problem, &scaled, Lacks { reaction, touching }) else { return Ok(None) };
     let (found, evidence) = measure(problem, &complete, complete.derived(), 0)?;
     let samples = Samples::of(&complete, &found, evidence.given, critical_time_step(problem));
     Ok(exceeded(&found, samples.is_some()).is_empty().then(|| evidence.residual.norm([1.0; 4])))

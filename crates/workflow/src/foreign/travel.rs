@@ -4,7 +4,7 @@
 //! steps do.
 
 use super::balance::dot;
-use super::quantity::{Quantity, should};
+use super::quantity::{Quantity, agree, should};
 use super::units::{displaced, steps};
 use super::{Contradiction, ratio};
 use crate::message::times;
@@ -134,7 +134,7 @@ impl Travel {
     /// The array with the factor: times, displacements or velocities, as far as the initial velocity and the
     /// accelerations tell.
     fn cause(&self) -> String {
-        let factor = self.way[0];
+        let factor = known(self.way[0]);
         let near = |a: Option<f64>| a.is_some_and(|a| (a - 1.0).abs() <= self.limit());
         let velocities = format!("the velocities {}", should(factor, Quantity::Velocity));
         if near(self.start.map(|start| start * factor)) {
@@ -161,6 +161,16 @@ impl Travel {
         let all = choose(&|_| true);
         [by_speed, by_unit, all].into_iter().find(|chosen| !chosen.is_empty()).unwrap_or_default().join(", or ")
     }
+}
+
+/// A factor in the digits that samples tell: a power of ten of units, else two digits.
+fn known(factor: f64) -> f64 {
+    let power = 10f64.powf(factor.abs().log10().round());
+    if agree(factor.abs(), power) {
+        return power.copysign(factor);
+    }
+    let digit = 10f64.powf(factor.abs().log10().floor() - 1.0);
+    (factor / digit).round() * digit
 }
 
 /// The factor of the second field that fits the first best; none if it is zero.
@@ -197,7 +207,7 @@ mod tests {
         // Nothing tells: all of them.
         let all = said(0.9, none, none);
         assert!(
-            ["time", "the displacements should be 1.111", "the velocities should be 0.9"]
+            ["time", "the displacements should be 1.111 times", "the velocities should be 0.9 times"]
                 .iter()
                 .all(|t| all.contains(t))
         );
