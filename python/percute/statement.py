@@ -117,8 +117,10 @@ class Plane:
     group: str | None = None
 
     def __post_init__(self) -> None:
-        if (self.point is None) == (self.gap is None):
-            raise InputError('give the plane either a `point` (m) or a `gap`: "auto", or a number in m')
+        if self.point is None and self.gap is None:
+            raise InputError('`point` is missing: give a point of the plane (m), or gap="auto" for the least gap')
+        if self.point is not None and self.gap is not None:
+            raise InputError("`gap` is one too many: a plane has a `point` or a `gap`")
         if self.point is not None:
             object.__setattr__(self, "point", vector("point", self.point))
         elif isinstance(self.gap, str) and self.gap != "auto":

@@ -70,10 +70,12 @@ pub(crate) fn material<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> 
 /// One plane.
 pub(crate) fn plane<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Obstacle<D>> {
     let py = given.py();
+    let point = attribute::<Option<Vec<f64>>>(given, "point")?;
+    let point = point.map(|point| vector(py, &format!("{name}.point"), &point)).transpose()?;
     let normal = vector(py, &format!("{name}.normal"), &attribute::<Vec<f64>>(given, "normal")?)?;
     let (friction, group) = (attribute(given, "friction")?, attribute(given, "group")?);
-    let made = match attribute::<Option<Vec<f64>>>(given, "point")? {
-        Some(point) => Obstacle::plane(vector(py, &format!("{name}.point"), &point)?, normal, friction, group),
+    let made = match point {
+        Some(point) => Obstacle::plane(point, normal, friction, group),
         // A plane that the body strikes at once is moved away by the least gap.
         None => Obstacle::plane_at_gap(attribute(given, "gap").unwrap_or(0.0), normal, friction, group),
     };

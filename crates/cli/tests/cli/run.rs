@@ -332,7 +332,7 @@ fn a_plane_with_the_least_gap() {
     let bench = Bench::new(&case);
     let output = bench.percute(&["run", "case.toml", "--history", "h.vtkhdf"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(stderr(&output).contains("warning: case.toml:14: [[obstacle]] 1, point: plane 0 was moved back along its"));
+    assert!(stderr(&output).contains("warning: case.toml:13: [[obstacle]] 1: plane 0 was moved back along its normal"));
     assert!(stdout(&output).contains("plane 0 moved back by "), "{}", stdout(&output));
     let document = json(&case, &[]);
     assert!(warnings(&document).contains(&"moved_plane".to_string()));

@@ -109,9 +109,9 @@ fn results_are_replaced_by_force_only() {
     assert_eq!(stdout(&forced).lines().next(), Some("4 cases: 4 done"), "{}", stderr(&forced));
     let replaced = std::fs::read_to_string(&document).unwrap();
     assert_ne!(replaced, kept);
-    let version = format!("\"percute\": \"{}\"", env!("CARGO_PKG_VERSION"));
+    let version = format!("\"percute\":\"{}\"", env!("CARGO_PKG_VERSION"));
     assert!(replaced.contains(&version), "{replaced}");
-    std::fs::write(&document, replaced.replace(&version, "\"percute\": \"0.0.1\"")).unwrap();
+    std::fs::write(&document, replaced.replace(&version, "\"percute\":\"0.0.1\"")).unwrap();
     refused("nx=5,friction=0.1:");
     std::fs::write(&document, replaced).unwrap();
     // A case whose document was removed is run again; a folder of something else is not replaced.
