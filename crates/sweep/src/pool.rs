@@ -80,8 +80,8 @@ impl Launch {
 /// the others go on. If the observer breaks, all processes are stopped and their attempts removed.
 ///
 /// # Errors
-/// Results that would be lost, unless all cases are run again; a folder that cannot be written, a program that cannot be
-/// started.
+/// Results that would be lost, unless all cases are run again; a folder that cannot be written, a program that cannot
+/// be started.
 pub fn run<'c>(
     folder: &Path,
     cases: impl IntoIterator<Item = &'c Planned>,

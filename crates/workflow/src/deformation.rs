@@ -35,8 +35,8 @@ pub struct BodyDeformation {
     pub rotation: f64,
     /// The instant of this rotation (s).
     pub time_of_rotation: f64,
-    /// Its angular velocity at the last instant, counterclockwise (rad/s), that of the rigid motion which fits best; 0 of
-    /// a bar.
+    /// Its angular velocity at the last instant, counterclockwise (rad/s), that of the rigid motion which fits best; 0
+    /// of a bar.
     pub angular_velocity: f64,
     /// The principal strain of an element, in the plane, that is largest without its sign.
     pub strain: Extreme,

@@ -7,6 +7,8 @@ use std::f64::consts::TAU;
 
 /// Instants at which gaps are looked at, in one turn of the body.
 const LOOKS: u32 = 720;
+/// A spin that moves points by less than this part of the velocity is rounding.
+const STILL: f64 = 1e-9;
 /// Halvings of the time between two of them.
 const HALVINGS: u32 = 40;
 
@@ -31,7 +33,8 @@ pub(crate) fn next_touch<const D: usize, const N: usize>(
 ) -> Option<NextTouch> {
     let (speeds, spins) = (rigid.means(velocity), rigid.rotations(velocity));
     let ([speed], [spin]) = (&speeds[..], &spins[..]) else { return None };
-    if D != 2 || *spin == 0.0 {
+    let size = problem.mesh().size();
+    if D != 2 || spin.abs() * size <= STILL * speed.iter().fold(0.0_f64, |most, v| most.max(v.abs())) {
         return None;
     }
     let places: Vec<[f64; D]> =

@@ -119,7 +119,7 @@ fn the_names_are_those_of_the_readers() {
     let plane = "material = { young = 1, density = 1, poisson = 0, plane = \"none\" }\n\
                  mesh = { disc = { radius = 1, rings = 1 } }";
     assert_eq!(names("/$defs/material/properties/plane/enum"), refusal(plane, "must be ", '"'));
-    let cut = "mesh.rectangle = { width = 1, height = 1, nx = 1, ny = 1, diagonals = \"none\" }";
+    let cut = "mesh = { rectangle = { width = 1, height = 1, nx = 1, ny = 1, diagonals = \"none\" } }";
     assert_eq!(names("/$defs/mesh/properties/rectangle/properties/diagonals/enum"), refusal(cut, "must be ", '"'));
     let axis = "support = { group = \"boundary\", components = [\"w\"] }\n\
                 material = { young = 1, density = 1, poisson = 0, plane = \"strain\" }\n\

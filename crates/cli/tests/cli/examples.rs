@@ -21,19 +21,19 @@ use std::path::{Path, PathBuf};
 struct Example(&'static str, &'static str, f64);
 
 const EXAMPLES: [Example; 13] = [
-    Example("bar", "result    sup 4.10 % (76.30 J^½ at 4.9912e-5 s), mean 3.31 %", 1.007),
-    Example("block", "result    sup 6.06 % (159.5 J^½ at 1.3e-5 s), mean 5.56 %", 1.019),
-    Example("corner", "result    sup 9.00 % (9.355 J^½ at 2e-5 s), mean 7.28 %", 1.058),
-    Example("drop", "result    sup 6.44 % (1.893 J^½ at 0.0025767 s), mean 5.50 %", 1.114),
-    Example("tilted", "result    sup 7.16 % (188.2 J^½ at 1.6e-5 s), mean 5.68 %", 1.0),
-    Example("two_blocks", "result    sup 8.86 % (5.853 J^½ at 2e-5 s), mean 6.87 %", 1.092),
-    Example("sliding_blocks", "result    sup 3.60 % (4.732 J^½ at 2e-5 s), mean 3.00 %", 1.074),
-    Example("block_on_two", "result    sup 6.85 % (7.056 J^½ at 2e-5 s), mean 5.41 %", 1.122),
-    Example("disc_on_plate", "result    sup 16.9 % (5.378 J^½ at 8.0402e-6 s), mean 13.3 %", 1.433),
-    Example("two_bars", "result    sup 3.51 % (0.1997 J^½ at 2.4956e-4 s), mean 3.06 %", 1.028),
-    Example("cradle", "result    sup 4.55 % (0.2114 J^½ at 2.5e-4 s), mean 3.67 %", 1.05),
-    Example("three_blocks", "result    sup 14.7 % (9.684 J^½ at 2e-5 s), mean 9.94 %", 1.051),
-    Example("beam", "result    sup 9.06 % (1.091 J^½ at 2.9906e-4 s), mean 7.37 %", 0.974),
+    Example("bar", "result    sup 11.6 % (76.30 J^½ at 4.9912e-5 s), mean 9.37 %", 1.007),
+    Example("block", "result    sup 23.8 % (159.5 (J/m)^½ at 1.3e-5 s), mean 20.6 %", 1.019),
+    Example("corner", "result    sup 27.7 % (9.355 (J/m)^½ at 2e-5 s), mean 22.2 %", 1.058),
+    Example("drop", "result    sup 18.2 % (1.893 (J/m)^½ at 0.0025767 s), mean 15.5 %", 1.114),
+    Example("tilted", "result    sup 28.1 % (188.2 (J/m)^½ at 1.6e-5 s), mean 21.7 %", 1.0),
+    Example("two_blocks", "result    sup 29.6 % (5.853 (J/m)^½ at 2e-5 s), mean 24.0 %", 1.092),
+    Example("sliding_blocks", "result    sup 33.9 % (4.732 (J/m)^½ at 2e-5 s), mean 28.3 %", 1.074),
+    Example("block_on_two", "result    sup 20.0 % (7.056 (J/m)^½ at 2e-5 s), mean 16.7 %", 1.122),
+    Example("disc_on_plate", "result    sup 49.0 % (5.378 (J/m)^½ at 8.0402e-6 s), mean 38.4 %", 1.433),
+    Example("two_bars", "result    sup 12.2 % (0.1997 J^½ at 2.4956e-4 s), mean 10.8 %", 1.028),
+    Example("cradle", "result    sup 15.8 % (0.2114 J^½ at 2.5e-4 s), mean 12.8 %", 1.05),
+    Example("three_blocks", "result    sup 45.5 % (9.684 (J/m)^½ at 2e-5 s), mean 31.5 %", 1.051),
+    Example("beam", "result    sup 38.1 % (1.091 J^½ at 2.9906e-4 s), mean 25.9 %", 0.974),
 ];
 
 /// Those with surfaces that slide, of which `corrected` alone has an estimate.

@@ -126,6 +126,8 @@ fn only_what_may_be_absent_is_null() {
             // Of several bodies only.
             ".impacts",
             // Contact goes on at the end.
+            ".rebound.angular_velocity_after",
+            ".rebound.touches_again",
             ".rebound.velocity_after",
             ".rebound.normal_after",
             ".rebound.restitution",
@@ -288,7 +290,7 @@ fn planes_are_counted_from_0_in_tables() {
         let at = at.unwrap_or_else(|| panic!("no column {name}"));
         table.records().map(|row| row.unwrap()[at].parse().unwrap_or(f64::NAN)).filter(|x| x.is_finite()).collect()
     };
-    let names = ["force_x (N)", "plane_0_force_x (N)", "plane_1_force_x (N)"];
+    let names = ["force_x (N/m)", "plane_0_force_x (N/m)", "plane_1_force_x (N/m)"];
     let [total, floor, wall] = names.map(|name| column("over_time.csv", name));
     // Rounding of one sum.
     let adds_up = |k: usize| (total[k] - floor[k] - wall[k]).abs() <= 1e-12 * (floor[k].abs() + wall[k].abs());

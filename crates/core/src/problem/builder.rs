@@ -172,8 +172,8 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         self
     }
 
-    /// A body may start on a plane and move into it: before a simulation, [`Problem::with_planes_moved`] moves the plane
-    /// away.
+    /// A body may start on a plane and move into it: before a simulation, [`Problem::with_planes_moved`] moves the
+    /// plane away.
     #[must_use]
     pub fn planes_to_be_moved(mut self) -> Self {
         self.planes_to_be_moved = true;

@@ -362,8 +362,8 @@ pub enum Cause {
     TouchUnstated { elements: [usize; 2] },
     /// Bodies that overlap.
     #[error(
-        "the bodies overlap: node {node} of \"{}\" starts {} m inside the other body, behind \"{}\"; move them apart by \
-         more than that along the normal", .groups[0], short(*.depth), .groups[1]
+        "the bodies overlap: node {node} of \"{}\" starts {} m inside the other body, behind \"{}\"; move them apart \
+         by more than that along the normal", .groups[0], short(*.depth), .groups[1]
     )]
     Overlaps {
         node: usize,

@@ -30,8 +30,8 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         first.map_or(Ok(()), |at| Err(strikes(self, at, starts[at])))
     }
 
-    /// The problem with planes moved away that a body is on and moves into, by the least gap that lets its nodes come to
-    /// rest in a first step of this length (s). None if there is no such plane.
+    /// The problem with planes moved away that a body is on and moves into, by the least gap that lets its nodes come
+    /// to rest in a first step of this length (s). None if there is no such plane.
     #[must_use]
     pub fn with_planes_moved(&self, step: f64) -> Option<Self> {
         let starts = self.starts_of_contact();

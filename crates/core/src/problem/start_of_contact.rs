@@ -8,8 +8,8 @@ use crate::ids::ElementId;
 /// Bodies that overlap by less than this part of the size of the mesh are not told from those that touch.
 const ROUNDING: f64 = 1e-9;
 
-/// At t = 0 no candidate node may lie behind its obstacle, nor on it with an inward velocity; with `planes_to_be_moved`,
-/// on other bodies only.
+/// At t = 0 no candidate node may lie behind its obstacle, nor on it with an inward velocity; with
+/// `planes_to_be_moved`, on other bodies only.
 pub(super) fn check<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     planes_to_be_moved: bool,

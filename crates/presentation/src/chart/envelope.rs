@@ -55,9 +55,10 @@ mod tests {
         let found = envelope(&time, &values).unwrap();
         assert!(found.len() <= PIECES + 1 && found[0].time == 0.0 && found[found.len() - 1].time == 10_000.0);
         for range in &found {
-            // A piece has 34 samples, over which the line rises by 0.0068; a border counts two.
+            // A piece has 34 samples, over which the line rises by 0.0068, the last one up to 67: of an odd number, one
+            // is without its opposite.
             let line = range.time / 5000.0;
-            assert!((range.mean - line).abs() < 0.02, "{range:?}");
+            assert!((range.mean - line).abs() < 0.03, "{range:?}");
             assert!(range.low > line - 1.02 && range.low < line - 0.98 && range.high < line + 1.02, "{range:?}");
         }
         let inside = |n: usize| {

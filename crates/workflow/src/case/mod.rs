@@ -228,8 +228,8 @@ fn read<const D: usize, const N: usize>(
     Ok(CaseOf { source, problem, times, until, unended, critical_step, options, output, mesh_files })
 }
 
-/// The place and the cause of a start that the simulation refuses: a unit that is hardly right, beside which there is no
-/// other remedy, else the obstacle.
+/// The place and the cause of a start that the simulation refuses: a unit that is hardly right, beside which there is
+/// no other remedy, else the obstacle.
 #[must_use]
 pub fn refused_start<const D: usize, const N: usize>(
     problem: &Problem<D, N>,

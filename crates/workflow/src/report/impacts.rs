@@ -179,7 +179,8 @@ impl<'c, const D: usize> Centres<'c, D> {
         self.of_obstacle[obstacle].iter().all(|&body| self.beside[body] == Beside::Nothing)
     }
 
-    /// Whether the velocities of the bodies of two obstacles are known: contact alone changes them, or one side is held.
+    /// Whether the velocities of the bodies of two obstacles are known: contact alone changes them, or one side is
+    /// held.
     fn are_known(&self, sides: [usize; 2]) -> bool {
         let held = |side: usize| self.of_obstacle[side].iter().all(|&body| self.beside[body] == Beside::Fixed);
         let [first, second] = sides.map(|side| self.moved_by_contact(side));
