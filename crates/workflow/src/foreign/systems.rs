@@ -9,7 +9,7 @@ use super::measure::measure;
 use super::residual::{INERTIA, REACTION, STIFFNESS};
 use super::samples::Samples;
 use super::suspect::Suspect;
-use super::tried::{FALL, Tried, best};
+use super::tried::{FALL, Tried};
 use crate::message::trimmed;
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, Step, StepSource};
@@ -131,7 +131,9 @@ pub(super) fn whole<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
             // Without forces, systems with the same lengths and times are the same.
             let names: Vec<&str> = fit.iter().map(|(system, _)| system.name).collect();
             let text = told(*first, &names.join(" or "), inverse, &first.factors(given, forces));
-            return Ok(best(vec![Tried { text, before: suspect.residual(), left: *left }]).map(|best| best.told()));
+            let tried = Tried { text, before: suspect.residual(), left: *left };
+            // Where the initial velocity alone contradicts the problem, there is no residual to fall.
+            return Ok(Some(if tried.explains() { tried.told() } else { tried.text }));
         }
     }
     Ok(None)
@@ -147,8 +149,10 @@ fn balances<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, system:
 /// The norm of the residual in SI units, if nothing contradicts the problem then.
 fn left<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, system: System) -> Result<Option<f64>, SinkError> {
     let (problem, source) = (suspect.problem, suspect.source);
-    // What was derived in the units that are given is derived again.
-    let [reaction, touching] = [Derived::Reaction, Derived::Touching].map(|part| suspect.derived.contains(&part));
+    // What was derived in the units that are given is derived again, also if that was nothing.
+    let silent = !suspect.evidence.contact.forced.contains(&true);
+    let [reaction, touching] =
+        [Derived::Reaction, Derived::Touching].map(|part| silent || suspect.derived.contains(&part));
     let instants = source.times().instants().iter().map(|t| system.time * t).collect();
     let Ok(times) = TimeGrid::from_instants(instants) else { return Ok(None) };
     let scaled = Scaled { source, times, system, without_forces: reaction };
