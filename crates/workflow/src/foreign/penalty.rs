@@ -3,7 +3,8 @@
 use super::limits::{DRIFT, Excess, by_a_penalty};
 use super::suspect::Suspect;
 use crate::message::{percent, trimmed};
-use percute_core::dynamics::Dynamics;
+use percute_core::dynamics::{Dynamics, critical_time_step};
+use percute_core::time::is_stable;
 
 /// The name of what is over its limit where a penalty makes the run unstable.
 pub(super) const UNSTABLE: &str = "penalty";
@@ -33,7 +34,8 @@ pub(super) fn cause<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
     let (times, own) = (suspect.source.times(), own_stiffness(suspect, at));
     let (step, mass) = (times.longest_step(), mass(at));
     let stable = 2.0 * (mass / (stiffness + own)).sqrt();
-    if step <= stable {
+    // Steps above that of the body alone are unstable with any contact.
+    if step <= stable || !is_stable(step, critical_time_step(problem)) {
         return None;
     }
     let most = 4.0 * mass / (step * step) - own;
