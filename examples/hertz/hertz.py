@@ -58,7 +58,7 @@ def study(every: int = 1) -> Study:
     }
     with warnings.catch_warnings():
         # At a curve, `published` is near its ceiling: the study shows that.
-        warnings.filterwarnings("ignore", "the error is", pc.SimulationWarning)
+        warnings.filterwarnings("ignore", "the relative error", pc.SimulationWarning)
         estimates = {name: pc.estimate(history, reconstruction=name, every=every) for name in RECONSTRUCTIONS}
     return Study(main, history, speeds, variants, estimates)
 

@@ -401,7 +401,7 @@ def test_bodies_of_one_file(tmp_path: Path) -> None:
 def test_bodies_that_overlap_are_named() -> None:
     mesh = pc.Mesh.rectangle(0.04, 0.025, nx=4, ny=3)
     bodies = [pc.Body(name="anvil", mesh=mesh, material=steel()), pc.Body(name="hammer", mesh=mesh, material=aluminium(), origin=(0, 0.02))]
-    with pytest.raises(pc.InputError, match=r'`bodies\[1\]`: "hammer" overlaps "anvil"; bodies may touch'):
+    with pytest.raises(pc.InputError, match=r'`bodies\[1\]`: "hammer" overlaps "anvil": node 18 of "anvil.top" at \[0.03, 0.025\] m is 0.005 m inside, behind "hammer.bottom"; bodies may touch'):
         pc.Problem(bodies=bodies)
 
 

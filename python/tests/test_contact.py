@@ -151,7 +151,7 @@ def test_without_planes_there_is_nothing() -> None:
     history = pc.simulate(problem, end=2e-5, courant=0.9)
     contact = history.contact
     assert contact.force.shape == (len(history), 0, 2) and contact.obstacles == ()
-    assert not contact.resultants.force.any() and repr(contact) == f"<percute.Contact: 0 nodes, {len(history)} instants, at most 0 N>"
+    assert not contact.resultants.force.any() and repr(contact) == f"<percute.Contact: 0 nodes, {len(history)} instants, at most 0 N/m>"
     with pytest.raises(pc.InputError, match="the problem has no planes"):
         contact.plot()
 
@@ -169,7 +169,7 @@ def test_the_picture_shows_forces_and_zone(long: pc.History) -> None:
     normal, tangential = forces.lines
     assert np.allclose(normal.get_ydata(), contact.resultants.normal_force / 1e6)  # type: ignore[arg-type]
     assert np.allclose(tangential.get_ydata(), contact.resultants.force[:, 0] / 1e6)  # type: ignore[arg-type]
-    assert forces.get_ylabel() == "force of contact (MN)" and (zone.get_xlabel(), zone.get_ylabel()) == ("t (µs)", "x (mm)")
+    assert forces.get_ylabel() == "force of contact (MN/m)" and (zone.get_xlabel(), zone.get_ylabel()) == ("t (µs)", "x (mm)")
     drawn = zone.collections[0].get_array()
     assert drawn is not None
     order = np.argsort(contact.points[:, 0])

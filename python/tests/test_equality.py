@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
 import percute as pc
+from percute import contents
 import pytest
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

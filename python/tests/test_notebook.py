@@ -44,7 +44,7 @@ def test_an_estimate_has_its_errors_and_a_map(block_history: pc.History) -> None
     estimate = pc.estimate(block_history)
     shown = estimate._repr_html_()
     told = cells(shown)
-    assert told["largest error"].startswith(f"{100 * estimate.relative_sup:.3g} %") and "J½" in told["mean error"]
+    assert told["largest error"].startswith(f"{100 * estimate.relative_sup:.3g} %") and "(J/m)½" in told["mean error"]
     assert (told["trust"], told["verdict"]) == (estimate.trust, estimate.verdict)
     paths = parsed(shown).findall(".//{http://www.w3.org/2000/svg}path")
     assert sum(path.attrib["d"].count("Z") for path in paths) == 96

@@ -10,7 +10,8 @@ import pytest
 from percute.verification.block import ALUMINIUM
 from percute.verification.struck import Problem, beside_end, disc, overlapping, tilted
 
-pytestmark = pytest.mark.filterwarnings("ignore::percute.SimulationWarning")
+# Discs touch plates on less than an edge.
+pytestmark = [pytest.mark.filterwarnings("ignore::percute.SimulationWarning"), pytest.mark.filterwarnings("ignore:the contact is narrower")]
 STRUCK = [0.83, 2.2]
 """Range of the indices of ``docs/bodies.md``, corners and curves, and some beyond it."""
 

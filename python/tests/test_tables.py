@@ -19,7 +19,7 @@ def test_a_history_over_time(block_history: pc.History) -> None:
     assert np.array_equal(table.index, block_history.time) and table.index.name == "time"
     assert np.array_equal(table["kinetic"], block_history.balance.kinetic)
     assert np.array_equal(table["total_force_y"], block_history.contact.resultants.force[:, 1])
-    assert table.attrs["units"]["total_impulse_x"] == "N s" and set(table.attrs["units"]) == {"time", *table.columns}
+    assert table.attrs["units"]["total_impulse_x"] == "N s/m" and set(table.attrs["units"]) == {"time", *table.columns}
     assert list(block_history.balance.to_pandas().columns) == list(table.columns)[:8]
 
 
@@ -74,7 +74,7 @@ def test_an_estimate(estimate: pc.Estimate) -> None:
     assert np.array_equal(table["total"], estimate.over_time.total) and np.array_equal(table["source_front"], estimate.sources.over_time.front)
     assert table["error"].max() == pytest.approx(estimate.sup, rel=1e-14) and table.attrs["relative_sup"] == estimate.relative_sup
     elements = estimate.to_pandas("elements")
-    assert np.array_equal(elements["by_element"], estimate.by_element) and elements.attrs["units"]["by_element"] == "J^0.5"
+    assert np.array_equal(elements["by_element"], estimate.by_element) and elements.attrs["units"]["by_element"] == "(J/m)^0.5"
     worst = estimate.worst_elements(1)[0]
     assert tuple(elements.loc[worst.element, ["x", "y"]]) == worst.centroid
     both = estimate.to_pandas("both")

@@ -146,13 +146,13 @@ fn relative_error(relative: [f64; 2]) -> Option<Symptom> {
     }
     let shown = percent(largest);
     let figure = format!(
-        "the error is {shown} of the sum of both fields [22]: fields that have nothing in common have 70.7 % (1/√2), \
-         whatever their true error"
+        "the relative error [22] is {shown}: fields that have nothing in common have 70.7 % (1/√2), whatever their true \
+         error"
     );
     let remedy = "refine the mesh, and look for elements that are nearly flat";
     symptom(
         "relative_error",
-        format!("error {shown} of the sum of both fields, near its ceiling of 71 %"),
+        format!("relative error [22] {shown}, near its ceiling of 71 %"),
         figure,
         remedy,
     )

@@ -22,22 +22,24 @@ pub(in crate::report) struct NarrowContact {
 }
 
 impl NarrowContact {
-    /// None of a contact that is wider, of corners and flat surfaces, and of several contacts, which share the force.
+    /// None of contacts that are wider, of corners and of flat surfaces. Where several contacts share the force, each
+    /// counts as if it had all: none is called narrow that is not.
     pub(in crate::report) fn new<const D: usize, const N: usize>(
         problem: &Problem<D, N>,
         results: &ContactResults<D>,
     ) -> Option<Self> {
-        let planes = problem.obstacles().iter().filter(|obstacle| obstacle.as_plane().is_some()).count();
         let force = results.averaged_peak.filter(|_| D == 2)?.force;
-        if planes + problem.statement().interfaces.len() != 1 {
-            return None;
-        }
         let surface = Surface::new(problem, results);
+        let planes = (0..problem.obstacles().len()).filter(|&k| problem.obstacles()[k].as_plane().is_some());
+        let interfaces = problem.sides_of_interfaces().map(|sides| sides.to_vec());
+        planes.map(|plane| vec![plane]).chain(interfaces).find_map(|sides| Self::of(&surface, &sides, force))
+    }
+
+    /// That of one contact, by the nodes that touch first on its sides, under a force (N).
+    fn of<const D: usize, const N: usize>(surface: &Surface<'_, D, N>, sides: &[usize], force: f64) -> Option<Self> {
         let (mut curvature, mut compliance, mut edge, mut thickness) = (0.0, 0.0, 0.0_f64, f64::INFINITY);
-        for obstacle in 0..problem.obstacles().len() {
-            let Some(at) = surface.first_of(obstacle) else { continue };
-            let turn = surface.turn(at);
-            let (length, law) = surface.edges(at)?;
+        for at in sides.iter().filter_map(|&side| surface.first_of(side)) {
+            let (turn, (length, law)) = (surface.turn(at), surface.edges(at)?);
             if turn > CORNER {
                 return None;
             }
@@ -57,5 +59,47 @@ fn plane_compliance(law: &Elastic) -> f64 {
     match law.hypothesis() {
         Hypothesis::PlaneStrain => (1.0 - law.poisson().powi(2)) / law.young(),
         _ => 1.0 / law.young(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_core::contact::{ContactRecorder, Obstacle};
+    use percute_core::dynamics::{critical_time_step, simulate};
+    use percute_core::history::History;
+    use percute_core::mesh::TriangleMesh;
+    use percute_core::observer::Unobserved;
+    use percute_core::problem::{Initial, TriangleProblem};
+    use percute_core::time::TimeGrid;
+
+    /// A disc of 10 mm that comes down on a plane at this speed (m/s), until the force is about largest.
+    fn lands(rings: usize, speed: f64) -> Option<NarrowContact> {
+        let mesh = TriangleMesh::disc(0.01, rings).unwrap();
+        let build = |gap: f64| {
+            TriangleProblem::builder(mesh.clone())
+                .material(Elastic::plane_strain(70e9, 0.3, 2700.0, 0.5).unwrap())
+                .initial_velocity(Initial::Uniform([0.0, -speed]))
+                .obstacle(Obstacle::plane([0.0, -0.01 - gap], [0.0, 1.0], 0.0, None).unwrap())
+                .build()
+                .unwrap()
+        };
+        let dt = 0.9 * critical_time_step(&build(1.0));
+        let problem = build(1.3 * speed * dt);
+        let steps = (2e-5 / dt).ceil() as usize;
+        let times = TimeGrid::uniform(dt * steps as f64, steps).unwrap();
+        let (mut history, mut contact) = (History::new(&times), ContactRecorder::new(&problem, &times));
+        simulate(&problem, &times, &mut (&mut history, &mut contact), &mut Unobserved).unwrap();
+        NarrowContact::new(&problem, &contact.finish())
+    }
+
+    /// A slow disc touches with one node; with edges as small as it says, the contact has several. A fast one is wider.
+    #[test]
+    fn a_slow_disc_touches_on_less_than_an_edge() {
+        let found = lands(4, 0.2).unwrap();
+        // The outline has 24 edges, each a chord of 15°.
+        assert!((found.edge - 0.02 * (PI / 24.0).sin()).abs() < 1e-12, "{found:?}");
+        assert!(2.0 * found.half_width < found.edge && found.needed == 0.5 * found.half_width);
+        assert_eq!(lands(4, 60.0), None);
     }
 }
