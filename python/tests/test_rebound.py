@@ -213,7 +213,6 @@ def test_a_corner_that_would_hit_next_is_named_with_its_instant() -> None:
     # In small strains nodes move along straight lines, not along arcs: after 0.9 rad the corner is a third farther away.
     assert later.size == 0 or later[0] == pytest.approx(again.time, rel=0.5)
     assert "touches_again" in [each["name"] for each in json.loads(estimate.to_json())["warnings"]]
-    assert f"turning at {spin:.3g}" in " ".join(str(estimate).split())
 
 
 def test_peak_force_does_not_depend_on_the_step() -> None:

@@ -93,7 +93,7 @@ BEYOND = {
     "a contact of surfaces of bodies that are beside each other": "the geometry of the bodies",
     "a contact of the sides that look away from each other": "the geometry of the bodies",
     "slopes at a line of symmetry": "the geometry of the bodies",
-    "two contacts at a node": "the groups of the mesh",
+    "a contact stated twice": "values of two tables",
     "a contact of a surface that is held": "two groups of the mesh",
     "a contact of a surface that is loaded": "two groups of the mesh",
     "two supports with two motions": "values of two tables",
