@@ -67,7 +67,7 @@ class Rebound:
         later = {"no_restitution": None, "angular_velocity_after": None, "touches_again": None}
         found = {**later, "span": found["time_in_contact"], **found}
         after = found["velocity_after"]
-        vectors = {"velocity_before": np.array(found["velocity_before"]), "velocity_after": None if after is None else np.array(after)}
+        made: dict[str, Any] = {"velocity_before": np.array(found["velocity_before"]), "velocity_after": None if after is None else np.array(after)}
         again = found["touches_again"]
-        vectors["touches_again"] = None if again is None else NextTouch(**again)
-        return cls(**{name: vectors.get(name, found[name]) for name in cls.__dataclass_fields__})
+        made["touches_again"] = None if again is None else NextTouch(**again)
+        return cls(**{name: made.get(name, found[name]) for name in cls.__dataclass_fields__})

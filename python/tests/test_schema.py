@@ -94,6 +94,8 @@ BEYOND = {
     "a contact of the sides that look away from each other": "the geometry of the bodies",
     "slopes at a line of symmetry": "the geometry of the bodies",
     "a contact stated twice": "values of two tables",
+    "a contact stated twice in the same order": "values of two tables",
+    "a contact stated by groups and by bodies": "values of two tables",
     "a contact of a surface that is held": "two groups of the mesh",
     "a contact of a surface that is loaded": "two groups of the mesh",
     "two supports with two motions": "values of two tables",
