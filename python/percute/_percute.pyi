@@ -48,6 +48,7 @@ __all__ = [
     "sweep_case",
     "true_error_of_bar_impact",
     "verification",
+    "unit",
 ]
 
 MOST_LEVELS: int
