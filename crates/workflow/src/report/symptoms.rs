@@ -146,8 +146,8 @@ fn relative_error(relative: [f64; 2]) -> Option<Symptom> {
     }
     let shown = percent(largest);
     let figure = format!(
-        "the relative error [22] is {shown}: fields that have nothing in common have 70.7 % (1/√2), whatever their true \
-         error"
+        "the relative error [22] is {shown}: fields that have nothing in common have 70.7 % (1/√2), whatever their \
+         true error"
     );
     let remedy = "refine the mesh, and look for elements that are nearly flat";
     symptom(
