@@ -150,12 +150,7 @@ fn relative_error(relative: [f64; 2]) -> Option<Symptom> {
          true error"
     );
     let remedy = "refine the mesh, and look for elements that are nearly flat";
-    symptom(
-        "relative_error",
-        format!("relative error [22] {shown}, near its ceiling of 71 %"),
-        figure,
-        remedy,
-    )
+    symptom("relative_error", format!("relative error [22] {shown}, near its ceiling of 71 %"), figure, remedy)
 }
 
 fn flat_elements(facts: &Facts<'_>) -> Option<Symptom> {
