@@ -55,7 +55,7 @@ pub struct Sample {
 /// The error measures. Absolute values are in J^½, per metre of thickness where that is 1 m.
 ///
 /// Relative ones are over √`energy`, the largest energy of deformation and vibration: strain energy plus the kinetic
-/// energy relative to the rigid motion of each body. A common velocity, a spin and a longer flight change nothing.
+/// energy relative to the rigid motion of each body. A common velocity and a spin change nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorMeasures {
     /// √sup η, eq. \[15\].

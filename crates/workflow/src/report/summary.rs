@@ -51,7 +51,7 @@ fn lines(report: &Report) -> Vec<(&'static str, String)> {
     lines.extend(kept_impulse(report).map(|line| ("impulse", line)));
     lines.extend(contact(report).map(|line| ("contact", line)));
     let label = |rebound: &Rebound| if rebound.is_rebound() { "rebound" } else { "motion" };
-    lines.extend(report.rebound.as_ref().map(|rebound| (label(rebound), returned(rebound))));
+    lines.extend(report.rebound.as_ref().map(|rebound| (label(rebound), returned(rebound, size(report)))));
     lines.extend(impacts(report));
     lines.extend(warnings(report));
     lines
@@ -242,14 +242,22 @@ fn contact(report: &Report) -> Option<String> {
     Some(format!("from {first} s, averaged peak {force} {newton} at {time} s, {pressure} Pa"))
 }
 
-/// Velocities before and after contact, along the normal.
-fn returned(rebound: &Rebound) -> String {
+/// The largest side of the mesh (m).
+fn size(report: &Report) -> f64 {
+    let sides = report.problem.upper_corner.iter().zip(&report.problem.lower_corner).map(|(u, l)| u - l);
+    sides.fold(0.0, f64::max)
+}
+
+/// Velocities before and after contact, along the normal, of a body of this size (m).
+fn returned(rebound: &Rebound, size: f64) -> String {
     let before = trimmed(rebound.normal_before, 4);
     let time = in_contact(rebound.time_in_contact, rebound.span);
     match (rebound.normal_after, rebound.restitution) {
         (Some(after), Some(restitution)) => {
-            let (after, restitution) = (trimmed(after, 4), trimmed(restitution, 3));
-            let turning = rebound.angular_velocity_after.filter(|spin| *spin != 0.0);
+            let (speed, restitution) = (after.abs(), trimmed(restitution, 3));
+            let after = trimmed(after, 4);
+            // Less than a thousandth of the velocity after contact is rounding, or not worth a word.
+            let turning = rebound.angular_velocity_after.filter(|spin| spin.abs() * size > 1e-3 * speed);
             let turning = turning.map_or(String::new(), |spin| format!(", turning at {} rad/s", short(spin, 3)));
             format!("from {before} to {after} m/s, restitution {restitution}, {time}{turning}")
         }
