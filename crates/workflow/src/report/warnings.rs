@@ -135,8 +135,8 @@ pub(super) fn touches_again(facts: &Facts<'_>) -> Option<Warning> {
     let time = trimmed(time, 4);
     let brief = format!("node {node} would reach plane_{plane} at {time} s");
     let message = format!(
-        "the body turns after its last contact, and as a rigid body its {brief}: velocities and restitution are those of \
-         the impact until the end of the run, not of all of it. A run in small strains moves points along straight \
+        "the body turns after its last contact, and as a rigid body its {brief}: velocities and restitution are those \
+         of the impact until the end of the run, not of all of it. A run in small strains moves points along straight \
          lines: for what follows, begin a new run there"
     );
     warning("touches_again", brief, message)
