@@ -172,7 +172,8 @@ fn a_force_at_the_last_instant_is_contact() {
     // Lands after 1 µs; the step is 0.585 µs, so that the force of the second instant acts in the run that ends there.
     let text = block([10, 8], 1e-5, 10.0, 1e-6, "");
     let found = verdict(&text);
-    assert_eq!((found.touches, found.trust), (Touches::Edge, Trust::Limited), "{found:?}");
+    // Nothing vibrates yet: the error is as large.
+    assert_eq!((found.touches, found.trust), (Touches::Edge, Trust::Low), "{found:?}");
     assert_eq!(found.untested, ["0 wave passages after the first touch"], "{found:?}");
     assert!(found.at_contact > 0.5, "{found:?}");
     // A run that ends before has no contact.
