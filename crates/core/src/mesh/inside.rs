@@ -55,12 +55,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
                 let [low, high] = [f64::min, f64::max].map(|pick| corners.iter().map(|p| p[c]).reduce(pick));
                 low.is_some_and(|low| point[c] < low) || high.is_some_and(|high| point[c] > high)
             };
-            !(0..D).any(beside)
-                && (0..N).all(|k| {
-                    let mut parts = corners;
-                    parts[k] = *point;
-                    self.simplex().signed_volume(&parts) >= 0.0
-                })
+            !(0..D).any(beside) && self.simplex().encloses(&corners, point, 0.0)
         })
     }
 }

@@ -85,11 +85,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         let others = self.cells.iter().filter(|cell| part[cell[0].index()] != part[node.index()]);
         others.map(|cell| cell.map(|corner| points[corner.index()])).any(|corners| {
             let least = -AT_FACET * self.simplex.signed_volume(&corners).abs();
-            (0..N).all(|k| {
-                let mut parts = corners;
-                parts[k] = points[node.index()];
-                self.simplex.signed_volume(&parts) >= least
-            })
+            self.simplex.encloses(&corners, &points[node.index()], least)
         })
     }
 

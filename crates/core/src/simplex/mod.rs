@@ -69,6 +69,16 @@ pub trait Simplex<const D: usize, const N: usize>: sealed::Sealed + Debug + Send
     /// piece on which the linear `switch` with these nodal values keeps its sign.
     fn facet_mean(&self, switch: &[f64; D], quantity: &dyn Fn(&[f64; D]) -> f64) -> f64;
 
+    /// Whether a point is in the element with these corners, positively oriented: with the point in place of a corner,
+    /// no signed volume is below `least` (m or m²).
+    fn encloses(&self, corners: &[[f64; D]; N], point: &[f64; D], least: f64) -> bool {
+        (0..N).all(|k| {
+            let mut part = *corners;
+            part[k] = *point;
+            self.signed_volume(&part) >= least
+        })
+    }
+
     /// Volume and gradients of the element with these corners, positively oriented.
     fn geometry(&self, points: &[[f64; D]; N]) -> CellGeometry<D, N> {
         let volume = self.signed_volume(points);
