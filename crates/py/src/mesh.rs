@@ -28,8 +28,8 @@ type NumberGroups<'py> = BTreeMap<String, PyReadonlyArray1<'py, i64>>;
 impl MeshData {
     #[staticmethod]
     fn rectangle(py: Python<'_>, width: f64, height: f64, nx: usize, ny: usize, diagonals: &str) -> PyResult<Self> {
-        let known = Diagonals::NAMES.into_iter().find(|(name, _)| *name == diagonals);
-        let (_, cut) = known.ok_or_else(|| errors::input(py, "`diagonals` has a name that is not known"))?;
+        let cut = Diagonals::named(diagonals);
+        let cut = cut.ok_or_else(|| errors::input(py, "`diagonals` has a name that is not known"))?;
         let mesh = bridge::blocking(py, None, move |_| TriangleMesh::rectangle_cut(width, height, nx, ny, cut))?;
         Ok(Self { mesh: ByDimension::Plane(Arc::new(mesh.map_err(|e| errors::input(py, e))?)) })
     }

@@ -56,6 +56,12 @@ impl Diagonals {
     pub const NAMES: [(&str, Self); 3] =
         [("right", Self::Right), ("alternating", Self::Alternating), ("crossed", Self::Crossed)];
 
+    /// Those of a name; none if it is not known.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::NAMES.into_iter().find(|(known, _)| *known == name).map(|(_, diagonals)| diagonals)
+    }
+
     /// The number of triangles in a cell.
     fn triangles(self) -> usize {
         if self == Self::Crossed { 4 } else { 2 }

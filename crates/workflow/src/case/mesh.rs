@@ -155,8 +155,7 @@ fn diagonals(value: &Value<'_>) -> Result<Diagonals, CaseError> {
     let allowed = format!("one of \"{right}\", \"{alternating}\", \"{crossed}\"");
     let name = value.text(&allowed)?;
     let hint = || hint(name, Diagonals::NAMES.map(|(name, _)| name));
-    let found = Diagonals::NAMES.into_iter().find(|(known, _)| *known == name);
-    found.map(|(_, diagonals)| diagonals).ok_or_else(|| value.must_be(format!("{allowed}{}", hint())))
+    Diagonals::named(name).ok_or_else(|| value.must_be(format!("{allowed}{}", hint())))
 }
 
 fn disc(value: &Value<'_>) -> Result<TriangleMesh, CaseError> {
