@@ -135,9 +135,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
 
     /// The two obstacles of each interface, in the order of the interfaces: those that are no planes, two by two.
     pub fn sides_of_interfaces(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
-        let count = self.obstacles().len();
-        let first = self.obstacles().iter().position(|obstacle| obstacle.as_plane().is_none());
-        (first.unwrap_or(count)..count).step_by(2).map(|side| [side, side + 1])
+        (self.planes()..self.obstacles().len()).step_by(2).map(|side| [side, side + 1])
     }
 
     /// Units of forces, energies and masses: per metre of thickness where that is 1 m, as it is unless it is given.

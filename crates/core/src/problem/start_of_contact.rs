@@ -82,11 +82,9 @@ fn check_apart<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Resul
 
 /// The group of a node that faces another body, and that of the other surface.
 fn groups<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize) -> Box<[String; 2]> {
-    let surface = problem.surface();
-    // The two obstacles of an interface follow each other, after all planes.
-    let (own, planes) = (surface.nodes()[at].obstacle, problem.planes());
-    let other = planes + ((own - planes) ^ 1);
-    Box::new([own, other].map(|obstacle| surface.obstacles()[obstacle].group().unwrap_or_default().to_string()))
+    let own = problem.surface().nodes()[at].obstacle;
+    let other = problem.opposite_obstacle(own).unwrap_or(own);
+    Box::new([own, other].map(|obstacle| problem.obstacles()[obstacle].group().unwrap_or_default().to_string()))
 }
 
 fn gaps<'a, const D: usize, const N: usize>(

@@ -1,6 +1,6 @@
 //! Contact and estimate at surfaces that slide along each other.
 
-use percute_core::contact::{ContactResults, Frame, Interface, Obstacle, Resultant};
+use percute_core::contact::{ContactResults, Frame, Interface, Resultant};
 use percute_core::problem::Problem;
 use percute_core::ratio;
 use percute_estimator::SurfaceEstimate;
@@ -18,9 +18,6 @@ pub struct SlidingReport {
     pub estimate: SurfaceEstimate,
 }
 
-/// One side of an interface, and the resultants of its forces at all instants.
-type SideResults<'a, const D: usize> = (&'a Obstacle<D>, &'a Vec<Resultant<D>>);
-
 impl SlidingReport {
     /// All of a run, in the order of the interfaces.
     #[must_use]
@@ -29,13 +26,11 @@ impl SlidingReport {
         contact: &ContactResults<D>,
         estimates: &[SurfaceEstimate],
     ) -> Vec<Self> {
-        // Each interface has two obstacles, one for each side.
-        let sides = problem.obstacles().iter().zip(&contact.obstacles).filter(|(side, _)| side.as_plane().is_none());
-        let sides: Vec<SideResults<'_, D>> = sides.collect();
-        let interfaces = problem.statement().interfaces.iter().zip(sides.chunks_exact(2));
-        let of = |(interface, sides): (&Interface, &[SideResults<'_, D>])| {
-            let estimate = *estimates.get(sides[0].0.sliding()?)?;
-            let couple = couple(&sides[0].0.flat_frame(), [sides[0].1, sides[1].1]);
+        let interfaces = problem.statement().interfaces.iter().zip(problem.sides_of_interfaces());
+        let of = |(interface, sides): (&Interface, [usize; 2])| {
+            let first = &problem.obstacles()[sides[0]];
+            let estimate = *estimates.get(first.sliding()?)?;
+            let couple = couple(&first.flat_frame(), sides.map(|side| &contact.obstacles[side][..]));
             Some(Self { groups: interface.groups().map(str::to_string), couple, estimate })
         };
         interfaces.filter_map(of).collect()

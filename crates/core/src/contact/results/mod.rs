@@ -110,14 +110,6 @@ impl<const D: usize> ContactResults<D> {
         (peak.1 > 0.0).then_some(peak.0)
     }
 
-    /// The node with the largest pressure, as its position in the surface. None without any force.
-    #[must_use]
-    pub fn most_pressed(&self) -> Option<usize> {
-        let pressures = self.summary.iter().map(|s| s.peak_pressure).enumerate();
-        let peak = pressures.fold((0, 0.0), |best, (k, p)| if p > best.1 { (k, p) } else { best });
-        (peak.1 > 0.0).then_some(peak.0)
-    }
-
     /// The first instant at which any node touches (s).
     #[must_use]
     pub fn first_touch(&self) -> Option<f64> {
