@@ -94,26 +94,26 @@ pub struct ErrorMeasures {
 }
 
 impl ErrorMeasures {
-    /// The names of all measures, their units and their values.
+    /// The names of all measures and their values.
     #[must_use]
-    pub fn entries(&self) -> [(&'static str, &'static str, f64); 16] {
+    pub fn entries(&self) -> [(&'static str, f64); 16] {
         [
-            ("sup", "J^(1/2)", self.sup),
-            ("mean", "J^(1/2)", self.mean),
-            ("mean_from_touch", "J^(1/2)", self.mean_from_touch),
-            ("energy", "J", self.energy),
-            ("strain_energy", "J", self.strain_energy),
-            ("kinetic_energy", "J", self.kinetic_energy),
-            ("relative_sup", "", self.relative_sup),
-            ("relative_mean", "", self.relative_mean),
-            ("relative_stress_sup", "", self.relative_stress_sup),
-            ("relative_stress_mean", "", self.relative_stress_mean),
-            ("relative_velocity_sup", "", self.relative_velocity_sup),
-            ("relative_velocity_mean", "", self.relative_velocity_mean),
-            ("published_relative_sup", "", self.published_relative_sup),
-            ("published_relative_mean", "", self.published_relative_mean),
-            ("reference_sup", "J^(1/2)", self.reference_sup),
-            ("reference_mean", "J^(1/2)", self.reference_mean),
+            ("sup", self.sup),
+            ("mean", self.mean),
+            ("mean_from_touch", self.mean_from_touch),
+            ("energy", self.energy),
+            ("strain_energy", self.strain_energy),
+            ("kinetic_energy", self.kinetic_energy),
+            ("relative_sup", self.relative_sup),
+            ("relative_mean", self.relative_mean),
+            ("relative_stress_sup", self.relative_stress_sup),
+            ("relative_stress_mean", self.relative_stress_mean),
+            ("relative_velocity_sup", self.relative_velocity_sup),
+            ("relative_velocity_mean", self.relative_velocity_mean),
+            ("published_relative_sup", self.published_relative_sup),
+            ("published_relative_mean", self.published_relative_mean),
+            ("reference_sup", self.reference_sup),
+            ("reference_mean", self.reference_mean),
         ]
     }
 
@@ -188,7 +188,7 @@ pub struct Estimate<const D: usize> {
 impl<const D: usize> Estimate<D> {
     /// Whether every number of it is one.
     pub(crate) fn is_finite(&self) -> bool {
-        let mut measures = self.error.entries().into_iter().map(|(_, _, x)| x);
+        let mut measures = self.error.entries().into_iter().map(|(_, x)| x);
         let samples = self.over_time.iter().all(|s| s.parts.total().is_finite() && s.reference.is_finite());
         samples && measures.all(|x| x.is_finite()) && self.by_element.iter().all(|x| x.is_finite())
     }

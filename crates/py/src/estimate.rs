@@ -123,7 +123,7 @@ impl EstimateData {
             (e.error, e.time_of_sup, e.steps, e.end, e.kept_impulse)
         });
         let numbers = PyDict::new(py);
-        for (name, _, value) in error.entries() {
+        for (name, value) in error.entries() {
             numbers.set_item(name, value)?;
         }
         numbers.set_item("time_of_sup", time_of_sup)?;

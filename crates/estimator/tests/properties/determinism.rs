@@ -51,7 +51,7 @@ fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
         end,
     } = estimate;
     assert_eq!(*given, Given::default());
-    let mut numbers: Vec<f64> = error.entries().into_iter().map(|(_, _, value)| value).collect();
+    let mut numbers: Vec<f64> = error.entries().into_iter().map(|(_, value)| value).collect();
     numbers.extend([
         *time_of_sup,
         parts.kinetic,

@@ -218,7 +218,7 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
     fn measures(&self, ours: &Group) -> Result<(), FileCause> {
         let group = group(ours, "measures")?;
         let Estimate { error: e, time_of_sup, end, kept_impulse, given, steps, .. } = self.estimate;
-        for (name, _, value) in e.entries() {
+        for (name, value) in e.entries() {
             attribute(&group, name, value)?;
         }
         for (name, value) in [("time_of_sup", Some(*time_of_sup)), ("end", Some(*end)), ("kept_impulse", *kept_impulse)]
