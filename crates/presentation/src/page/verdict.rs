@@ -89,16 +89,8 @@ fn tiles(document: &Document) -> String {
     let si = |unit: &str, value: f64| together(&quantity(value, unit, 4));
     let error = |name: &str, absolute: &str| {
         let relative = share(Some(value(&format!("error.relative_{name}"))?));
-        let norm = value("error.energy")?.sqrt();
-        Some((
-            relative,
-            format!(
-                "{} of {} {}",
-                short(value(&format!("error.{absolute}"))?, 4),
-                short(norm, 4),
-                document.unit("J^½")
-            ),
-        ))
+        let [error, norm] = [value(&format!("error.{absolute}"))?, value("error.energy")?.sqrt()];
+        Some((relative, format!("{} of {} {}", short(error, 4), short(norm, 4), document.unit("J^½"))))
     };
     let step = || {
         let (step, critical) = (value("time_step")?, value("critical_time_step")?);

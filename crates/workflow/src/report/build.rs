@@ -17,7 +17,7 @@ use percute_core::dynamics::Balance;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{PlausibilityWarning, plausibility_warnings};
+use percute_core::problem::{PlausibilityWarning, Problem, plausibility_warnings};
 use percute_estimator::{Estimate, Options};
 
 /// How many elements the report names.
@@ -37,7 +37,7 @@ impl Report {
         let Subject { name, times, critical_step, held, checked, problem: problem_of, .. } = *subject;
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
         let (rebound, verdict) = judged(subject, options, largest_residual.admissible, findings);
-        let [mut warnings, told_before] = warnings_of(subject, options, findings);
+        let [mut warnings, told_before] = warnings(subject, options, findings, rebound.as_ref());
         warnings.extend(told_before);
         Self {
             format: FORMAT,
@@ -97,7 +97,7 @@ fn judged<const D: usize, const N: usize>(
     let Subject { problem, times, critical_step, checked, .. } = *subject;
     let (courant, drift) = (times.longest_step() / critical_step, simulation.balance.energy_drift);
     let contact_energy = contact_energy(&simulation.balance, checked);
-    let rebound = Rebound::new(problem, &simulation.balance_over_time, contact, Some(deformation));
+    let rebound = rebound_of(problem, findings);
     let rebounded = rebound.as_ref();
     let beside = verdict::Beside {
         options,
@@ -127,7 +127,22 @@ fn foreseen<const D: usize, const N: usize>(
 pub fn warnings_of<const D: usize, const N: usize>(
     subject: &Subject<'_, D, N>,
     options: Options,
+    findings: Findings<'_, D>,
+) -> [Vec<Warning>; 2] {
+    warnings(subject, options, findings, rebound_of(subject.problem, findings).as_ref())
+}
+
+fn rebound_of<const D: usize, const N: usize>(problem: &Problem<D, N>, findings: Findings<'_, D>) -> Option<Rebound> {
+    let Findings { simulation, contact, deformation, .. } = findings;
+    Rebound::new(problem, &simulation.balance_over_time, contact, Some(deformation))
+}
+
+/// [`warnings_of`], with the rebound.
+fn warnings<const D: usize, const N: usize>(
+    subject: &Subject<'_, D, N>,
+    options: Options,
     Findings { simulation, estimate, contact, deformation, .. }: Findings<'_, D>,
+    rebound: Option<&Rebound>,
 ) -> [Vec<Warning>; 2] {
     let balance = &simulation.balance;
     let Subject { times, checked, critical_step, unended, .. } = *subject;
@@ -147,8 +162,7 @@ pub fn warnings_of<const D: usize, const N: usize>(
         touches: contact.total.iter().any(|sum| sum.force.iter().any(|f| *f != 0.0)),
         own_contacts: estimate.own_contacts,
         auxiliary_contact_energy: auxiliary_contact_energy(estimate, checked),
-        touches_again: Rebound::new(subject.problem, &simulation.balance_over_time, contact, Some(deformation))
-            .and_then(|rebound| rebound.touches_again),
+        touches_again: rebound.and_then(|rebound| rebound.touches_again),
         narrow: NarrowContact::new(subject.problem, contact),
         slip: contact.slip,
         depth: contact.depth,

@@ -11,6 +11,8 @@ use crate::report::poor::PoorElement;
 use crate::report::symptoms::{AUXILIARY_CONTACT_ENERGY, CONTACT_ENERGY, DRIFT, KEPT};
 use percute_core::contact::Nearest;
 
+/// A mean error above this has as much energy as the deformation and the vibration together.
+const AS_VIBRATION: f64 = 1.0;
 /// A published relative error above this is as large as the solution: it cannot exceed 1/√2 by much.
 const AS_LARGE: f64 = 0.5;
 /// Less of the squared error is not told.
@@ -47,7 +49,7 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
         ));
     }
     // Beside a fast common motion, the second is small however large the error is.
-    if facts.error.relative_mean > 1.0 || facts.error.published_relative_mean > AS_LARGE {
+    if facts.error.relative_mean > AS_VIBRATION || facts.error.published_relative_mean > AS_LARGE {
         doubts.push("the error is as large as the solution".to_string());
     }
     if !(KEPT[0]..=KEPT[1]).contains(&kept) {
