@@ -1,8 +1,10 @@
 //! The arguments of the command.
 
+mod adapt;
 mod export;
 mod sweep;
 
+pub use adapt::AdaptArguments;
 pub(crate) use export::lacks_steps;
 pub use export::{ExportArguments, Times};
 pub use sweep::SweepArguments;
@@ -58,6 +60,8 @@ pub enum Command {
     Report(ReportArguments),
     /// Run a case on its mesh and on nested refinements: true errors, effectivity indices and orders of convergence
     Verify(VerifyArguments),
+    /// Find the mesh on which a case has a wanted accuracy: runs on meshes that follow from the estimate
+    Adapt(AdaptArguments),
     /// Run a case over values of its keys, in several processes, and make one table of the results
     Sweep(SweepArguments),
     /// Describe a case, a mesh (.msh), a history or an estimate file

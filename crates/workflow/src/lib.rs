@@ -2,6 +2,7 @@
 //! histories in files ([`history`]) and of other programs ([`foreign`], [`grade`]), the report and its JSON document
 //! ([`report`]), and the contents of files ([`info`]). Nothing here prints.
 
+pub mod adapt;
 pub mod case;
 pub mod choice;
 pub mod deformation;
@@ -19,8 +20,10 @@ pub mod message;
 mod numbering;
 pub mod outline;
 pub mod outputs;
+pub mod plan;
 mod reference;
 pub mod report;
+mod restated;
 mod resume;
 pub mod run;
 pub mod saving;

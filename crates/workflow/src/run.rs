@@ -21,7 +21,7 @@ use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::{TimeError, TimeGrid};
 use percute_estimator::reference::{Comparison, Motion, TrueError};
-use percute_estimator::{Estimate, Estimator, Options, Request, RunError};
+use percute_estimator::{Estimate, EstimateError, Estimator, Options, Request, RunError};
 use std::sync::atomic::AtomicBool;
 
 /// The analysis of the steps of a run or of a history.
@@ -162,6 +162,23 @@ pub(crate) fn beside<const D: usize, const N: usize>(
         let estimate = ordered.estimate(estimator.finish().map_err(RunError::from)?);
         Ok(results(ordered, simulation, estimate, contact.finish(), shown))
     })
+}
+
+/// The results of a whole run that is not stored; none if the observer broke.
+pub(crate) fn whole<const D: usize, const N: usize>(
+    ordered: &Ordered<'_, D, N>,
+    times: &TimeGrid,
+    options: Options,
+    sink: &mut dyn StateSink<D>,
+    observer: &mut dyn Observer,
+) -> Result<Option<Results<D>>, Failure> {
+    let (analysis, nowhere) = (Analysis { options, ..Analysis::default() }, Storage::default());
+    match beside(ordered, times, &analysis, nowhere, sink, observer).and_then(Outcome::stored) {
+        Ok(results) => Ok(Some(results).filter(|results| !results.interrupted())),
+        // Nothing can be estimated of a run that was stopped at its start.
+        Err(Failure::Run(RunError::Estimate(EstimateError::TooFewSteps { .. } | EstimateError::Stopped))) => Ok(None),
+        Err(other) => Err(other),
+    }
 }
 
 /// Analyses the steps of a history; with the same options, the results are those of its run, bit by bit.

@@ -1,5 +1,6 @@
 //! From arguments to exit code.
 
+mod adapt;
 mod completion;
 mod estimate;
 mod export;
@@ -75,6 +76,7 @@ where
             Command::Estimate(arguments) => estimate::command(&arguments, console),
             Command::Report(arguments) => report::command(&arguments, console),
             Command::Verify(arguments) => verify::command(&arguments, console),
+            Command::Adapt(arguments) => adapt::command(&arguments, console),
             Command::Sweep(arguments) => sweep::command(&arguments, console),
             Command::Info(arguments) => info::command(&arguments, console),
             Command::Export(arguments) => export::command(&arguments, console),

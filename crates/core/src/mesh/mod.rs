@@ -3,12 +3,15 @@
 //! `D` is the dimension and `N = D + 1` the number of nodes of an element: [`BarMesh`] and
 //! [`TriangleMesh`] name the two cases.
 
+mod bisection;
 mod check;
+mod generated;
 mod generator;
 mod geometry;
 mod import_warning;
 mod inside;
 mod join;
+mod locate;
 mod order;
 mod parts;
 mod refine;
@@ -18,9 +21,12 @@ mod star;
 mod strips;
 mod topology;
 
+pub use bisection::Bisection;
 pub use check::{MeshError, room};
+pub use generated::Generated;
 pub use generator::Diagonals;
 pub use import_warning::ImportWarning;
+pub use locate::Locator;
 pub use order::Numbering;
 pub(crate) use renumber::NewNumbers;
 pub use star::{Star, Stars};

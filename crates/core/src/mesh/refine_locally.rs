@@ -4,11 +4,12 @@
 //! Numer. Meth. Eng. 20 (1984) 745–756: the smallest angle of a triangle is at least half of that of the triangle it
 //! was cut from, however often it is refined.
 
+use super::bisection::Twins;
 use super::{ElementGroups, FacetGroups, Mesh, MeshError, Parts};
 use crate::ids::ElementId;
 
 /// The edges that are cut, and the order in which an element is cut by them.
-struct Cuts {
+pub(super) struct Cuts {
     /// The nodes of each edge of the mesh, ascending, in ascending order.
     edges: Vec<[usize; 2]>,
     /// For each edge, the number of edges that come before it by length, then by nodes: no two edges tie.
@@ -28,7 +29,11 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     /// # Errors
     /// As for [`Mesh::refined`].
     pub fn refined_where(&self, chosen: impl Fn(ElementId) -> bool) -> Result<Self, MeshError> {
-        let cuts = self.cuts(chosen);
+        self.cut(&self.cuts(chosen, &[]))
+    }
+
+    /// The mesh with some edges cut.
+    pub(super) fn cut(&self, cuts: &Cuts) -> Result<Self, MeshError> {
         let mut points = self.points.clone();
         points.extend(cuts.edges.iter().zip(&cuts.middle).filter(|(_, middle)| middle.is_some()).map(
             |(&[a, b], _)| {
@@ -54,8 +59,9 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         Self::checked(self.simplex, points, &cells, (&facets, &elements), Parts::MayTouch)
     }
 
-    /// All edges of the chosen elements, and the longest edge of each element that has an edge that is cut.
-    fn cuts(&self, chosen: impl Fn(ElementId) -> bool) -> Cuts {
+    /// All edges of the chosen elements, the longest edge of each element that has an edge that is cut, and the twins of
+    /// all these.
+    pub(super) fn cuts(&self, chosen: impl Fn(ElementId) -> bool, twins: &[Twins]) -> Cuts {
         let edges = self.edges();
         let square =
             |&[a, b]: &[usize; 2]| -> f64 { (0..D).map(|c| (self.points[a][c] - self.points[b][c]).powi(2)).sum() };
@@ -72,7 +78,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         for (_, edges) in of_cells.iter().enumerate().filter(|&(e, _)| chosen(ElementId::new(e))) {
             edges.iter().for_each(|&edge| cut[edge] = true);
         }
-        cuts.close(&of_cells, &mut cut);
+        cuts.close(&of_cells, &cuts.twins(twins), &mut cut);
         let middles = cuts.middle.iter_mut().zip(&cut).filter_map(|(middle, &cut)| cut.then_some(middle));
         (self.node_count()..).zip(middles).for_each(|(node, middle)| *middle = Some(node));
         cuts
@@ -86,9 +92,32 @@ impl Cuts {
         pairs.filter_map(|pair| self.edges.binary_search(&pair).ok())
     }
 
-    /// Cuts the longest edge of each element that is cut. Edges become longer from element to element, so that this
-    /// ends.
-    fn close(&self, of_cells: &[&[usize]], cut: &mut [bool]) {
+    /// The node in the middle of the edge between two nodes, if it is cut.
+    pub(super) fn middle(&self, [a, b]: [usize; 2]) -> Option<usize> {
+        self.middle[self.edges.binary_search(&[a.min(b), a.max(b)]).ok()?]
+    }
+
+    /// All edges, each by its nodes.
+    pub(super) fn edges(&self) -> &[[usize; 2]] {
+        &self.edges
+    }
+
+    /// Pairs of edges between nodes that face each other.
+    fn twins(&self, twins: &[Twins]) -> Vec<[usize; 2]> {
+        let facing = |nodes: &Twins, &[a, b]: &[usize; 2]| {
+            let (a, b) = (*nodes.get(&a)?, *nodes.get(&b)?);
+            self.edges.binary_search(&[a.min(b), a.max(b)]).ok()
+        };
+        let of = |nodes| {
+            let edges = self.edges.iter().enumerate();
+            edges.filter_map(move |(edge, ends)| Some([edge, facing(nodes, ends)?]))
+        };
+        twins.iter().flat_map(of).collect()
+    }
+
+    /// Cuts the longest edge of each element that is cut, and the twins of edges that are cut. Edges become longer from
+    /// element to element, so that this ends.
+    fn close(&self, of_cells: &[&[usize]], twins: &[[usize; 2]], cut: &mut [bool]) {
         let mut changed = true;
         while changed {
             changed = false;
@@ -96,6 +125,11 @@ impl Cuts {
                 let longest = edges.iter().copied().max_by_key(|&edge| self.rank[edge]);
                 if let Some(longest) = longest.filter(|&longest| !cut[longest] && edges.iter().any(|&edge| cut[edge])) {
                     (cut[longest], changed) = (true, true);
+                }
+            }
+            for &[edge, twin] in twins {
+                if cut[edge] && !cut[twin] {
+                    (cut[twin], changed) = (true, true);
                 }
             }
         }

@@ -304,6 +304,18 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         }
     }
 
+    /// The pairs of nodes of two bodies that face each other, of each interface with such pairs.
+    #[must_use]
+    pub fn facing_nodes(&self) -> Vec<Vec<[NodeId; 2]>> {
+        let (nodes, obstacles) = (self.surface.nodes(), 0..self.surface.obstacles().len());
+        let of = |obstacle: usize| {
+            let contacts = nodes.iter().filter(|contact| contact.obstacle == obstacle);
+            contacts.filter_map(|contact| Some([contact.node, nodes[contact.opposite?].node])).collect::<Vec<_>>()
+        };
+        let leading = obstacles.filter(|obstacle| self.leads_interface(*obstacle));
+        leading.map(of).filter(|pairs| !pairs.is_empty()).collect()
+    }
+
     /// The part of the boundary that may touch an obstacle.
     #[must_use]
     pub fn surface(&self) -> &ContactSurface<D> {

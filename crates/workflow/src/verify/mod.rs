@@ -17,15 +17,14 @@ use crate::failure::Failure;
 use crate::info::memory;
 use crate::numbering::Ordered;
 use crate::report::{Report, Subject};
-use crate::run::{Analysis, Outcome, Results, Storage, beside};
+use crate::run::{Results, whole};
 use percute_core::dynamics::critical_time_step;
-use percute_core::history::StateSink;
 use percute_core::mesh::room;
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Motion};
-use percute_estimator::{EstimateError, Options, RunError};
+use percute_estimator::Options;
 
 /// The most refinements: each has eight times the work of the one before.
 pub const MOST_LEVELS: usize = 5;
@@ -106,7 +105,8 @@ pub fn verify<const D: usize, const N: usize>(
         }
         // Nothing is compared with the motion of the finest.
         let mut motion = (motions.len() + 1 < prepared.len()).then(Motion::default);
-        let Some(results) = each.run(problem, options, &mut (&mut comparison, &mut motion), observer)? else { break };
+        let sink = &mut (&mut comparison, &mut motion);
+        let Some(results) = whole(problem, &each.times, options, sink, observer)? else { break };
         let errors = comparison.finish()?;
         levels.iter_mut().zip(&errors).for_each(|(level, error)| level.compare(error));
         levels.push(each.level(options, &results));
@@ -118,25 +118,6 @@ pub fn verify<const D: usize, const N: usize>(
 }
 
 impl<const D: usize, const N: usize> Prepared<D, N> {
-    /// The results; none if the observer broke.
-    fn run(
-        &self,
-        ordered: &Ordered<'_, D, N>,
-        options: Options,
-        sink: &mut dyn StateSink<D>,
-        observer: &mut dyn Observer,
-    ) -> Result<Option<Results<D>>, Failure> {
-        let (analysis, nowhere) = (Analysis { options, ..Analysis::default() }, Storage::default());
-        match beside(ordered, &self.times, &analysis, nowhere, sink, observer).and_then(Outcome::stored) {
-            Ok(results) => Ok(Some(results).filter(|results| !results.interrupted())),
-            // Nothing can be estimated of a run that was stopped at its start.
-            Err(Failure::Run(RunError::Estimate(EstimateError::TooFewSteps { .. } | EstimateError::Stopped))) => {
-                Ok(None)
-            }
-            Err(other) => Err(other),
-        }
-    }
-
     fn level(&self, options: Options, results: &Results<D>) -> Level {
         let Self { problem, times, critical_step } = self;
         let (name, critical_step) = ("", *critical_step);

@@ -75,6 +75,8 @@ pub struct Verdict {
     pub at_contact: f64,
     /// Properties of the run that no case of the evidence has.
     pub untested: Vec<String>,
+    /// Reasons not to trust the estimate, beside strains and rotations that are not small.
+    pub doubts: Vec<String>,
     /// Strains and rotations that are not small.
     pub not_small: Vec<String>,
     /// The elements of bad shape with the largest parts of the squared mean error, if such elements matter.
@@ -98,16 +100,18 @@ impl Verdict {
     pub(super) fn new(facts: &Facts, parts: &Parts) -> Self {
         let rule = RULES.iter().find(|rule| (rule.applies)(facts)).unwrap_or(&RULES[RULES.len() - 1]);
         let (untested, shares) = (untested::untested(facts), shares(parts));
-        let (doubts, not_small) = (text::doubts(facts, rule), facts.linearity.departures());
-        let not_small: Vec<String> = not_small.into_iter().map(|departure| departure.named).collect();
+        let (doubts, departures) = (text::doubts(facts, rule), facts.linearity.departures());
+        let far = departures.iter().filter(|departure| departure.is_far).map(|departure| departure.doubt.clone());
+        let all: Vec<String> = doubts.iter().cloned().chain(far).collect();
+        let not_small: Vec<String> = departures.into_iter().map(|departure| departure.named).collect();
         let trust = match () {
-            () if !doubts.is_empty() => Trust::Low,
+            () if !all.is_empty() => Trust::Low,
             () if !untested.is_empty() || !not_small.is_empty() || !within(rule) => Trust::Limited,
             () => Trust::High,
         };
         Self {
             trust,
-            text: text::sentences(facts, rule, &untested, &doubts, shares),
+            text: text::sentences(facts, rule, &untested, &all, shares),
             effectivity: rules::outside(facts).is_none().then_some(rule.range),
             touches: facts.contact.touches,
             speed_ratio: facts.speed_ratio,
@@ -119,6 +123,7 @@ impl Verdict {
             shares,
             at_contact: facts.at_contact,
             untested,
+            doubts,
             not_small,
             poor_elements: facts.poor.clone(),
         }

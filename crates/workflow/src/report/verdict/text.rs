@@ -23,7 +23,7 @@ const WORTH: f64 = -0.1;
 /// mean of η then falls by 28 % to 63 %, against 4 % to 23 % where fronts and dispersion are the larger source.
 const LOCAL: f64 = 0.5;
 
-/// The reasons not to trust the number.
+/// The reasons not to trust the estimate, beside strains and rotations that are not small.
 pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
     let mut doubts = Vec::new();
     let kept = facts.kept_impulse.unwrap_or(1.0);
@@ -66,8 +66,6 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
         );
     }
     doubts.extend(rule.doubt.map(str::to_string));
-    let far = facts.linearity.departures().into_iter().filter(|departure| departure.is_far);
-    doubts.extend(far.map(|departure| departure.doubt));
     doubts
 }
 

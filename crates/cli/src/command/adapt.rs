@@ -1,0 +1,63 @@
+//! `percute adapt`.
+
+use super::{Console, case, resolved};
+use crate::args::AdaptArguments;
+use crate::exit::{DONE, FAILED, INTERRUPTED};
+use crate::progress::Watch;
+use percute_core::each_dimension;
+use percute_core::mesh::{Generated, Mesh};
+use percute_estimator::Options;
+use percute_io::{Overwrite, gmsh};
+use percute_workflow::Failure;
+use percute_workflow::adapt::{Adaptation, Next, Reason, Wish, adapt, announced, table};
+use percute_workflow::case::CaseOf;
+use percute_workflow::effort::Long;
+use percute_workflow::outputs::{self, OutputFile};
+use percute_workflow::run::located;
+
+pub(super) fn command(arguments: &AdaptArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
+    each_dimension!(case(&arguments.case)?, case => adapt_case(&case, arguments, console))
+}
+
+fn adapt_case<const D: usize, const N: usize>(
+    case: &CaseOf<D, N>,
+    arguments: &AdaptArguments,
+    console: &mut Console<'_>,
+) -> Result<u8, Failure>
+where
+    Mesh<D, N>: Generated,
+{
+    let AdaptArguments { target, measure, limit, runs, json, force, threads, quiet, .. } = *arguments;
+    let save = arguments.save.as_deref().map(|file| OutputFile { what: "--save", file });
+    outputs::check(&case.inputs(Some(&arguments.case)), &[save], force)?;
+    let wish = Wish { target, measure, limit, runs };
+    wish.check()?;
+    case.check_run(true, Long::Allowed)?;
+    console.warn_about(case, quiet);
+    let Some(case) = &resolved(case, quiet, console)? else { return Ok(INTERRUPTED) };
+    let options = Options { threads, ..case.options };
+    let watch = &mut Watch::new(console.progress && !quiet, console.stop);
+    let mut tell = |next: &Next| {
+        if !quiet {
+            console.say(&announced(next));
+        }
+    };
+    let adapted = adapt(&case.problem, &case.times, options, wish, watch, &mut tell);
+    let adaptation = adapted.map_err(|failure| located(case, failure))?;
+    watch.clear();
+    console.print(&if json { adaptation.to_json()? } else { table(&adaptation) })?;
+    if let (Some(save), Some(best)) = (save, &adaptation.best) {
+        let (mesh, overwrite) = (best.problem.mesh(), Overwrite::allowed(force));
+        let written = gmsh::write(save.file, overwrite, mesh, gmsh::Format::default());
+        written.map_err(|error| Failure::Argument(format!("--save: {error}")))?;
+    }
+    Ok(code(&adaptation))
+}
+
+fn code<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>) -> u8 {
+    match adaptation.reason {
+        Reason::Reached => DONE,
+        Reason::Interrupted => INTERRUPTED,
+        _ => FAILED,
+    }
+}

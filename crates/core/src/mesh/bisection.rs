@@ -1,0 +1,105 @@
+//! Local refinement, again and again, that keeps surfaces matching.
+
+use super::{Mesh, MeshError};
+use crate::ids::{ElementId, NodeId};
+use std::collections::BTreeMap;
+
+/// For each node of an interface the node that it faces.
+pub(super) type Twins = BTreeMap<usize, usize>;
+
+/// A mesh that is cut again and again. Where nodes of two bodies face each other in pairs, an edge and the one that it
+/// faces are cut together, so that they go on facing each other.
+#[derive(Clone, Debug)]
+pub struct Bisection<const D: usize, const N: usize> {
+    mesh: Mesh<D, N>,
+    /// Of each interface.
+    twins: Vec<Twins>,
+}
+
+impl<const D: usize, const N: usize> Bisection<D, N> {
+    /// From a mesh and the pairs of nodes that face each other at each interface.
+    #[must_use]
+    pub fn new(mesh: Mesh<D, N>, interfaces: &[Vec<[NodeId; 2]>]) -> Self {
+        let both = |[a, b]: &[NodeId; 2]| [(a.index(), b.index()), (b.index(), a.index())];
+        Self { mesh, twins: interfaces.iter().map(|pairs| pairs.iter().flat_map(both).collect()).collect() }
+    }
+
+    /// The mesh as it is now.
+    #[must_use]
+    pub fn mesh(&self) -> &Mesh<D, N> {
+        &self.mesh
+    }
+
+    /// The mesh as it is now.
+    #[must_use]
+    pub fn into_mesh(self) -> Mesh<D, N> {
+        self.mesh
+    }
+
+    /// Cuts each chosen element as [`Mesh::refined_where`] does.
+    ///
+    /// # Errors
+    /// As for [`Mesh::refined`].
+    pub fn cut(&mut self, chosen: impl Fn(ElementId) -> bool) -> Result<(), MeshError> {
+        let cuts = self.mesh.cuts(chosen, &self.twins);
+        for twins in &mut self.twins {
+            let facing = |[a, b]: &[usize; 2]| {
+                let image = [*twins.get(a)?, *twins.get(b)?];
+                Some((cuts.middle([*a, *b])?, cuts.middle(image)?))
+            };
+            let middles: Vec<(usize, usize)> = cuts.edges().iter().filter_map(facing).collect();
+            twins.extend(middles);
+        }
+        self.mesh = self.mesh.cut(&cuts)?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{ElementGroups, FacetGroups, TriangleMesh};
+
+    /// Two squares, one above the other, whose nodes face each other across a gap.
+    fn pair() -> (TriangleMesh, Vec<[NodeId; 2]>) {
+        let lower = TriangleMesh::rectangle(1.0, 1.0, 3, 2).unwrap();
+        let count = lower.node_count();
+        let points = lower.points().iter().copied().chain(lower.points().iter().map(|p| [p[0], 1.01 + p[1]])).collect();
+        let cells: Vec<_> = lower.cells().iter().map(|cell| cell.map(|n| n.index())).collect();
+        let cells: Vec<_> = cells.iter().copied().chain(cells.iter().map(|cell| cell.map(|n| count + n))).collect();
+        let mesh = TriangleMesh::of_bodies(points, &cells, &FacetGroups::new(), &ElementGroups::new()).unwrap();
+        (mesh, (0..4).map(|k| [NodeId::new(8 + k), NodeId::new(count + k)]).collect())
+    }
+
+    /// The places along the line of nodes at this height, in order.
+    fn along(mesh: &TriangleMesh, height: f64) -> Vec<f64> {
+        let mut found: Vec<f64> = mesh.points().iter().filter(|p| p[1] == height).map(|p| p[0]).collect();
+        found.sort_unstable_by(f64::total_cmp);
+        found
+    }
+
+    /// Elements of one body alone are chosen, at its side: both sides keep facing nodes; without pairs they do not.
+    #[test]
+    fn surfaces_keep_facing_each_other() {
+        let (mesh, pairs) = pair();
+        let refined = |interfaces: &[Vec<[NodeId; 2]>]| {
+            let mut bisection = Bisection::new(mesh.clone(), interfaces);
+            for _ in 0..4 {
+                let touches = |e: ElementId| {
+                    let points = bisection.mesh().cell_points(e);
+                    points.iter().any(|p| p[0] == 0.0 && p[1] == 1.0)
+                };
+                bisection.clone().cut(touches).unwrap();
+                let chosen: Vec<bool> = (0..bisection.mesh().element_count()).map(|e| touches(ElementId::new(e))).collect();
+                bisection.cut(|e| chosen[e.index()]).unwrap();
+            }
+            bisection.into_mesh()
+        };
+        let together = refined(&[pairs]);
+        assert_eq!(along(&together, 1.0), along(&together, 1.01));
+        assert!(along(&together, 1.0).len() >= 8);
+        let apart = refined(&[]);
+        assert_ne!(along(&apart, 1.0), along(&apart, 1.01));
+        assert_eq!(along(&apart, 1.01).len(), 4);
+    }
+}

@@ -1,0 +1,142 @@
+//! An adaptation in lines of 80 columns.
+
+use super::iteration::{Iteration, Measure, Reason};
+use super::{Adaptation, Next};
+use crate::message::{counted, percent, short, whole_percent};
+use serde::Serialize;
+
+/// The next run, before it starts.
+#[must_use]
+pub fn announced(next: &Next) -> String {
+    let Next { run, elements, steps, predicted, work, needed, branch } = next;
+    let (elements, steps) = (counted(*elements, "element"), counted(*steps, "step"));
+    let how = branch.map_or_else(|| "as given".to_string(), |branch| branch.to_string());
+    let expected = predicted.map_or_else(String::new, |error| format!(", {} expected", percent(error)));
+    let target = needed.filter(|needed| needed.element_steps > MUCH * work.element_steps);
+    let target = target.map_or_else(String::new, |needed| format!("; the target needs about {}", needed.told()));
+    format!("run {run} ({how}): {elements}, {steps}, {}{expected}{target}", work.told())
+}
+
+/// The work of the target is told if it is more than so many times that of the next run.
+const MUCH: f64 = 1.5;
+
+/// The runs and how they ended.
+#[must_use]
+pub fn table<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>) -> String {
+    let head = ["run", "mesh", "elements", "steps", "smallest", "largest", "error", "expected", "trust"];
+    let mut lines = vec![row(&head.map(str::to_string))];
+    lines.extend(adaptation.iterations.iter().enumerate().map(|(run, iteration)| row(&cells(run, iteration))));
+    if adaptation.iterations.is_empty() {
+        lines.clear();
+    } else {
+        lines.push(sources(&adaptation.iterations));
+    }
+    lines.push(conclusion(adaptation));
+    lines.join("\n") + "\n"
+}
+
+/// How the runs ended.
+#[must_use]
+pub fn conclusion<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>) -> String {
+    let wish = &adaptation.wish;
+    let target = format!("{} ({})", percent(wish.target), measure(wish.measure));
+    let Some(best) = &adaptation.best else {
+        return "Interrupted before the first run was done.".to_string();
+    };
+    let Iteration { error, elements, .. } = adaptation.iterations[best.run];
+    let reached = format!("run {} has {} on {}", best.run, percent(error), counted(elements, "element"));
+    let needed = adaptation.needed.map(|needed| format!(" The target needs about {}.", needed.told()));
+    let needed = needed.unwrap_or_default();
+    match &adaptation.reason {
+        Reason::Reached => format!("Target {target} reached: {reached}."),
+        Reason::Limit => format!(
+            "Target {target} not reached within the limit of {} elements times steps: {reached}.{needed} A larger \
+             --limit goes on.",
+            short(wish.limit, 2)
+        ),
+        Reason::Runs => format!("Target {target} not reached in {}: {reached}.{needed}", counted(wish.runs, "run")),
+        Reason::SameMesh => format!("Target {target} not reached: {reached}, and the next mesh is the same."),
+        Reason::Doubt => {
+            let doubts = adaptation.iterations.last().map_or_else(String::new, |last| last.doubts.join("; "));
+            format!("Target {target} not reached: {reached}. The estimate of the last run is not trusted: {doubts}.")
+        }
+        Reason::NoSources => format!("Target {target} not reached: {reached}, and the sources of the error are unknown."),
+        Reason::Failed(why) => format!("Target {target} not reached: {reached}. The next run failed: {why}"),
+        Reason::Interrupted => format!("Interrupted; target {target} not reached: {reached}."),
+    }
+}
+
+fn measure(measure: Measure) -> &'static str {
+    Measure::NAMES.into_iter().find(|(_, known)| *known == measure).map_or("", |(name, _)| name)
+}
+
+fn cells(run: usize, iteration: &Iteration) -> [String; 9] {
+    let Iteration { branch, elements, steps, sizes, error, predicted, trust, .. } = iteration;
+    let [smallest, largest] = sizes.map(|size| short(1e3 * size, 3));
+    [
+        run.to_string(),
+        branch.map_or_else(|| "given".to_string(), |branch| branch.to_string()),
+        elements.to_string(),
+        steps.to_string(),
+        smallest,
+        largest,
+        percent(*error),
+        predicted.map_or_else(|| "–".to_string(), percent),
+        trust.to_string(),
+    ]
+}
+
+fn row(cells: &[String; 9]) -> String {
+    let widths = [3, 8, 9, 8, 9, 9, 8, 9, 8];
+    let line: String = cells.iter().zip(widths).map(|(cell, width)| format!("{cell:>width$}")).collect();
+    line.trim_end().to_string()
+}
+
+/// The sources of the first run and of the last one.
+fn sources(iterations: &[Iteration]) -> String {
+    let told = |iteration: &Iteration| {
+        let names = ["surface", "front", "dispersion", "mesh"];
+        let parts = iteration.sources?;
+        let each = names.iter().zip(parts).map(|(name, part)| format!("{name} {}", whole_percent(part)));
+        Some(each.collect::<Vec<_>>().join(", "))
+    };
+    let first = iterations.first().and_then(told).unwrap_or_else(|| "unknown".to_string());
+    let last = iterations.last().and_then(told).filter(|_| iterations.len() > 1);
+    let last = last.map_or_else(String::new, |last| format!("\n                  last run: {last}"));
+    format!("Sizes in mm. Sources of the squared mean error, first run: {first}{last}")
+}
+
+/// An adaptation as a document.
+#[derive(Serialize)]
+struct Document<'a> {
+    target: f64,
+    measure: Measure,
+    limit: f64,
+    reached: bool,
+    reason: &'a Reason,
+    conclusion: String,
+    needed: Option<super::Needed>,
+    best: Option<usize>,
+    iterations: &'a [Iteration],
+}
+
+impl<const D: usize, const N: usize> Adaptation<D, N> {
+    /// The runs and their end as a JSON document.
+    ///
+    /// # Errors
+    /// None that is known; whatever the serialiser reports.
+    pub fn to_json(&self) -> Result<String, std::io::Error> {
+        let document = Document {
+            target: self.wish.target,
+            measure: self.wish.measure,
+            limit: self.wish.limit,
+            reached: self.reason == Reason::Reached,
+            reason: &self.reason,
+            conclusion: conclusion(self),
+            needed: self.needed,
+            best: self.best.as_ref().map(|best| best.run),
+            iterations: &self.iterations,
+        };
+        serde_json::to_string(&document).map_err(std::io::Error::from)
+    }
+}

@@ -1,0 +1,80 @@
+//! The wanted size of elements at each point.
+
+use super::{Basis, Branch, Plan};
+use percute_core::ids::{ElementId, NodeId};
+use percute_core::mesh::{Locator, Mesh};
+use std::collections::BTreeMap;
+
+/// Growth of the size with the distance from a node that touches, in a graded mesh.
+const SLOPE: f64 = 0.5;
+/// Points of an element at which its size is asked for lie at its middle, and at this part of the way to its corners.
+const TOWARDS: f64 = 0.9;
+
+/// A size of elements at each point of a body.
+///
+/// It is constant in each element of the mesh of a run. In a graded mesh, the elements that touch keep their size, but
+/// towards nodes that touch it falls to that which is planned there.
+#[derive(Clone, Debug)]
+pub(crate) struct Wanted<'m, const D: usize, const N: usize> {
+    locator: Locator<'m, D, N>,
+    size: Vec<f64>,
+    /// For each element the nodes that touch in the elements around it, and the planned size there (m).
+    near: BTreeMap<ElementId, Vec<(NodeId, f64)>>,
+}
+
+impl<'m, const D: usize, const N: usize> Wanted<'m, D, N> {
+    /// Of a plan for the mesh of a run.
+    pub(crate) fn new(mesh: &'m Mesh<D, N>, basis: &Basis, plan: &Plan) -> Self {
+        let planned: Vec<f64> = plan.ratio.iter().zip(&basis.size).map(|(r, h)| r * h).collect();
+        let locator = Locator::new(mesh);
+        if plan.branch != Branch::Graded {
+            return Self { locator, size: planned, near: BTreeMap::new() };
+        }
+        let kept = |e: usize| if basis.touches[e] && plan.ratio[e] < 1.0 { basis.size[e] } else { planned[e] };
+        let size = (0..planned.len()).map(kept).collect();
+        Self { locator, size, near: near(mesh, basis, &planned) }
+    }
+
+    /// The size at a point (m).
+    pub(crate) fn at(&self, point: &[f64; D]) -> f64 {
+        let element = self.locator.element_near(point);
+        let from = |(node, size): &(NodeId, f64)| {
+            let place = &self.locator.mesh().points()[node.index()];
+            let square: f64 = (0..D).map(|c| (point[c] - place[c]).powi(2)).sum();
+            size + SLOPE * square.sqrt()
+        };
+        let towards = self.near.get(&element).into_iter().flatten().map(from);
+        towards.fold(self.size[element.index()], f64::min)
+    }
+
+    /// The smallest size in an element with these corners (m).
+    pub(crate) fn within(&self, corners: &[[f64; D]; N]) -> f64 {
+        let middle: [f64; D] = std::array::from_fn(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64);
+        let towards = |corner: &[f64; D]| self.at(&std::array::from_fn(|c| middle[c] + TOWARDS * (corner[c] - middle[c])));
+        corners.iter().map(towards).fold(self.at(&middle), f64::min)
+    }
+
+    /// The element of the mesh of the run that an element with these corners lies in.
+    pub(crate) fn element_of(&self, corners: &[[f64; D]; N]) -> ElementId {
+        self.locator.element_near(&std::array::from_fn(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64))
+    }
+}
+
+/// The nodes that touch around each element, each with the smallest planned size of its elements.
+fn near<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    basis: &Basis,
+    planned: &[f64],
+) -> BTreeMap<ElementId, Vec<(NodeId, f64)>> {
+    let mut near: BTreeMap<ElementId, Vec<(NodeId, f64)>> = BTreeMap::new();
+    for &node in &basis.nodes {
+        let around = &mesh.stars().star(node).elements;
+        let size = around.iter().map(|e| planned[e.index()]).fold(f64::INFINITY, f64::min);
+        let corners = around.iter().flat_map(|e| mesh.cells()[e.index()]);
+        let mut patch: Vec<ElementId> = corners.flat_map(|corner| mesh.stars().star(corner).elements.to_vec()).collect();
+        patch.sort_unstable();
+        patch.dedup();
+        patch.into_iter().for_each(|element| near.entry(element).or_default().push((node, size)));
+    }
+    near
+}

@@ -1,0 +1,52 @@
+//! A problem on other meshes of its body.
+
+use crate::case::{Source, problem_from, statement};
+use crate::failure::Failure;
+use percute_core::mesh::{Locator, Mesh};
+use percute_core::problem::Problem;
+
+/// A problem as a statement beside its mesh, to be read again on other meshes.
+#[derive(Clone, Debug)]
+pub(crate) struct Restated<'p, const D: usize, const N: usize> {
+    problem: &'p Problem<D, N>,
+    statement: Source,
+}
+
+impl<'p, const D: usize, const N: usize> Restated<'p, D, N> {
+    /// States a problem.
+    ///
+    /// # Errors
+    /// A problem that the case language cannot say.
+    pub(crate) fn new(problem: &'p Problem<D, N>) -> Result<Self, Failure> {
+        Ok(Self { problem, statement: Source::new("the problem on another mesh", statement(problem, None)?) })
+    }
+
+    /// The problem on a mesh, with its initial fields as they are linear in the elements of its own mesh.
+    ///
+    /// # Errors
+    /// A mesh that lacks a group of the problem, or on which it is not consistent.
+    pub(crate) fn on(&self, mesh: Mesh<D, N>) -> Result<Problem<D, N>, Failure> {
+        let locator = Locator::new(self.problem.mesh());
+        let fields = [self.problem.initial_displacement(), self.problem.initial_velocity()];
+        let [displacement, velocity] = fields.map(|field| match field {
+            // Rounding must not make a uniform field vary.
+            [first, others @ ..] if others.iter().all(|other| other == first) => vec![*first; mesh.node_count()],
+            _ => locator.values_at(field, mesh.points()),
+        });
+        self.with(mesh, displacement, velocity)
+    }
+
+    /// The problem on a mesh with initial displacement (m) and velocity (m/s) at its nodes.
+    ///
+    /// # Errors
+    /// As [`Restated::on`].
+    pub(crate) fn with(
+        &self,
+        mesh: Mesh<D, N>,
+        displacement: Vec<[f64; D]>,
+        velocity: Vec<[f64; D]>,
+    ) -> Result<Problem<D, N>, Failure> {
+        let (problem, _) = problem_from(&self.statement, mesh, displacement, velocity)?;
+        Ok(problem)
+    }
+}
