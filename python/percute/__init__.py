@@ -17,6 +17,7 @@ d'erreur en relation de comportement pour les problèmes d'impact*.
 
 from percute import exact
 from percute._percute import Progress, __version__
+from percute.adapting import Adaptation, Iterations, adapt
 from percute.balance import Balance
 from percute.bodies import Body, Interface
 from percute.contact import Contact, ContactStatus, Resultants
@@ -52,6 +53,7 @@ from percute.true_error import Effectivity, TrueError
 from percute.verifying import Verification, verify
 
 __all__ = [
+    "Adaptation",
     "Balance",
     "Body",
     "BodyDeformation",
@@ -74,6 +76,7 @@ __all__ = [
     "InputError",
     "InputWarning",
     "Interface",
+    "Iterations",
     "InterfaceRebound",
     "MaterialStress",
     "Mesh",
@@ -105,6 +108,7 @@ __all__ = [
     "WorstElement",
     "Yielding",
     "__version__",
+    "adapt",
     "estimate",
     "exact",
     "open",

@@ -9,17 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "AdaptingData",
     "CaseData",
     "EstimateData",
     "EstimateFileData",
     "BarRowData",
     "ExactData",
     "HistoryData",
+    "LIMIT",
     "MOST_LEVELS",
     "MOST_THREADS",
     "MeshData",
     "ProblemData",
     "Progress",
+    "RUNS",
     "SERIES",
     "SweepPlan",
     "__version__",
@@ -51,6 +54,8 @@ __all__ = [
     "unit",
 ]
 
+LIMIT: float
+RUNS: int
 MOST_LEVELS: int
 MOST_THREADS: int
 SERIES: list[str]
@@ -144,6 +149,7 @@ class ProblemData:
         automatic: bool,
     ) -> ProblemData: ...
     def mesh(self) -> MeshData: ...
+    def on(self, mesh: MeshData) -> ProblemData: ...
     def with_planes_moved(self, courant: float | None, step: float | None, steps: Sequence[float] | None) -> ProblemData | None: ...
     critical_time_step: Final[float]
     per_metre: Final[bool]
@@ -291,6 +297,20 @@ def rebound_end(
     progress: _Tell,
 ) -> tuple[float, str | None]: ...
 def stranger(file: str | PathLike[str], content: bytes) -> str | None: ...
+@final
+class AdaptingData:
+    def __new__(
+        cls,
+        problem: ProblemData,
+        times: _Times,
+        wanted: tuple[float, str, float, int],
+        stated: tuple[str, str | None, int | str],
+        threads: int | None,
+    ) -> AdaptingData: ...
+    def next(self) -> str | None: ...
+    def run(self, progress: _Tell) -> None: ...
+    def so_far(self) -> tuple[str, str, ProblemData | None, EstimateData | None]: ...
+
 def verification(
     problem: ProblemData,
     times: _Times,

@@ -217,6 +217,26 @@ class Problem(Immutable):
         """Largest speed of waves (m/s)."""
         return self._data.wave_speed
 
+    def on(self, mesh: Mesh) -> Problem:
+        """Give the same problem on another mesh of its body.
+
+        Parameters
+        ----------
+        mesh : Mesh
+            It has the groups that the problem names. Initial fields are those of this problem's mesh, linear in its elements; at points
+            outside it, as in the nearest element.
+
+        Returns
+        -------
+        Problem
+
+        Raises
+        ------
+        InputError
+            A group is missing, or the problem is not consistent on this mesh, as where surfaces no longer match.
+        """
+        return Problem._of(self._data.on(instance("mesh", mesh, Mesh)._data))
+
     def _repr_html_(self) -> str:
         from percute import notebook
 

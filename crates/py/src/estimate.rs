@@ -99,7 +99,7 @@ fn estimate_one<const D: usize, const N: usize>(
 
 #[pymethods]
 impl EstimateData {
-    fn problem(&self) -> ProblemData {
+    pub(crate) fn problem(&self) -> ProblemData {
         ProblemData::new(map_dimension!(&self.made, m => m.problem.clone()))
     }
 

@@ -1,6 +1,7 @@
 //! The extension module `percute._percute`; the package around it, which has the names that users see, is
 //! `python/percute`.
 
+mod adapt;
 mod any;
 mod balance;
 mod bar_row;
@@ -36,6 +37,8 @@ mod _percute {
     use pyo3::prelude::*;
     use std::ffi::OsString;
 
+    #[pymodule_export]
+    use super::adapt::AdaptingData;
     #[pymodule_export]
     use super::bar_row::BarRowData;
     #[pymodule_export]
@@ -74,6 +77,8 @@ mod _percute {
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add("MOST_THREADS", percute_estimator::MOST_THREADS)?;
         module.add("SERIES", percute_presentation::SERIES)?;
+        module.add("LIMIT", percute_workflow::adapt::LIMIT)?;
+        module.add("RUNS", percute_workflow::adapt::RUNS)?;
         module.add("MOST_LEVELS", percute_workflow::verify::MOST_LEVELS)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }

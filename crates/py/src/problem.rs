@@ -12,7 +12,9 @@ use percute_core::mesh::Mesh;
 use percute_core::problem::{Contact, Initial, InputError, Problem};
 use percute_core::simplex::ByDimension;
 use percute_core::{each_dimension, map_dimension};
+use percute_workflow::Failure;
 use percute_workflow::case::ONE_BODY;
+use percute_workflow::restated::Restated;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Arc, OnceLock};
@@ -68,6 +70,10 @@ impl ProblemData {
     }
 }
 
+fn on<const D: usize, const N: usize>(problem: &Problem<D, N>, mesh: &Mesh<D, N>) -> Result<Arc<Problem<D, N>>, Failure> {
+    Restated::new(problem)?.on(mesh.clone()).map(Arc::new)
+}
+
 #[pymethods]
 impl ProblemData {
     /// Checks and builds; `materials` pairs each group of elements, or none, with its material. With `automatic` all
@@ -99,6 +105,17 @@ impl ProblemData {
     /// A copy of the mesh.
     fn mesh(&self) -> MeshData {
         MeshData { mesh: map_dimension!(&self.problem, p => Arc::new(p.mesh().clone())) }
+    }
+
+    /// The problem on another mesh of its body.
+    fn on(&self, py: Python<'_>, mesh: &MeshData) -> PyResult<Self> {
+        let (problem, mesh) = (self.problem.clone(), mesh.mesh.clone());
+        let made = bridge::blocking(py, None, move |_| match (&problem, &mesh) {
+            (ByDimension::Bar(problem), ByDimension::Bar(mesh)) => on(problem, mesh).map(ByDimension::Bar),
+            (ByDimension::Plane(problem), ByDimension::Plane(mesh)) => on(problem, mesh).map(ByDimension::Plane),
+            _ => Err(Failure::Argument("`mesh` has another dimension than the mesh of the problem".to_string())),
+        })?;
+        made.map(Self::new).map_err(|error| errors::run(py, &error))
     }
 
     #[getter]

@@ -23,7 +23,7 @@ pub mod outputs;
 pub mod plan;
 mod reference;
 pub mod report;
-mod restated;
+pub mod restated;
 mod resume;
 pub mod run;
 pub mod saving;

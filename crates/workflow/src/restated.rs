@@ -7,25 +7,31 @@ use percute_core::problem::Problem;
 
 /// A problem as a statement beside its mesh, to be read again on other meshes.
 #[derive(Clone, Debug)]
-pub(crate) struct Restated<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+pub struct Restated<const D: usize, const N: usize> {
+    problem: Problem<D, N>,
     statement: Source,
 }
 
-impl<'p, const D: usize, const N: usize> Restated<'p, D, N> {
+impl<const D: usize, const N: usize> Restated<D, N> {
     /// States a problem.
     ///
     /// # Errors
     /// A problem that the case language cannot say.
-    pub(crate) fn new(problem: &'p Problem<D, N>) -> Result<Self, Failure> {
-        Ok(Self { problem, statement: Source::new("the problem on another mesh", statement(problem, None)?) })
+    pub fn new(problem: &Problem<D, N>) -> Result<Self, Failure> {
+        Ok(Self { problem: problem.clone(), statement: Source::new("the problem on another mesh", statement(problem, None)?) })
+    }
+
+    /// The problem on its own mesh.
+    #[must_use]
+    pub fn problem(&self) -> &Problem<D, N> {
+        &self.problem
     }
 
     /// The problem on a mesh, with its initial fields as they are linear in the elements of its own mesh.
     ///
     /// # Errors
     /// A mesh that lacks a group of the problem, or on which it is not consistent.
-    pub(crate) fn on(&self, mesh: Mesh<D, N>) -> Result<Problem<D, N>, Failure> {
+    pub fn on(&self, mesh: Mesh<D, N>) -> Result<Problem<D, N>, Failure> {
         let locator = Locator::new(self.problem.mesh());
         let fields = [self.problem.initial_displacement(), self.problem.initial_velocity()];
         let [displacement, velocity] = fields.map(|field| match field {
@@ -40,7 +46,7 @@ impl<'p, const D: usize, const N: usize> Restated<'p, D, N> {
     ///
     /// # Errors
     /// As [`Restated::on`].
-    pub(crate) fn with(
+    pub fn with(
         &self,
         mesh: Mesh<D, N>,
         displacement: Vec<[f64; D]>,

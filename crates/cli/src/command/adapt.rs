@@ -56,8 +56,8 @@ where
 
 fn code<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>) -> u8 {
     match adaptation.reason {
-        Reason::Reached => DONE,
-        Reason::Interrupted => INTERRUPTED,
+        Some(Reason::Reached) => DONE,
+        Some(Reason::Interrupted) => INTERRUPTED,
         _ => FAILED,
     }
 }

@@ -4,11 +4,13 @@
 //! All meshes have the body, the Courant number and the end of the first one. By default they are bisections of the
 //! first mesh; a mesh of a generator is made anew where all elements become smaller alike.
 
+mod adapting;
 mod bisect;
 mod iteration;
+mod meshing;
 mod table;
-mod work;
 
+pub use adapting::Adapting;
 pub use iteration::{Iteration, Measure, Needed, Reason};
 pub use table::{announced, conclusion, table};
 
@@ -16,14 +18,12 @@ use crate::failure::Failure;
 use crate::plan::Branch;
 use crate::report::Report;
 use crate::run::Results;
-use iteration::Made;
 use percute_core::mesh::{Generated, Mesh};
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use serde::Serialize;
-use work::{Planned, Work};
 
 /// The most elements times steps of a run, unless another limit is given: less than a minute.
 pub const LIMIT: f64 = 1e8;
@@ -78,8 +78,8 @@ pub struct Adaptation<const D: usize, const N: usize> {
     pub wish: Wish,
     /// The runs, in order.
     pub iterations: Vec<Iteration>,
-    /// Why they ended.
-    pub reason: Reason,
+    /// Why they ended; none if they go on.
+    pub reason: Option<Reason>,
     /// The work that the target needs, if it is not reached and can be told.
     pub needed: Option<Needed>,
     /// The best run; none if the first was interrupted.
@@ -126,8 +126,7 @@ pub struct Next {
 /// remains.
 ///
 /// # Errors
-/// A wish out of range, a reconstruction without sources, a problem that cannot be written down, a first run that
-/// fails.
+/// A wish out of range, a problem that cannot be written down, a first run that fails.
 pub fn adapt<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
@@ -139,23 +138,10 @@ pub fn adapt<const D: usize, const N: usize>(
 where
     Mesh<D, N>: Generated,
 {
-    wish.check()?;
-    let mut work = Work::new(problem, times, options, wish)?;
-    let mut next = Ok(problem.clone());
-    let mut made = Made::default();
-    loop {
-        let ended = next.and_then(|problem| work.run(problem, made, observer, tell));
-        let planned = match ended {
-            Ok(None) => work.next(),
-            Ok(Some(reason)) => return Ok(work.ended(reason)),
-            Err(failure) if work.is_first() => return Err(failure),
-            Err(failure) => Err(failure),
-        };
-        match planned {
-            Ok(Planned::Mesh(mesh, how)) => (next, made) = (work.on(*mesh), how),
-            Ok(Planned::End(reason)) => return Ok(work.ended(reason)),
-            // The runs that are done are not lost.
-            Err(failure) => return Ok(work.ended(Reason::Failed(failure.to_string()))),
-        }
+    let mut adapting = Adapting::new(problem, times, options, wish)?;
+    while let Some(next) = adapting.next()? {
+        tell(&next);
+        adapting.run(observer)?;
     }
+    Ok(adapting.so_far())
 }

@@ -47,7 +47,8 @@ pub fn conclusion<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>)
     let reached = format!("run {} has {} on {}", best.run, percent(error), counted(elements, "element"));
     let needed = adaptation.needed.map(|needed| format!(" The target needs about {}.", needed.told()));
     let needed = needed.unwrap_or_default();
-    match &adaptation.reason {
+    let Some(reason) = &adaptation.reason else { return format!("Target {target} not reached yet: {reached}.") };
+    match reason {
         Reason::Reached => format!("Target {target} reached: {reached}."),
         Reason::Limit => format!(
             "Target {target} not reached within the limit of {} elements times steps: {reached}.{needed} A larger \
@@ -113,10 +114,13 @@ struct Document<'a> {
     measure: Measure,
     limit: f64,
     reached: bool,
-    reason: &'a Reason,
+    reason: Option<&'a Reason>,
     conclusion: String,
     needed: Option<super::Needed>,
     best: Option<usize>,
+    /// End and step of the best run (s).
+    end: Option<f64>,
+    step: Option<f64>,
     iterations: &'a [Iteration],
 }
 
@@ -130,11 +134,13 @@ impl<const D: usize, const N: usize> Adaptation<D, N> {
             target: self.wish.target,
             measure: self.wish.measure,
             limit: self.wish.limit,
-            reached: self.reason == Reason::Reached,
-            reason: &self.reason,
+            reached: self.reason == Some(Reason::Reached),
+            reason: self.reason.as_ref(),
             conclusion: conclusion(self),
             needed: self.needed,
             best: self.best.as_ref().map(|best| best.run),
+            end: self.best.as_ref().map(|best| best.times.end()),
+            step: self.best.as_ref().map(|best| best.times.longest_step()),
             iterations: &self.iterations,
         };
         serde_json::to_string(&document).map_err(std::io::Error::from)

@@ -1,0 +1,234 @@
+//! An adaptation on its way: a run, then the mesh that follows from it.
+
+use super::iteration::{Iteration, Made, Needed, Reason};
+use super::meshing::Meshing;
+use super::{Adaptation, Best, Next, Wish};
+use crate::effort::Effort;
+use crate::failure::Failure;
+use crate::info::memory;
+use crate::numbering::Ordered;
+use crate::plan::{Basis, Branch, Plan, sizes};
+use crate::report::{Report, Subject};
+use crate::restated::Restated;
+use crate::run::whole;
+use percute_core::dynamics::critical_time_step;
+use percute_core::history::Discard;
+use percute_core::mesh::{Generated, Mesh};
+use percute_core::observer::Observer;
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use percute_estimator::Options;
+
+/// A run that is planned.
+#[derive(Clone, Debug)]
+struct Planned<const D: usize, const N: usize> {
+    problem: Problem<D, N>,
+    times: TimeGrid,
+    critical_step: f64,
+    made: Made,
+}
+
+/// An adaptation on its way: as long as [`Adapting::next`] has a run, [`Adapting::run`] does it.
+#[derive(Clone, Debug)]
+pub struct Adapting<const D: usize, const N: usize> {
+    wish: Wish,
+    options: Options,
+    /// The end (s) and the Courant number of all runs.
+    end: f64,
+    courant: f64,
+    restated: Restated<D, N>,
+    meshing: Meshing<D, N>,
+    iterations: Vec<Iteration>,
+    planned: Option<Planned<D, N>>,
+    /// The last run, and the basis of the plan that follows from it.
+    last: Option<(Best<D, N>, Option<Basis>)>,
+    best: Option<Best<D, N>>,
+    needed: Option<Needed>,
+    reason: Option<Reason>,
+}
+
+impl<const D: usize, const N: usize> Adapting<D, N>
+where
+    Mesh<D, N>: Generated,
+{
+    /// Begins with a problem on its mesh.
+    ///
+    /// # Errors
+    /// A wish out of range, a problem that cannot be written down.
+    pub fn new(problem: &Problem<D, N>, times: &TimeGrid, options: Options, wish: Wish) -> Result<Self, Failure> {
+        wish.check()?;
+        Ok(Self {
+            wish,
+            options,
+            end: times.end(),
+            courant: times.longest_step() / critical_time_step(problem),
+            restated: Restated::new(problem)?,
+            meshing: Meshing::new(problem),
+            iterations: Vec::new(),
+            planned: None,
+            last: None,
+            best: None,
+            needed: None,
+            reason: None,
+        })
+    }
+
+    /// The next run; none if the adaptation has ended.
+    ///
+    /// # Errors
+    /// A first run that cannot be planned.
+    pub fn next(&mut self) -> Result<Option<Next>, Failure> {
+        if self.reason.is_none() && self.planned.is_none() {
+            let planned = self.plan();
+            self.kept(planned)?;
+        }
+        Ok(self.planned.as_ref().map(|planned| self.announced(planned)))
+    }
+
+    /// Does the planned run.
+    ///
+    /// # Errors
+    /// A first run that fails.
+    pub fn run(&mut self, observer: &mut dyn Observer) -> Result<(), Failure> {
+        let Some(planned) = self.planned.take() else { return Ok(()) };
+        let done = self.simulated(planned, observer);
+        self.kept(done)
+    }
+
+    /// A failure after the first run ends the adaptation: the runs that are done are not lost.
+    fn kept(&mut self, done: Result<(), Failure>) -> Result<(), Failure> {
+        match done {
+            Err(failure) if !self.iterations.is_empty() => {
+                self.reason = Some(Reason::Failed(failure.to_string()));
+                Ok(())
+            }
+            done => done,
+        }
+    }
+
+    /// Plans the next run, or ends.
+    fn plan(&mut self) -> Result<(), Failure> {
+        let (problem, made) = match &self.last {
+            None => (self.restated.problem().clone(), Made::default()),
+            Some((last, basis)) => match self.mesh_after(last, basis.as_ref())? {
+                Ok((mesh, made)) => (self.restated.on(mesh)?, made),
+                Err(reason) => {
+                    self.reason = Some(reason);
+                    return Ok(());
+                }
+            },
+        };
+        self.needed = self.needed_after();
+        let critical_step = critical_time_step(&problem);
+        let times = TimeGrid::with_step(self.end, self.courant * critical_step);
+        let times = times.map_err(|error| Failure::Argument(error.to_string()))?;
+        let work = Needed::of(&Effort::of(&problem, &times, self.options.every));
+        if work.element_steps > self.wish.limit {
+            self.needed = self.needed.or(Some(work));
+            self.reason = Some(Reason::Limit);
+            return Ok(());
+        }
+        let bytes = memory::of_run(&problem, &times) + percute_estimator::memory(&problem, &times, &self.options) as u64;
+        memory::refusal(bytes).map_or(Ok(()), |told| Err(Failure::Memory(told)))?;
+        self.planned = Some(Planned { problem, times, critical_step, made });
+        Ok(())
+    }
+
+    fn announced(&self, planned: &Planned<D, N>) -> Next {
+        let Planned { problem, times, made: Made { branch, predicted }, .. } = planned;
+        Next {
+            run: self.iterations.len(),
+            branch: *branch,
+            elements: problem.mesh().element_count(),
+            steps: times.step_count(),
+            predicted: *predicted,
+            work: Needed::of(&Effort::of(problem, times, self.options.every)),
+            needed: self.needed,
+        }
+    }
+
+    fn simulated(&mut self, planned: Planned<D, N>, observer: &mut dyn Observer) -> Result<(), Failure> {
+        let Planned { problem, times, critical_step, made } = planned;
+        let Some(results) = whole(&Ordered::new(&problem), &times, self.options, &mut Discard, observer)? else {
+            self.reason = Some(Reason::Interrupted);
+            return Ok(());
+        };
+        let (name, held, checked, unended) = ("", None, None, None);
+        let subject = Subject { name, problem: &problem, times: &times, critical_step, held, checked, unended };
+        let report = Report::new(&subject, self.options, results.findings(), 0.0);
+        let run = self.iterations.len();
+        self.take(Best { run, problem, times, critical_step, results, report }, made);
+        Ok(())
+    }
+
+    /// Takes a run in.
+    fn take(&mut self, last: Best<D, N>, made: Made) {
+        let mesh = last.problem.mesh();
+        let basis = Basis::new(mesh, &last.results.estimate, &last.results.contact);
+        let iteration = Iteration::new(&last.report, basis.as_ref(), &sizes(mesh), self.wish.measure, made);
+        let (error, doubtful) = (iteration.error, !iteration.doubts.is_empty());
+        let trusted = self.iterations.iter().any(|earlier| earlier.doubts.is_empty());
+        self.iterations.push(iteration);
+        let better = |best: &Best<D, N>| {
+            let best = &self.iterations[best.run];
+            (doubtful, error) < (!best.doubts.is_empty(), best.error)
+        };
+        if self.best.as_ref().is_none_or(better) {
+            self.best = Some(last.clone());
+        }
+        self.last = Some((last, basis));
+        let reached = error <= self.wish.target;
+        self.reason = match () {
+            () if doubtful && (trusted || reached) => Some(Reason::Doubt),
+            () if reached => Some(Reason::Reached),
+            () if self.iterations.len() == self.wish.runs => Some(Reason::Runs),
+            () => None,
+        };
+    }
+
+    /// The work of a run with the wanted error, by the last one.
+    fn needed_after(&self) -> Option<Needed> {
+        let (last, basis) = self.last.as_ref()?;
+        let effort = Effort::of(&last.problem, &last.times, self.options.every);
+        let wanted = self.wish.target / self.iterations[last.run].error;
+        Some(Needed::of(&effort).times(Plan::whole(basis.as_ref()?, wanted).cost))
+    }
+
+    /// The mesh that follows from the last run, or the reason why there is none.
+    fn mesh_after(
+        &self,
+        last: &Best<D, N>,
+        basis: Option<&Basis>,
+    ) -> Result<Result<(Mesh<D, N>, Made), Reason>, Failure> {
+        let Some(basis) = basis else { return Ok(Err(Reason::NoSources)) };
+        let (mesh, error) = (last.problem.mesh(), self.iterations[last.run].error);
+        let plan = Plan::new(basis, self.wish.target / error, &self.meshing.largest(mesh));
+        // Other plans hold for a step: their mesh may have all that is missing in a few places.
+        let needed = self.needed_after().filter(|_| plan.branch == Branch::Uniform);
+        if needed.is_some_and(|needed| needed.element_steps > self.wish.limit) {
+            return Ok(Err(Reason::Limit));
+        }
+        let most = (self.wish.limit / last.times.step_count() as f64) as usize;
+        let (next, predicted) = self.meshing.next(mesh, (basis, &plan), most.max(1))?;
+        if next.points() == mesh.points() && next.cells() == mesh.cells() {
+            return Ok(Err(Reason::SameMesh));
+        }
+        Ok(Ok((next, Made { branch: Some(plan.branch), predicted: Some(predicted * error) })))
+    }
+}
+
+impl<const D: usize, const N: usize> Adapting<D, N> {
+    /// The adaptation as far as it is done.
+    #[must_use]
+    pub fn so_far(&self) -> Adaptation<D, N> {
+        let Self { wish, iterations, best, needed, reason, .. } = self;
+        let needed = needed.filter(|_| *reason != Some(Reason::Reached));
+        Adaptation {
+            wish: *wish,
+            iterations: iterations.clone(),
+            reason: reason.clone(),
+            needed,
+            best: best.clone(),
+        }
+    }
+}

@@ -1,0 +1,50 @@
+"""Pictures of an adaptation: the error over the best mesh, and over the cost of the runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from percute import _percute
+from percute.checks import wrong
+from percute.errors import InputError
+from percute.pictures.canvas import pyplot, root, save_figure, writable
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from percute.adapting import Adaptation
+
+
+def plot(adaptation: Adaptation, axes: Sequence[Axes] | None, save: object, overwrite: object) -> list[Axes]:
+    """Draw the map and the errors."""
+    file = writable("save", save, overwrite)
+    if adaptation.estimate is None:
+        raise InputError("there is no picture: no run is done")
+    upper, lower = plots = _axes(axes)
+    adaptation.estimate.plot_map(axes=upper)
+    runs = adaptation.iterations
+    cost = np.cumsum(runs.element_steps)
+    lower.plot(cost, 100 * runs.error, marker="o", color=_percute.SERIES[0], label=f"relative error, {adaptation.measure}")
+    known = np.isfinite(runs.predicted)
+    if np.any(known):
+        lower.plot(cost[known], 100 * runs.predicted[known], marker="x", linestyle="none", color=_percute.SERIES[1], label="expected")
+    lower.axhline(100 * adaptation.target, color="#6e6e78", linewidth=1.0, linestyle=(0, (4, 3)), label="target")
+    lower.set(xscale="log", yscale="log", xlabel="elements times steps, all runs so far", ylabel="relative error (%)")
+    lower.yaxis.set_major_formatter(pyplot().matplotlib.ticker.ScalarFormatter())
+    lower.yaxis.set_minor_formatter(pyplot().matplotlib.ticker.LogFormatter(minor_thresholds=(2, 1)))
+    lower.grid(alpha=0.3)
+    lower.legend(frameon=False, fontsize="small")
+    save_figure(root(lower), file)
+    return plots
+
+
+def _axes(axes: Sequence[Axes] | None) -> list[Axes]:
+    """Give the axes of an argument, by default two new ones."""
+    plt = pyplot()
+    given = list(plt.subplots(2, 1, layout="constrained", figsize=(7.2, 8.4))[1]) if axes is None else list(np.ravel(axes))  # type: ignore[arg-type]
+    if len(given) != 2 or not all(isinstance(each, plt.Axes) for each in given):
+        raise wrong("axes", axes, "two axes of matplotlib, such as `plt.subplots(2)[1]`")
+    return given
