@@ -304,6 +304,7 @@ class AdaptingData:
         problem: ProblemData,
         times: _Times,
         wanted: tuple[float, str, float, int],
+        gmsh: tuple[str | None, float] | None,
         stated: tuple[str, str | None, int | str],
         threads: int | None,
     ) -> AdaptingData: ...

@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
 from percute.attached import attached
-from percute.checks import flag, instance, number, text, warn, whole, wrong
+from percute.checks import flag, instance, number, path, text, warn, whole, wrong
+from percute.errors import InputError
 from percute.estimating import pace, sampling
 from percute.estimation import Estimate
 from percute.history import History
@@ -170,6 +171,9 @@ def adapt(
     steps: ArrayLike | None = None,
     longest: float | None = None,
     after: float | None = None,
+    mesher: Literal["bisect", "gmsh"] = "bisect",
+    geometry: str | os.PathLike[str] | None = None,
+    scale: float = 1.0,
     limit: float = _percute.LIMIT,
     runs: int = _percute.RUNS,
     acceleration: Literal["closest", "rigid", "weak", "split"] | None = None,
@@ -194,6 +198,13 @@ def adapt(
         Which of the two.
     end, courant, step, steps, longest, after
         As for `simulate`; the rebound is that of the first mesh.
+    mesher : {"bisect", "gmsh"}, default: "bisect"
+        Bisection of the first mesh; or the program Gmsh, with any sizes.
+    geometry : str or path, optional
+        The geometry that Gmsh meshes (``.geo``, ``.step``), with the groups of the first mesh: curves stay curves. By default the outline
+        of the first mesh, polygons.
+    scale : float, default: 1.0
+        Metres per unit of length in this file.
     limit : float, default: 1e8
         The most elements times steps of a run.
     runs : int, default: 8
@@ -229,7 +240,12 @@ def adapt(
     times = instants_of(problem, end, courant, step, steps, longest, after, True, progress)
     _percute.check_run(problem._data, times, True)
     warn(_percute.plausibility_warnings(problem._data, times, False))
-    adapting = _percute.AdaptingData(problem._data, times, wanted, stated, workers)
+    if text("mesher", mesher) not in ("bisect", "gmsh"):
+        raise wrong("mesher", mesher, '"bisect" or "gmsh"')
+    if geometry is not None and mesher != "gmsh":
+        raise InputError('`geometry` needs mesher="gmsh"')
+    gmsh = None if mesher == "bisect" else (None if geometry is None else path("geometry", geometry), number("scale", scale))
+    adapting = _percute.AdaptingData(problem._data, times, wanted, gmsh, stated, workers)
 
     def so_far(_: object) -> Adaptation:
         return _adaptation(adapting)

@@ -2,11 +2,13 @@
 
 mod adapt;
 mod export;
+mod plan;
 mod sweep;
 
 pub use adapt::AdaptArguments;
 pub(crate) use export::lacks_steps;
 pub use export::{ExportArguments, Times};
+pub use plan::PlanArguments;
 pub use sweep::SweepArguments;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -62,6 +64,8 @@ pub enum Command {
     Verify(VerifyArguments),
     /// Find the mesh on which a case has a wanted accuracy: runs on meshes that follow from the estimate
     Adapt(AdaptArguments),
+    /// Tell by which mesh a case or a history, also of another program, would have a wanted accuracy; with its sizes
+    Plan(PlanArguments),
     /// Run a case over values of its keys, in several processes, and make one table of the results
     Sweep(SweepArguments),
     /// Describe a case, a mesh (.msh), a history or an estimate file

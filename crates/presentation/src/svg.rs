@@ -57,6 +57,15 @@ impl Svg {
         Self { size, body: String::new() }
     }
 
+    /// The picture with another one below it.
+    pub(crate) fn above(mut self, other: &Self) -> Self {
+        self.begin(&format!("transform=\"translate(0,{})\"", px(self.size[1])));
+        self.body += &other.body;
+        self.end();
+        self.size = [self.size[0].max(other.size[0]), self.size[1] + other.size[1]];
+        self
+    }
+
     /// Begins a group of marks with these attributes.
     pub(crate) fn begin(&mut self, attributes: &str) {
         self.body += &format!("<g {attributes}>\n");

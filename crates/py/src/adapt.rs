@@ -9,8 +9,9 @@ use crate::{bridge, errors, time};
 use percute_core::each_dimension;
 use percute_core::simplex::ByDimension;
 use percute_estimator::Options;
-use percute_workflow::adapt::{Adapting, Measure, Wish, announced, table};
+use percute_workflow::adapt::{Adapting, Geometry, Measure, Mesher, Wish, announced, table};
 use pyo3::prelude::*;
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Shared with the thread of a run.
@@ -28,11 +29,13 @@ pub(crate) struct AdaptingData {
 #[pymethods]
 impl AdaptingData {
     #[new]
+    #[allow(clippy::too_many_arguments)]
     fn begin(
         py: Python<'_>,
         problem: &ProblemData,
         times: Times,
         wanted: Wanted,
+        gmsh: Option<(Option<PathBuf>, f64)>,
         stated: Stated,
         threads: Option<usize>,
     ) -> PyResult<Self> {
@@ -41,7 +44,10 @@ impl AdaptingData {
         let (reconstruction, acceleration, every) = stated;
         let options = Options { threads, ..options(py, &reconstruction, acceleration.as_deref(), &every)? };
         let measure = if measure == "sup" { Measure::Sup } else { Measure::Mean };
-        let wish = Wish { target, measure, limit, runs };
+        let geometry = |(file, scale): (Option<PathBuf>, f64)| {
+            Mesher::Gmsh(file.map_or(Geometry::Outline, |file| Geometry::File(file, scale)))
+        };
+        let wish = (Wish { target, measure, limit, runs }, gmsh.map_or(Mesher::Bisection, geometry));
         let adapting = match &problem.problem {
             ByDimension::Bar(problem) => Adapting::new(problem, &times, options, wish).map(shared).map(ByDimension::Bar),
             ByDimension::Plane(problem) => {

@@ -17,6 +17,16 @@ pub struct AdaptArguments {
     /// Whether the target is about the mean error or the largest (sup)
     #[arg(long, value_name = "MEASURE", default_value = "mean", value_parser = measure)]
     pub measure: Measure,
+    /// How meshes are made: by bisection of the first mesh, or by the program Gmsh
+    #[arg(long, value_name = "MESHER", default_value = "bisect", value_parser = ["bisect", "gmsh"])]
+    pub mesher: String,
+    /// The geometry that Gmsh meshes (.geo, .step), with the groups of the first mesh [default: the outline of the
+    /// first mesh, polygons]
+    #[arg(long, value_name = "FILE", requires_if("gmsh", "mesher"))]
+    pub geometry: Option<PathBuf>,
+    /// Metres per unit of length in the geometry [default: `scale` of the case's mesh]
+    #[arg(long, value_name = "M", requires = "geometry")]
+    pub scale: Option<f64>,
     /// The most elements times steps of a run
     #[arg(long, value_name = "N", default_value_t = LIMIT)]
     pub limit: f64,
@@ -26,6 +36,9 @@ pub struct AdaptArguments {
     /// Write the best mesh to this file (.msh)
     #[arg(long, value_name = "FILE")]
     pub save: Option<PathBuf>,
+    /// Draw the error on the best mesh, and over the cost of the runs (.svg, .png)
+    #[arg(long, value_name = "FILE")]
+    pub picture: Option<PathBuf>,
     /// Print one JSON document instead of the table
     #[arg(long)]
     pub json: bool,
@@ -41,7 +54,7 @@ pub struct AdaptArguments {
 }
 
 /// A relative error as a percentage or a fraction.
-fn target(text: &str) -> Result<f64, String> {
+pub(super) fn target(text: &str) -> Result<f64, String> {
     let (number, unit) = text.trim().strip_suffix('%').map_or((text.trim(), 1.0), |number| (number.trim_end(), 100.0));
     let value: f64 = number.parse().map_err(|_| "must be a relative error, such as 3% or 0.03".to_string())?;
     if unit == 1.0 && (1.0..100.0).contains(&value) {

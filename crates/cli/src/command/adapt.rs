@@ -1,5 +1,6 @@
 //! `percute adapt`.
 
+use super::present::refused;
 use super::{Console, case, resolved};
 use crate::args::AdaptArguments;
 use crate::exit::{DONE, FAILED, INTERRUPTED};
@@ -8,8 +9,10 @@ use percute_core::each_dimension;
 use percute_core::mesh::{Generated, Mesh};
 use percute_estimator::Options;
 use percute_io::{Overwrite, gmsh};
+use percute_presentation::chart::adaptation as adaptation_chart;
+use percute_presentation::file;
 use percute_workflow::Failure;
-use percute_workflow::adapt::{Adaptation, Next, Reason, Wish, adapt, announced, table};
+use percute_workflow::adapt::{Adaptation, Geometry, Mesher, Next, Reason, Wish, adapt, announced, table};
 use percute_workflow::case::CaseOf;
 use percute_workflow::effort::Long;
 use percute_workflow::outputs::{self, OutputFile};
@@ -29,7 +32,9 @@ where
 {
     let AdaptArguments { target, measure, limit, runs, json, force, threads, quiet, .. } = *arguments;
     let save = arguments.save.as_deref().map(|file| OutputFile { what: "--save", file });
-    outputs::check(&case.inputs(Some(&arguments.case)), &[save], force)?;
+    let picture = arguments.picture.as_deref().map(|file| OutputFile { what: "--picture", file });
+    outputs::check(&case.inputs(Some(&arguments.case)), &[save, picture], force)?;
+    picture.as_ref().map_or(Ok(()), |picture| file::picture(picture).map(drop))?;
     let wish = Wish { target, measure, limit, runs };
     wish.check()?;
     case.check_run(true, Long::Allowed)?;
@@ -42,6 +47,7 @@ where
             console.say(&announced(next));
         }
     };
+    let wish = (wish, mesher(arguments, case.mesh_scale)?);
     let adapted = adapt(&case.problem, &case.times, options, wish, watch, &mut tell);
     let adaptation = adapted.map_err(|failure| located(case, failure))?;
     watch.clear();
@@ -51,7 +57,27 @@ where
         let written = gmsh::write(save.file, overwrite, mesh, gmsh::Format::default());
         written.map_err(|error| Failure::Argument(format!("--save: {error}")))?;
     }
+    if let Some(picture) = picture {
+        match adaptation_chart(&adaptation)? {
+            Some(svg) => file::write_picture(&picture, Overwrite::allowed(force), &svg).map_err(refused)?,
+            None => console.say("no picture: no run is done"),
+        }
+    }
     Ok(code(&adaptation))
+}
+
+/// The way to make meshes that was chosen.
+fn mesher(arguments: &AdaptArguments, scale: f64) -> Result<Mesher, Failure> {
+    let AdaptArguments { mesher, geometry, scale: given, .. } = arguments;
+    match (mesher.as_str(), geometry) {
+        ("gmsh", None) => Ok(Mesher::Gmsh(Geometry::Outline)),
+        ("gmsh", Some(file)) if !file.is_file() => {
+            Err(Failure::Argument(format!("--geometry {}: there is no file of this name", file.display())))
+        }
+        ("gmsh", Some(file)) => Ok(Mesher::Gmsh(Geometry::File(file.clone(), given.unwrap_or(scale)))),
+        (_, Some(_)) => Err(Failure::Argument("--geometry needs --mesher gmsh".to_string())),
+        _ => Ok(Mesher::Bisection),
+    }
 }
 
 fn code<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>) -> u8 {

@@ -7,6 +7,7 @@ mod export;
 mod info;
 mod new;
 mod outputs;
+mod plan;
 mod present;
 mod recover;
 mod report;
@@ -77,6 +78,7 @@ where
             Command::Report(arguments) => report::command(&arguments, console),
             Command::Verify(arguments) => verify::command(&arguments, console),
             Command::Adapt(arguments) => adapt::command(&arguments, console),
+            Command::Plan(arguments) => plan::command(&arguments, console),
             Command::Sweep(arguments) => sweep::command(&arguments, console),
             Command::Info(arguments) => info::command(&arguments, console),
             Command::Export(arguments) => export::command(&arguments, console),

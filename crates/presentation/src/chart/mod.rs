@@ -1,11 +1,13 @@
-//! Charts: quantities over time, pressure along the surface over time, convergence.
+//! Charts: quantities over time, pressure along the surface over time, convergence, adaptation.
 
+mod adaptation;
 mod convergence;
 mod envelope;
 mod over_time;
 mod space_time;
 mod surface;
 
+pub use adaptation::adaptation;
 pub use convergence::convergence;
 pub(crate) use over_time::{Line, OverTime};
 pub(crate) use space_time::space_time;

@@ -23,11 +23,16 @@ const LEGEND: f64 = 24.0;
 /// The error e_E of each element (eq. \[20\]) as an SVG document: on the mesh of a plane body, along a bar.
 #[must_use]
 pub fn svg(body: &Body, document: &Document) -> String {
+    whole(body, document).alone()
+}
+
+/// The same, to be drawn beside others.
+pub(crate) fn whole(body: &Body, document: &Document) -> Svg {
     let shown = Shown::new(body, document, HEAD);
     let mut svg = shown.sized();
     head(&mut svg, document);
     shown.draw(&mut svg, Elements::Vectors, 0);
-    svg.alone()
+    svg
 }
 
 /// The same as a PNG.

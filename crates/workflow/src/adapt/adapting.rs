@@ -1,7 +1,7 @@
 //! An adaptation on its way: a run, then the mesh that follows from it.
 
 use super::iteration::{Iteration, Made, Needed, Reason};
-use super::meshing::Meshing;
+use super::meshing::{Mesher, Meshing};
 use super::{Adaptation, Best, Next, Wish};
 use crate::effort::Effort;
 use crate::failure::Failure;
@@ -54,8 +54,13 @@ where
     /// Begins with a problem on its mesh.
     ///
     /// # Errors
-    /// A wish out of range, a problem that cannot be written down.
-    pub fn new(problem: &Problem<D, N>, times: &TimeGrid, options: Options, wish: Wish) -> Result<Self, Failure> {
+    /// A wish out of range, a problem that cannot be written down, a mesher that cannot mesh it.
+    pub fn new(
+        problem: &Problem<D, N>,
+        times: &TimeGrid,
+        options: Options,
+        (wish, mesher): (Wish, Mesher),
+    ) -> Result<Self, Failure> {
         wish.check()?;
         Ok(Self {
             wish,
@@ -63,7 +68,7 @@ where
             end: times.end(),
             courant: times.longest_step() / critical_time_step(problem),
             restated: Restated::new(problem)?,
-            meshing: Meshing::new(problem),
+            meshing: Meshing::new(problem, mesher)?,
             iterations: Vec::new(),
             planned: None,
             last: None,

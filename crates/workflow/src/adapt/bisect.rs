@@ -47,7 +47,7 @@ pub(super) fn bisected<const D: usize, const N: usize>(
 }
 
 /// The mean error that is expected on a mesh, over that of the run.
-fn expected<const D: usize, const N: usize>(
+pub(super) fn expected<const D: usize, const N: usize>(
     wanted: &Wanted<'_, D, N>,
     mesh: &Mesh<D, N>,
     basis: &Basis,

@@ -1,24 +1,53 @@
 //! Meshes of plans.
 
-use super::bisect::bisected;
+use super::bisect::{bisected, expected};
+use super::gmsh::{self, Geometry};
 use crate::failure::Failure;
-use crate::plan::{Basis, Branch, LARGEST, Plan, sizes};
+use crate::plan::{Basis, Branch, LARGEST, Plan, Wanted, sizes};
 use percute_core::ids::ElementId;
 use percute_core::mesh::{Bisection, Generated, Locator, Mesh};
 use percute_core::problem::Problem;
+
+/// The way to make meshes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Mesher {
+    /// Bisection of the first mesh; where all elements become smaller alike, the generator of the first mesh, if it has
+    /// one.
+    #[default]
+    Bisection,
+    /// The program Gmsh.
+    Gmsh(Geometry),
+}
 
 /// Makes the meshes of an adaptation from the first one.
 #[derive(Clone, Debug)]
 pub(super) struct Meshing<const D: usize, const N: usize> {
     first: Bisection<D, N>,
+    mesher: Mesher,
 }
 
 impl<const D: usize, const N: usize> Meshing<D, N>
 where
     Mesh<D, N>: Generated,
 {
-    pub(super) fn new(problem: &Problem<D, N>) -> Self {
-        Self { first: Bisection::new(problem.mesh().clone(), &problem.facing_nodes()) }
+    /// # Errors
+    /// A mesh that the mesher cannot make.
+    pub(super) fn new(problem: &Problem<D, N>, mesher: Mesher) -> Result<Self, Failure> {
+        let pairs = problem.facing_nodes();
+        let told = match &mesher {
+            Mesher::Bisection => None,
+            Mesher::Gmsh(_) if D == 1 => Some("a bar is not meshed by Gmsh"),
+            Mesher::Gmsh(_) if !pairs.is_empty() => {
+                Some("nodes of bodies that face each other in pairs would not do so in a mesh of Gmsh")
+            }
+            Mesher::Gmsh(_) => {
+                gmsh::check()?;
+                None
+            }
+        };
+        let refused = told.map(|told| Failure::Argument(format!("{told}; take the mesher \"bisect\"")));
+        refused.map_or(Ok(()), Err)?;
+        Ok(Self { first: Bisection::new(problem.mesh().clone(), &pairs), mesher })
     }
 
     /// The mesh of a plan for the mesh of a run, and the mean error that is expected on it, over that of the run. It has
@@ -29,17 +58,22 @@ where
         (basis, plan): (&Basis, &Plan),
         most: usize,
     ) -> Result<(Mesh<D, N>, f64), Failure> {
-        generated(run, plan).map_or_else(|| bisected(&self.first, run, (basis, plan), most), Ok)
+        let Mesher::Gmsh(geometry) = &self.mesher else {
+            return generated(run, plan).map_or_else(|| bisected(&self.first, run, (basis, plan), most), Ok);
+        };
+        let next = gmsh::meshed(self.first.mesh(), geometry, run, (basis, plan), most)?;
+        let expected = expected(&Wanted::new(run, basis, plan), &next, basis, plan);
+        Ok((next, expected))
     }
 
-    /// How much larger than in a run each of its elements may become: not larger than in the first mesh, of which all
-    /// meshes are bisections.
+    /// How much larger than in a run each of its elements may become: with bisection not larger than in the first mesh.
     pub(super) fn largest(&self, run: &Mesh<D, N>) -> Vec<f64> {
         let (locator, first) = (Locator::new(self.first.mesh()), sizes(self.first.mesh()));
+        let most = if self.mesher == Mesher::Bisection { 1.0 } else { LARGEST };
         let of = |(e, h): (usize, f64)| {
             let corners = run.cell_points(ElementId::new(e));
             let middle = std::array::from_fn(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64);
-            (first[locator.element_near(&middle).index()] / h).clamp(1.0, LARGEST)
+            (most * first[locator.element_near(&middle).index()] / h).clamp(1.0, LARGEST)
         };
         sizes(run).into_iter().enumerate().map(of).collect()
     }

@@ -6,12 +6,15 @@
 
 mod adapting;
 mod bisect;
+mod gmsh;
 mod iteration;
 mod meshing;
 mod table;
 
 pub use adapting::Adapting;
+pub use gmsh::Geometry;
 pub use iteration::{Iteration, Measure, Needed, Reason};
+pub use meshing::Mesher;
 pub use table::{announced, conclusion, table};
 
 use crate::failure::Failure;
@@ -131,7 +134,7 @@ pub fn adapt<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
     options: Options,
-    wish: Wish,
+    wish: (Wish, Mesher),
     observer: &mut dyn Observer,
     tell: &mut dyn FnMut(&Next),
 ) -> Result<Adaptation<D, N>, Failure>

@@ -123,6 +123,11 @@ pub(super) fn file(table: &Table<'_>) -> Option<PathBuf> {
     Some(value.source.beside(value.text("").ok()?.as_ref()))
 }
 
+/// Metres per unit of length in the file that the mesh is in; 1 where it states none.
+pub(super) fn scale(table: &Table<'_>) -> f64 {
+    table.get("scale").and_then(|scale| scale.number("").ok()).unwrap_or(1.0)
+}
+
 /// A mesh in a file of Gmsh, relative to the folder of the case.
 fn from_file(table: &Table<'_>, value: &Value<'_>) -> Result<AnyMesh, CaseError> {
     let file = value.source.beside(value.text("the name of a Gmsh file, such as \"block.msh\"")?.as_ref());

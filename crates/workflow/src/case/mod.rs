@@ -128,6 +128,8 @@ pub struct CaseOf<const D: usize, const N: usize> {
     pub output: Output,
     /// The files that meshes were read from.
     pub mesh_files: Vec<PathBuf>,
+    /// Metres per unit of length in the mesh file, of a case with one body; 1 without such a file.
+    pub mesh_scale: f64,
 }
 
 /// A case ready to run.
@@ -225,7 +227,8 @@ fn read<const D: usize, const N: usize>(
     let (times, until) = (wanted.grid(critical_step)?, wanted.until(&problem, critical_step)?);
     output::check(root, &output, times.end())?;
     let (source, unended) = (source.clone(), None);
-    Ok(CaseOf { source, problem, times, until, unended, critical_step, options, output, mesh_files })
+    let mesh_scale = root.single("mesh")?.map_or(1.0, |mesh| mesh::scale(&mesh));
+    Ok(CaseOf { source, problem, times, until, unended, critical_step, options, output, mesh_files, mesh_scale })
 }
 
 /// The place and the cause of a start that the simulation refuses: a unit that is hardly right, beside which there is

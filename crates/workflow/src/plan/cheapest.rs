@@ -66,13 +66,14 @@ impl<'b> Sizing<'b> {
     }
 
     /// The same if elements that touch are graded inside.
-    fn graded_cost(&self, ratio: &[f64]) -> f64 {
+    pub(super) fn graded_cost(&self, ratio: &[f64]) -> f64 {
         let Basis { size, dimension, touches, .. } = self.basis;
         let elements = |(r, touches): (&f64, &bool)| match touches {
             true if *r < 1.0 => 1.0 - GRADED * r.ln(),
             _ => r.powi(-(*dimension as i32)),
         };
-        ratio.iter().zip(touches).map(elements).sum::<f64>() / least_size(ratio, size)
+        let elements = ratio.iter().zip(touches).map(elements).sum::<f64>();
+        elements / ratio.len() as f64 * (self.smallest / least_size(ratio, size))
     }
 
     /// Sizes of which the smallest is at least `smallest` times that of the run, all as small as that allows.
@@ -86,25 +87,20 @@ impl<'b> Sizing<'b> {
         wanted.max(self.predicted(&self.floor(smallest)).powf(PART))
     }
 
-    /// The cheapest sizes for an error over that of the run, with all ratios from `least` to `largest`; none if there
-    /// are none.
-    pub(super) fn cheapest(&self, wanted: f64, least: f64, largest: &[f64]) -> Option<Vec<f64>> {
-        self.cheapest_by(wanted, least, largest, |ratio| self.cost(ratio))
-    }
-
-    fn cheapest_by(
+    /// The cheapest sizes by this cost for an error over that of the run, with all ratios from `least` to `largest`;
+    /// none if there are none.
+    pub(super) fn cheapest(
         &self,
         wanted: f64,
-        least: f64,
-        largest: &[f64],
-        cost: impl Fn(&[f64]) -> f64,
+        (least, largest): (f64, &[f64]),
+        cost: fn(&Self, &[f64]) -> f64,
     ) -> Option<Vec<f64>> {
         let mut best: Option<(f64, Vec<f64>)> = None;
         for k in 0..FLOORS {
             let floor = least * (COARSER / least).powf(k as f64 / (FLOORS - 1) as f64) * self.smallest;
             let low = self.basis.size.iter().zip(largest).map(|(h, most)| (floor / h).max(least).min(*most));
             let Some(ratio) = self.with_floor(wanted, &low.collect::<Vec<_>>(), largest) else { continue };
-            let cost = cost(&ratio);
+            let cost = cost(self, &ratio);
             if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                 best = Some((cost, ratio));
             }
@@ -169,7 +165,7 @@ impl<'b> Sizing<'b> {
         if self.predicted(&self.floor(SMALLEST)) > wanted {
             return trusted;
         }
-        match self.cheapest_by(wanted, SMALLEST, largest, |ratio| self.graded_cost(ratio)) {
+        match self.cheapest(wanted, (SMALLEST, largest), Self::graded_cost) {
             Some(found) => trusted.iter().zip(&found).map(|(trusted, found)| trusted.max(found.min(1.0))).collect(),
             None => trusted,
         }
@@ -215,7 +211,7 @@ mod tests {
             let basis = basis(2, vec![1.0; count], squared.clone());
             let exponents = vec![q; count];
             let sizing = Sizing::new(&basis, &exponents, 0.0);
-            let ratio = sizing.cheapest(0.4, 1e-3, &vec![100.0; count]).unwrap();
+            let ratio = sizing.cheapest(0.4, (1e-3, &vec![100.0; count]), Sizing::cost).unwrap();
             assert!((sizing.predicted(&ratio) - 0.4).abs() < 1e-3, "{}", sizing.predicted(&ratio));
             let smallest = least_size(&ratio, &basis.size);
             let (mut new, mut at, mut errors, mut errors_at) = (0.0, 0.0, 0.0, 0.0);
@@ -246,7 +242,7 @@ mod tests {
             let sizing = Sizing::new(&basis, &exponents, step);
             let uniform = wanted.powf(1.0 / q);
             let least = 0.5 * uniform;
-            let ratio = sizing.cheapest(wanted, least, &vec![1.5; count]).unwrap();
+            let ratio = sizing.cheapest(wanted, (least, &vec![1.5; count]), Sizing::cost).unwrap();
             prop_assert!(ratio.iter().all(|r| (least * (1.0 - 1e-12)..=1.5).contains(r)));
             prop_assert!(sizing.predicted(&ratio) <= wanted * (1.0 + 1e-9));
             // The nearest smallest size that is tried is up to 5 % from that of the uniform mesh, whose cost is r^−(d+1).

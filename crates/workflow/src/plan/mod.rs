@@ -6,14 +6,20 @@
 //! sizes by the error of each element. Error and cost of other sizes follow from exponents q of e_E ~ h^q, which the
 //! sources give ([`Exponents`]).
 
+mod advice;
 mod basis;
 mod cheapest;
 mod exponents;
+mod next_mesh;
+mod size_field;
 mod wanted;
 
+pub use advice::Advice;
 pub use basis::Basis;
 pub(crate) use basis::sizes;
 pub use exponents::Exponents;
+pub use next_mesh::NextMesh;
+pub use size_field::SizeField;
 pub(crate) use wanted::Wanted;
 
 use cheapest::{Sizing, smallest};
@@ -82,7 +88,8 @@ impl Plan {
             }
             Branch::Map => {
                 let aim = sizing.within_reach(AIM * wanted, SMALLEST);
-                sizing.cheapest(aim, SMALLEST, largest).unwrap_or_else(|| sizing.floor(SMALLEST))
+                let found = sizing.cheapest(aim, (SMALLEST, largest), Sizing::cost);
+                found.unwrap_or_else(|| sizing.floor(SMALLEST))
             }
             Branch::Graded => sizing.graded(AIM * wanted, largest),
         };
@@ -96,9 +103,11 @@ impl Plan {
         let q = exponents.each(basis);
         let sizing = Sizing::new(basis, &q, exponents.step);
         let uniform = || vec![wanted.powf(1.0 / exponents.far); basis.size.len()];
+        let range = (smallest(wanted, &q), &vec![1.0; q.len()][..]);
         let ratio = match branch {
             Branch::Uniform => uniform(),
-            _ => sizing.cheapest(wanted, smallest(wanted, &q), &vec![1.0; q.len()]).unwrap_or_else(uniform),
+            Branch::Map => sizing.cheapest(wanted, range, Sizing::cost).unwrap_or_else(uniform),
+            Branch::Graded => sizing.cheapest(wanted, range, Sizing::graded_cost).unwrap_or_else(uniform),
         };
         Self::of(branch, exponents, &sizing, ratio)
     }
@@ -116,7 +125,8 @@ impl Plan {
         let (predicted, cost) = match branch {
             // Shorter steps go with all elements: there is nothing to lose.
             Branch::Uniform => (ratio[0].powf(exponents.far), sizing.cost(&ratio)),
-            _ => (sizing.predicted(&ratio), sizing.cost(&ratio)),
+            Branch::Map => (sizing.predicted(&ratio), sizing.cost(&ratio)),
+            Branch::Graded => (sizing.predicted(&ratio), sizing.graded_cost(&ratio)),
         };
         Self { branch, exponents, ratio, predicted, cost }
     }

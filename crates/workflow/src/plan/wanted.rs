@@ -47,6 +47,11 @@ impl<'m, const D: usize, const N: usize> Wanted<'m, D, N> {
         towards.fold(self.size[element.index()], f64::min)
     }
 
+    /// The size of an element of the mesh of the run, without its fall towards nodes that touch (m).
+    pub(crate) fn planned_in(&self, element: ElementId) -> f64 {
+        self.size[element.index()]
+    }
+
     /// The smallest size in an element with these corners (m).
     pub(crate) fn within(&self, corners: &[[f64; D]; N]) -> f64 {
         let middle: [f64; D] = std::array::from_fn(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64);

@@ -4,6 +4,7 @@ use super::onset::Onset;
 use super::touches::{Contact, first_contacts};
 use super::uneven::Uneven;
 use crate::deformation::Deformation;
+use crate::plan::{Advice, Basis};
 use crate::foreign::{Checked, Contradiction, by_a_penalty, is_off_contact, off_contact};
 use crate::report::flat::FlatElements;
 use crate::report::linearity::Linearity;
@@ -91,11 +92,13 @@ pub(in crate::report) struct Facts {
     pub(super) shifted: bool,
 }
 
-/// The part of the contact surface in the squared mean error, and expected changes of the mean error, relative.
+/// What changes the mean error.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expected {
-    pub(super) surface: f64,
-    pub(super) half_size: f64,
+    /// How half the error is had.
+    pub(super) advice: Advice,
+    /// Whether the layer at a front is a larger source than dispersion.
+    pub(super) front: bool,
     pub(super) half_step: f64,
 }
 
@@ -166,7 +169,7 @@ impl Facts {
             admissible: beside.admissible,
             // A node with a contact of its own touches at other instants in the admissible fields.
             kept_impulse: estimate.kept_impulse.filter(|_| estimate.own_contacts == 0),
-            expected: expected(estimate),
+            expected: expected(problem, estimate, results),
             inconsistent: beside.checked.and_then(|checked| checked.contradiction.clone()),
             unbalanced: figures.map_or(0.0, |found| found.balance),
             by_a_penalty: figures.is_some_and(by_a_penalty),
@@ -194,12 +197,16 @@ fn other_acceleration(options: Options, dimension: usize) -> Option<Acceleration
     options.acceleration.filter(|&given| given != default)
 }
 
-fn expected<const D: usize>(estimate: &Estimate<D>) -> Option<Expected> {
-    let sources = estimate.sources.as_ref()?;
-    let change = |with: Option<f64>| with.map(|with| with / estimate.error.mean - 1.0).filter(|x| x.is_finite());
-    let half_size = change(sources.mean_with_half_size())?;
-    let surface = sources.mean.surface / sources.mean.total();
-    Some(Expected { surface, half_size, half_step: change(sources.mean_with_half_step())? })
+fn expected<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    estimate: &Estimate<D>,
+    results: &ContactResults<D>,
+) -> Option<Expected> {
+    let basis = Basis::new(problem.mesh(), estimate, results)?;
+    let sources = basis.sources();
+    let half_step = sources.mean_with_half_step()? / estimate.error.mean - 1.0;
+    let front = sources.mean.front > sources.mean.dispersion;
+    half_step.is_finite().then(|| Expected { advice: Advice::new(&basis), front, half_step })
 }
 
 /// The time from the first touch to the last instant (s); 0 without contact.

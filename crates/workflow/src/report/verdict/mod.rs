@@ -15,6 +15,7 @@ pub(super) use narrow::NarrowContact;
 pub use touches::Touches;
 
 use super::PoorElement;
+use crate::plan::Advice;
 use percute_estimator::Parts;
 use rules::{RULES, Rule};
 use serde::Serialize;
@@ -79,6 +80,8 @@ pub struct Verdict {
     pub doubts: Vec<String>,
     /// Strains and rotations that are not small.
     pub not_small: Vec<String>,
+    /// How half the error is had; none without sources, or where they do not separate.
+    pub advice: Option<Advice>,
     /// The elements of bad shape with the largest parts of the squared mean error, if such elements matter.
     pub poor_elements: Vec<PoorElement>,
 }
@@ -125,6 +128,7 @@ impl Verdict {
             untested,
             doubts,
             not_small,
+            advice: facts.expected.map(|expected| expected.advice),
             poor_elements: facts.poor.clone(),
         }
     }

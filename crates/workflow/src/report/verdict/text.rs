@@ -1,11 +1,12 @@
 //! The sentences of a verdict.
 
 use super::Shares;
-use super::facts::Facts;
+use super::facts::{Expected, Facts};
 use super::rules::{self, Rule};
 use super::touches::Touches;
 use crate::foreign::Contradiction;
-use crate::message::{change, short, trimmed, whole_percent};
+use crate::message::{change, percent, short, trimmed, whole_percent};
+use crate::plan::Branch;
 use crate::report::flat;
 use crate::report::poor::PoorElement;
 use crate::report::symptoms::{AUXILIARY_CONTACT_ENERGY, CONTACT_ENERGY, DRIFT, KEPT};
@@ -19,9 +20,8 @@ const AS_LARGE: f64 = 0.5;
 const LEAST: f64 = 5e-3;
 /// An expected change of the mean error below this is not worth a run.
 const WORTH: f64 = -0.1;
-/// Where the contact surface is the source of more, elements that touch are refined first: in sources-local.csv the
-/// mean of η then falls by 28 % to 63 %, against 4 % to 23 % where fronts and dispersion are the larger source.
-const LOCAL: f64 = 0.5;
+/// From this factor of the cost on, half the error is out of reach.
+const FAR: f64 = 100.0;
 
 /// The reasons not to trust the estimate, beside strains and rotations that are not small.
 pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
@@ -157,16 +157,41 @@ fn recommendation(facts: &Facts, doubts: &[String]) -> String {
     if !doubts.is_empty() {
         return format!("Do not trust the number: {}.", doubts.join("; "));
     }
-    let place = match facts.expected {
-        _ if facts.flat => return "Make the elements that are nearly flat less so, or mesh again.".to_string(),
-        _ if facts.contact.touches == Touches::None => "Refine the whole mesh",
-        _ if facts.contact.single_element => "Cut the corner that one element fills into two elements",
-        Some(expected) if expected.surface > LOCAL => "Refine the elements that touch",
-        _ => "Refine the whole mesh",
+    if facts.flat {
+        return "Make the elements that are nearly flat less so, or mesh again.".to_string();
+    }
+    let cut = match facts.contact.single_element {
+        true if facts.contact.touches != Touches::None => "Cut the corner that one element fills into two elements. ",
+        _ => "",
     };
-    let Some(expected) = facts.expected else { return format!("{place} for a smaller error.") };
+    let Some(expected) = facts.expected else { return format!("{cut}Refine the mesh for a smaller error.") };
     let steps =
         if expected.half_step < WORTH { "steps half as long alone" } else { "shorter steps alone do not help:" };
-    let (size, step) = (change(expected.half_size), change(expected.half_step));
-    format!("{place}: half the size changes the mean by {size}; {steps} {step}.")
+    let (way, step) = (way(&expected, facts.error.relative_mean), change(expected.half_step));
+    format!("{cut}{way}; {steps} {step}.")
+}
+
+/// The way to half the mean error.
+fn way(expected: &Expected, error: f64) -> String {
+    let (half, advice) = (percent(0.5 * error), &expected.advice);
+    let times = |factor: Option<f64>| factor.map_or_else(|| "many".to_string(), |factor| short(factor, 2));
+    let (finer, cost) = (times(advice.finer), times(advice.cost));
+    let far = advice.cost.is_some_and(|cost| cost > FAR);
+    let about = advice.cost.map_or_else(String::new, |_| format!(" at about {cost} times the cost"));
+    match advice.branch {
+        Branch::Uniform if far => {
+            let cause = match expected.front {
+                true => "the front is discontinuous",
+                false => "waves of the length of an element have a wrong speed on any mesh",
+            };
+            format!(
+                "A mean of {half} is out of reach: elements {finer} times smaller, {cost} times the cost, because {cause}"
+            )
+        }
+        Branch::Uniform => format!("Refine the whole mesh: elements {finer} times smaller for a mean of {half},{about}"),
+        Branch::Graded => {
+            format!("Grade the mesh towards the nodes that touch: a mean of {half}{about}, by `percute adapt`")
+        }
+        Branch::Map => format!("Refine the mesh where the error is: a mean of {half}{about}, by `percute adapt`"),
+    }
 }

@@ -1,0 +1,124 @@
+//! A plan in words, and as a document.
+
+use super::{Basis, Branch, Exponents, Plan};
+use crate::effort::{Effort, duration};
+use crate::message::{counted, percent, short, trimmed, whole_percent};
+use percute_core::mesh::Mesh;
+use serde::Serialize;
+
+/// The next mesh for a wanted error, by the estimate of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct NextMesh {
+    /// The relative error of the run.
+    pub error: f64,
+    /// The wanted one.
+    pub target: f64,
+    /// How elements are made smaller.
+    pub branch: Branch,
+    /// The exponents of the error over the size.
+    pub exponents: Exponents,
+    /// Parts of the sources in the squared mean error: surface, front, dispersion, mesh.
+    pub sources: [f64; 4],
+    /// Number of elements of the run.
+    pub elements: usize,
+    /// The smallest and the largest size of elements of the run (m): the root of the area, or the length.
+    pub sizes: [f64; 2],
+    /// The same that are planned.
+    pub planned: [f64; 2],
+    /// The relative error expected on the next mesh.
+    pub expected: f64,
+    /// Elements times steps of the run.
+    pub element_steps: f64,
+    /// The same on the next mesh.
+    pub planned_element_steps: f64,
+    /// Elements times steps for the wanted error, in as many steps as needed.
+    pub needed_element_steps: f64,
+    /// About how long that takes with its estimate (s).
+    pub needed_seconds: f64,
+    /// The plan.
+    #[serde(skip)]
+    pub plan: Plan,
+}
+
+impl NextMesh {
+    /// For a target beside the relative error of a run. No element becomes larger than in the run.
+    #[must_use]
+    pub fn new<const D: usize, const N: usize>(
+        mesh: &Mesh<D, N>,
+        basis: &Basis,
+        effort: &Effort,
+        [error, target]: [f64; 2],
+    ) -> Self {
+        let wanted = (target / error).min(1.0);
+        let plan = Plan::new(basis, wanted, &vec![1.0; mesh.element_count()]);
+        let whole = Plan::whole(basis, wanted);
+        let bounds = |sizes: &mut dyn Iterator<Item = f64>| {
+            sizes.fold([f64::INFINITY, 0.0_f64], |[low, high], h| [low.min(h), high.max(h)])
+        };
+        let mean = &basis.sources.mean;
+        Self {
+            error,
+            target,
+            branch: plan.branch,
+            exponents: plan.exponents,
+            sources: [mean.surface, mean.front, mean.dispersion, mean.mesh].map(|part| part / mean.total()),
+            elements: mesh.element_count(),
+            sizes: bounds(&mut basis.size.iter().copied()),
+            planned: bounds(&mut basis.size.iter().zip(&plan.ratio).map(|(h, r)| h * r)),
+            expected: plan.predicted * error,
+            element_steps: basis.element_steps,
+            planned_element_steps: plan.cost * basis.element_steps,
+            needed_element_steps: whole.cost * basis.element_steps,
+            needed_seconds: whole.cost * effort.run_seconds,
+            plan,
+        }
+    }
+
+    /// The plan as a JSON document.
+    ///
+    /// # Errors
+    /// None that is known; whatever the serialiser reports.
+    pub fn to_json(&self) -> Result<String, std::io::Error> {
+        serde_json::to_string(self).map_err(std::io::Error::from)
+    }
+
+    /// The lines of the plan.
+    #[must_use]
+    pub fn told(&self) -> String {
+        let Self { error, target, branch, sources, elements, sizes, planned, expected, .. } = self;
+        let (error, target) = (percent(*error), percent(*target));
+        let names = ["surface", "front", "dispersion", "mesh"];
+        let sources = names.iter().zip(sources).map(|(name, part)| format!("{name} {}", whole_percent(*part)));
+        let sources = sources.collect::<Vec<_>>().join(", ");
+        if self.error <= self.target {
+            return format!("The mean error is {error}: the target of {target} is reached.\n");
+        }
+        let range = |[low, high]: &[f64; 2]| match 1e3 * high < 1e3 * low * 1.001 {
+            true => format!("{} mm", trimmed(1e3 * low, 3)),
+            false => format!("{} to {} mm", trimmed(1e3 * low, 3), trimmed(1e3 * high, 3)),
+        };
+        let how = match branch {
+            Branch::Uniform => "all elements alike",
+            Branch::Graded => "graded towards the nodes that touch",
+            Branch::Map => "by the error of each element",
+        };
+        let step = if *expected > self.target * 1.001 { " the next step to the target" } else { "" };
+        let lines = [
+            format!("error    {error}, target {target}; sources: {sources}"),
+            format!("branch   {branch}: {how}"),
+            format!("sizes    {} of {}, planned {}", range(sizes), counted(*elements, "element"), range(planned)),
+            format!("expected {} on the planned mesh{}{step}", percent(*expected), if step.is_empty() { "" } else { "," }),
+            format!(
+                "cost     {} elements times steps, planned {}",
+                short(self.element_steps, 2),
+                short(self.planned_element_steps, 2)
+            ),
+            format!(
+                "target   needs about {} elements times steps, {}",
+                short(self.needed_element_steps, 2),
+                duration(self.needed_seconds)
+            ),
+        ];
+        lines.join("\n") + "\n"
+    }
+}
