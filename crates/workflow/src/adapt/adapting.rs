@@ -196,7 +196,7 @@ where
         let (last, basis) = self.last.as_ref()?;
         let effort = Effort::of(&last.problem, &last.times, self.options.every);
         let wanted = self.wish.target / self.iterations[last.run].error;
-        Some(Needed::of(&effort).times(Plan::whole(basis.as_ref()?, wanted).cost))
+        Some(Needed::of(&effort).times(Plan::whole(basis.as_ref()?, wanted)?.cost))
     }
 
     /// The mesh that follows from the last run, or the reason why there is none.
@@ -208,7 +208,7 @@ where
         let Some(basis) = basis else { return Ok(Err(Reason::NoSources)) };
         let (mesh, error) = (last.problem.mesh(), self.iterations[last.run].error);
         let plan = Plan::new(basis, self.wish.target / error, &self.meshing.largest(mesh));
-        // Other plans hold for a step: their mesh may have all that is missing in a few places.
+        // The plan of a map holds for a step: its mesh may have all that is missing in a few places.
         let needed = self.needed_after().filter(|_| plan.branch == Branch::Uniform);
         if needed.is_some_and(|needed| needed.element_steps > self.wish.limit) {
             return Ok(Err(Reason::Limit));

@@ -15,7 +15,7 @@ pub struct Advice {
     pub branch: Branch,
     /// By which factor all become smaller, of a uniform mesh; none of others.
     pub finer: Option<f64>,
-    /// Elements times steps over those of the run; none of a large mesh that is not uniform.
+    /// Elements times steps over those of the run; none of a mesh to be graded, and of a large one that is not uniform.
     pub cost: Option<f64>,
 }
 
@@ -24,7 +24,8 @@ impl Advice {
     #[must_use]
     pub fn new(basis: &Basis) -> Self {
         let branch = basis.branch();
-        let plan = (branch == Branch::Uniform || basis.size.len() <= MOST).then(|| Plan::whole(basis, HALF));
+        let is_quick = branch == Branch::Uniform || basis.size.len() <= MOST;
+        let plan = if is_quick { Plan::whole(basis, HALF) } else { None };
         let finer = plan.as_ref().filter(|_| branch == Branch::Uniform).and_then(|plan| plan.ratio.first().copied());
         Self { branch, finer: finer.map(|ratio| 1.0 / ratio), cost: plan.map(|plan| plan.cost) }
     }

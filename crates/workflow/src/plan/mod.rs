@@ -96,20 +96,23 @@ impl Plan {
         Self::of(branch, exponents, &sizing, ratio)
     }
 
-    /// The plan for a mean error that is `wanted` times that of the run in one step, however far: for its cost.
+    /// The plan for a mean error that is `wanted` times that of the run in one step, however far, for its cost. None of
+    /// a mesh to be graded: as it becomes finer, the error falls faster than exponents of coarse meshes tell.
     #[must_use]
-    pub fn whole(basis: &Basis, wanted: f64) -> Self {
+    pub fn whole(basis: &Basis, wanted: f64) -> Option<Self> {
         let (branch, exponents) = (basis.branch(), Exponents::of(&basis.sources));
         let q = exponents.each(basis);
         let sizing = Sizing::new(basis, &q, exponents.step);
         let uniform = || vec![wanted.powf(1.0 / exponents.far); basis.size.len()];
-        let range = (smallest(wanted, &q), &vec![1.0; q.len()][..]);
         let ratio = match branch {
+            Branch::Graded => return None,
             Branch::Uniform => uniform(),
-            Branch::Map => sizing.cheapest(wanted, range, Sizing::cost).unwrap_or_else(uniform),
-            Branch::Graded => sizing.cheapest(wanted, range, Sizing::graded_cost).unwrap_or_else(uniform),
+            Branch::Map => {
+                let range = (smallest(wanted, &q), &vec![1.0; q.len()][..]);
+                sizing.cheapest(wanted, range, Sizing::cost).unwrap_or_else(uniform)
+            }
         };
-        Self::of(branch, exponents, &sizing, ratio)
+        Some(Self::of(branch, exponents, &sizing, ratio))
     }
 
     /// The mean error over that of the run on a mesh with these ratios of size, of which the smallest element has this

@@ -31,10 +31,9 @@ pub struct NextMesh {
     pub element_steps: f64,
     /// The same on the next mesh.
     pub planned_element_steps: f64,
-    /// Elements times steps for the wanted error, in as many steps as needed.
-    pub needed_element_steps: f64,
-    /// About how long that takes with its estimate (s).
-    pub needed_seconds: f64,
+    /// Elements times steps of a run with the wanted error, and about how long it takes with its estimate (s); none of a
+    /// mesh to be graded, whose error falls faster than that of one run tells.
+    pub needed: Option<[f64; 2]>,
     /// The plan.
     #[serde(skip)]
     pub plan: Plan,
@@ -68,8 +67,7 @@ impl NextMesh {
             expected: plan.predicted * error,
             element_steps: basis.element_steps,
             planned_element_steps: plan.cost * basis.element_steps,
-            needed_element_steps: whole.cost * basis.element_steps,
-            needed_seconds: whole.cost * effort.run_seconds,
+            needed: whole.map(|whole| [basis.element_steps, effort.run_seconds].map(|work| whole.cost * work)),
             plan,
         }
     }
@@ -102,23 +100,21 @@ impl NextMesh {
             Branch::Graded => "graded towards the nodes that touch",
             Branch::Map => "by the error of each element",
         };
-        let step = if *expected > self.target * 1.001 { " the next step to the target" } else { "" };
-        let lines = [
+        let step = if *expected > self.target * 1.001 { ", the next step to the target" } else { "" };
+        let mut lines = vec![
             format!("error    {error}, target {target}; sources: {sources}"),
             format!("branch   {branch}: {how}"),
             format!("sizes    {} of {}, planned {}", range(sizes), counted(*elements, "element"), range(planned)),
-            format!("expected {} on the planned mesh{}{step}", percent(*expected), if step.is_empty() { "" } else { "," }),
+            format!("expected {} on the planned mesh{step}", percent(*expected)),
             format!(
                 "cost     {} elements times steps, planned {}",
                 short(self.element_steps, 2),
                 short(self.planned_element_steps, 2)
             ),
-            format!(
-                "target   needs about {} elements times steps, {}",
-                short(self.needed_element_steps, 2),
-                duration(self.needed_seconds)
-            ),
         ];
+        lines.extend(self.needed.map(|[element_steps, seconds]| {
+            format!("target   needs about {} elements times steps, {}", short(element_steps, 2), duration(seconds))
+        }));
         lines.join("\n") + "\n"
     }
 }
