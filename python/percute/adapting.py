@@ -107,6 +107,8 @@ class Adaptation:
     """The same in a sentence."""
     needed: float | None
     """Elements times steps that the target needs, if it is not reached and they can be told."""
+    warnings: tuple[str, ...]
+    """Warnings about the meshes, such as one of a polygon in the place of a curve."""
     iterations: Iterations
     """The runs, in order."""
     best: int | None
@@ -261,7 +263,9 @@ def adapt(
             if not isinstance(error, Exception):
                 error.adaptation = adapting  # type: ignore[attr-defined]
             raise
-    return _adaptation(adapting)
+    adaptation = _adaptation(adapting)
+    warn(adaptation.warnings)
+    return adaptation
 
 
 def _adaptation(adapting: _percute.AdaptingData) -> Adaptation:
@@ -276,6 +280,7 @@ def _adaptation(adapting: _percute.AdaptingData) -> Adaptation:
         reason=next(iter(reason)) if isinstance(reason, dict) else (reason or "interrupted"),
         conclusion=document["conclusion"],
         needed=None if needed is None else needed["element_steps"],
+        warnings=tuple(document["warnings"]),
         iterations=Iterations._of(document["iterations"]),
         best=document["best"],
         problem=None if problem is None else Problem._of(problem),

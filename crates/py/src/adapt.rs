@@ -49,7 +49,9 @@ impl AdaptingData {
         };
         let wish = (Wish { target, measure, limit, runs }, gmsh.map_or(Mesher::Bisection, geometry));
         let adapting = match &problem.problem {
-            ByDimension::Bar(problem) => Adapting::new(problem, &times, options, wish).map(shared).map(ByDimension::Bar),
+            ByDimension::Bar(problem) => {
+                Adapting::new(problem, &times, options, wish).map(shared).map(ByDimension::Bar)
+            }
             ByDimension::Plane(problem) => {
                 Adapting::new(problem, &times, options, wish).map(shared).map(ByDimension::Plane)
             }
@@ -61,7 +63,7 @@ impl AdaptingData {
     fn next(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let next = each_dimension!(&self.adapting, adapting => {
             let adapting = adapting.clone();
-            bridge::blocking(py, None, move |_| adapting.lock().unwrap_or_else(PoisonError::into_inner).next())?
+            bridge::blocking(py, None, move |_| adapting.lock().unwrap_or_else(PoisonError::into_inner).upcoming())?
         });
         next.map(|next| next.as_ref().map(announced)).map_err(|error| errors::run(py, &error))
     }

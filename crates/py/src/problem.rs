@@ -70,7 +70,10 @@ impl ProblemData {
     }
 }
 
-fn on<const D: usize, const N: usize>(problem: &Problem<D, N>, mesh: &Mesh<D, N>) -> Result<Arc<Problem<D, N>>, Failure> {
+fn on<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    mesh: &Mesh<D, N>,
+) -> Result<Arc<Problem<D, N>>, Failure> {
     Restated::new(problem)?.on(mesh.clone()).map(Arc::new)
 }
 

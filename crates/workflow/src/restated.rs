@@ -18,7 +18,10 @@ impl<const D: usize, const N: usize> Restated<D, N> {
     /// # Errors
     /// A problem that the case language cannot say.
     pub fn new(problem: &Problem<D, N>) -> Result<Self, Failure> {
-        Ok(Self { problem: problem.clone(), statement: Source::new("the problem on another mesh", statement(problem, None)?) })
+        Ok(Self {
+            problem: problem.clone(),
+            statement: Source::new("the problem on another mesh", statement(problem, None)?),
+        })
     }
 
     /// The problem on its own mesh.

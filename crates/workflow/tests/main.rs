@@ -3,6 +3,7 @@
 // Clippy allows this in test functions only; what they share is a test as well.
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
+mod adapt;
 mod deformation;
 mod numbering;
 mod schema;

@@ -51,6 +51,9 @@ where
     let adapted = adapt(&case.problem, &case.times, options, wish, watch, &mut tell);
     let adaptation = adapted.map_err(|failure| located(case, failure))?;
     watch.clear();
+    if !quiet {
+        adaptation.warnings.iter().for_each(|warning| console.say(&format!("warning: {warning}")));
+    }
     console.print(&if json { adaptation.to_json()? } else { table(&adaptation) })?;
     if let (Some(save), Some(best)) = (save, &adaptation.best) {
         let (mesh, overwrite) = (best.problem.mesh(), Overwrite::allowed(force));

@@ -90,7 +90,8 @@ mod tests {
                     points.iter().any(|p| p[0] == 0.0 && p[1] == 1.0)
                 };
                 bisection.clone().cut(touches).unwrap();
-                let chosen: Vec<bool> = (0..bisection.mesh().element_count()).map(|e| touches(ElementId::new(e))).collect();
+                let chosen: Vec<bool> =
+                    (0..bisection.mesh().element_count()).map(|e| touches(ElementId::new(e))).collect();
                 bisection.cut(|e| chosen[e.index()]).unwrap();
             }
             bisection.into_mesh()

@@ -104,7 +104,8 @@ fn regions<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Option<(Vec<usi
         while let Some(element) = waiting.pop() {
             for facet in mesh.cell_facets()[element] {
                 let other = across(mesh, facet, element);
-                if let Some(other) = other.filter(|&other| region[other] == usize::MAX && groups[other] == groups[first])
+                if let Some(other) =
+                    other.filter(|&other| region[other] == usize::MAX && groups[other] == groups[first])
                 {
                     region[other] = found.len();
                     waiting.push(other);
@@ -259,6 +260,9 @@ mod tests {
         assert!(text.contains("Physical Surface(\"upper\")") && text.contains("Physical Surface(\"body\")"));
         let line = |text: &str, start: &str| text.lines().find(|line| line.starts_with(start)).unwrap().to_string();
         let numbers = |line: &str| line.matches(',').count() + 1;
-        assert_eq!(["Curve Loop(1)", "Curve Loop(2)", "Curve Loop(3)"].map(|start| numbers(&line(&text, start))), [4, 4, 4]);
+        assert_eq!(
+            ["Curve Loop(1)", "Curve Loop(2)", "Curve Loop(3)"].map(|start| numbers(&line(&text, start))),
+            [4, 4, 4]
+        );
     }
 }

@@ -2,6 +2,7 @@
 
 use super::iteration::{Iteration, Made, Needed, Reason};
 use super::meshing::{Mesher, Meshing};
+use super::polygon;
 use super::{Adaptation, Best, Next, Wish};
 use crate::effort::Effort;
 use crate::failure::Failure;
@@ -17,7 +18,7 @@ use percute_core::mesh::{Generated, Mesh};
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-use percute_estimator::Options;
+use percute_estimator::{Options, Reconstruction};
 
 /// A run that is planned.
 #[derive(Clone, Debug)]
@@ -28,7 +29,7 @@ struct Planned<const D: usize, const N: usize> {
     made: Made,
 }
 
-/// An adaptation on its way: as long as [`Adapting::next`] has a run, [`Adapting::run`] does it.
+/// An adaptation on its way: as long as [`Adapting::upcoming`] has a run, [`Adapting::run`] does it.
 #[derive(Clone, Debug)]
 pub struct Adapting<const D: usize, const N: usize> {
     wish: Wish,
@@ -44,6 +45,7 @@ pub struct Adapting<const D: usize, const N: usize> {
     last: Option<(Best<D, N>, Option<Basis>)>,
     best: Option<Best<D, N>>,
     needed: Option<Needed>,
+    warnings: Vec<String>,
     reason: Option<Reason>,
 }
 
@@ -54,7 +56,7 @@ where
     /// Begins with a problem on its mesh.
     ///
     /// # Errors
-    /// A wish out of range, a problem that cannot be written down, a mesher that cannot mesh it.
+    /// A wish out of range, a reconstruction without sources, a problem that cannot be written down, a mesher that cannot mesh it.
     pub fn new(
         problem: &Problem<D, N>,
         times: &TimeGrid,
@@ -62,6 +64,12 @@ where
         (wish, mesher): (Wish, Mesher),
     ) -> Result<Self, Failure> {
         wish.check()?;
+        if options.reconstruction != Reconstruction::Corrected {
+            return Err(Failure::Argument(format!(
+                "the reconstruction \"{}\" has no sources of the error to plan from; take \"corrected\"",
+                options.reconstruction
+            )));
+        }
         Ok(Self {
             wish,
             options,
@@ -74,6 +82,7 @@ where
             last: None,
             best: None,
             needed: None,
+            warnings: Vec::new(),
             reason: None,
         })
     }
@@ -82,7 +91,7 @@ where
     ///
     /// # Errors
     /// A first run that cannot be planned.
-    pub fn next(&mut self) -> Result<Option<Next>, Failure> {
+    pub fn upcoming(&mut self) -> Result<Option<Next>, Failure> {
         if self.reason.is_none() && self.planned.is_none() {
             let planned = self.plan();
             self.kept(planned)?;
@@ -113,6 +122,7 @@ where
 
     /// Plans the next run, or ends.
     fn plan(&mut self) -> Result<(), Failure> {
+        self.needed = self.needed_after();
         let (problem, made) = match &self.last {
             None => (self.restated.problem().clone(), Made::default()),
             Some((last, basis)) => match self.mesh_after(last, basis.as_ref())? {
@@ -123,7 +133,6 @@ where
                 }
             },
         };
-        self.needed = self.needed_after();
         let critical_step = critical_time_step(&problem);
         let times = TimeGrid::with_step(self.end, self.courant * critical_step);
         let times = times.map_err(|error| Failure::Argument(error.to_string()))?;
@@ -133,7 +142,8 @@ where
             self.reason = Some(Reason::Limit);
             return Ok(());
         }
-        let bytes = memory::of_run(&problem, &times) + percute_estimator::memory(&problem, &times, &self.options) as u64;
+        let bytes =
+            memory::of_run(&problem, &times) + percute_estimator::memory(&problem, &times, &self.options) as u64;
         memory::refusal(bytes).map_or(Ok(()), |told| Err(Failure::Memory(told)))?;
         self.planned = Some(Planned { problem, times, critical_step, made });
         Ok(())
@@ -174,6 +184,9 @@ where
         let (error, doubtful) = (iteration.error, !iteration.doubts.is_empty());
         let trusted = self.iterations.iter().any(|earlier| earlier.doubts.is_empty());
         self.iterations.push(iteration);
+        if self.warnings.is_empty() && self.meshing.keeps_polygons() {
+            self.warnings.extend(basis.as_ref().and_then(|basis| polygon::warning(mesh, basis)));
+        }
         let better = |best: &Best<D, N>| {
             let best = &self.iterations[best.run];
             (doubtful, error) < (!best.doubts.is_empty(), best.error)
@@ -209,7 +222,7 @@ where
         let (mesh, error) = (last.problem.mesh(), self.iterations[last.run].error);
         let plan = Plan::new(basis, self.wish.target / error, &self.meshing.largest(mesh));
         // The plan of a map holds for a step: its mesh may have all that is missing in a few places.
-        let needed = self.needed_after().filter(|_| plan.branch == Branch::Uniform);
+        let needed = self.needed.filter(|_| plan.branch == Branch::Uniform);
         if needed.is_some_and(|needed| needed.element_steps > self.wish.limit) {
             return Ok(Err(Reason::Limit));
         }
@@ -226,13 +239,14 @@ impl<const D: usize, const N: usize> Adapting<D, N> {
     /// The adaptation as far as it is done.
     #[must_use]
     pub fn so_far(&self) -> Adaptation<D, N> {
-        let Self { wish, iterations, best, needed, reason, .. } = self;
+        let Self { wish, iterations, best, needed, warnings, reason, .. } = self;
         let needed = needed.filter(|_| *reason != Some(Reason::Reached));
         Adaptation {
             wish: *wish,
             iterations: iterations.clone(),
             reason: reason.clone(),
             needed,
+            warnings: warnings.clone(),
             best: best.clone(),
         }
     }

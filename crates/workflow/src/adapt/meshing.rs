@@ -50,6 +50,11 @@ where
         Ok(Self { first: Bisection::new(problem.mesh().clone(), &pairs), mesher })
     }
 
+    /// Whether the outline of the first mesh stays.
+    pub(super) fn keeps_polygons(&self) -> bool {
+        !matches!(self.mesher, Mesher::Gmsh(Geometry::File(..)))
+    }
+
     /// The mesh of a plan for the mesh of a run, and the mean error that is expected on it, over that of the run. It has
     /// about `most` elements at most.
     pub(super) fn next(

@@ -9,6 +9,7 @@ mod bisect;
 mod gmsh;
 mod iteration;
 mod meshing;
+mod polygon;
 mod table;
 
 pub use adapting::Adapting;
@@ -85,6 +86,8 @@ pub struct Adaptation<const D: usize, const N: usize> {
     pub reason: Option<Reason>,
     /// The work that the target needs, if it is not reached and can be told.
     pub needed: Option<Needed>,
+    /// Warnings about the meshes.
+    pub warnings: Vec<String>,
     /// The best run; none if the first was interrupted.
     pub best: Option<Best<D, N>>,
 }
@@ -142,7 +145,7 @@ where
     Mesh<D, N>: Generated,
 {
     let mut adapting = Adapting::new(problem, times, options, wish)?;
-    while let Some(next) = adapting.next()? {
+    while let Some(next) = adapting.upcoming()? {
         tell(&next);
         adapting.run(observer)?;
     }

@@ -61,7 +61,9 @@ pub fn conclusion<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>)
             let doubts = adaptation.iterations.last().map_or_else(String::new, |last| last.doubts.join("; "));
             format!("Target {target} not reached: {reached}. The estimate of the last run is not trusted: {doubts}.")
         }
-        Reason::NoSources => format!("Target {target} not reached: {reached}, and the sources of the error are unknown."),
+        Reason::NoSources => {
+            format!("Target {target} not reached: {reached}, and the sources of the error are unknown.")
+        }
         Reason::Failed(why) => format!("Target {target} not reached: {reached}. The next run failed: {why}"),
         Reason::Interrupted => format!("Interrupted; target {target} not reached: {reached}."),
     }
@@ -117,6 +119,7 @@ struct Document<'a> {
     reason: Option<&'a Reason>,
     conclusion: String,
     needed: Option<super::Needed>,
+    warnings: &'a [String],
     best: Option<usize>,
     /// End and step of the best run (s).
     end: Option<f64>,
@@ -138,6 +141,7 @@ impl<const D: usize, const N: usize> Adaptation<D, N> {
             reason: self.reason.as_ref(),
             conclusion: conclusion(self),
             needed: self.needed,
+            warnings: &self.warnings,
             best: self.best.as_ref().map(|best| best.run),
             end: self.best.as_ref().map(|best| best.times.end()),
             step: self.best.as_ref().map(|best| best.times.longest_step()),

@@ -68,6 +68,12 @@ impl Basis {
         &self.size
     }
 
+    /// Nodes that have touched.
+    #[must_use]
+    pub fn nodes(&self) -> &[NodeId] {
+        &self.nodes
+    }
+
     /// Whether each element has a node that has touched.
     #[must_use]
     pub fn touches(&self) -> &[bool] {

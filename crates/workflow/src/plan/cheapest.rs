@@ -127,7 +127,11 @@ impl<'b> Sizing<'b> {
             let middle = 0.5 * (range[0] + range[1]);
             let ratio = self.with_multiplier(middle, low, high);
             let error = self.predicted(&ratio) / wanted;
-            if error > 1.0 { range[0] = middle } else { range[1] = middle }
+            if error > 1.0 {
+                range[0] = middle
+            } else {
+                range[1] = middle
+            }
             if (error <= 1.0 && error > 1.0 - FOUND) || range[1] - range[0] < FOUND {
                 found = self.with_multiplier(range[1], low, high);
                 break;

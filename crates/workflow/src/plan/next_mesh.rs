@@ -97,8 +97,8 @@ impl NextMesh {
         };
         let how = match branch {
             Branch::Uniform => "all elements alike",
-            Branch::Graded => "graded towards the nodes that touch",
-            Branch::Map => "by the error of each element",
+            Branch::Graded => "smaller elements towards the nodes that touch",
+            Branch::Map => "each element by its error",
         };
         let step = if *expected > self.target * 1.001 { ", the next step to the target" } else { "" };
         let mut lines = vec![

@@ -34,7 +34,8 @@ impl<const D: usize, const N: usize> SizeField<D, N> {
         let wanted = Wanted::new(run, basis, plan);
         let mut mesh = run.clone();
         for _ in 0..ROUNDS {
-            let too_large = |(e, size): (usize, f64)| size > COARSE * wanted.within(&mesh.cell_points(ElementId::new(e)));
+            let too_large =
+                |(e, size): (usize, f64)| size > COARSE * wanted.within(&mesh.cell_points(ElementId::new(e)));
             let chosen: Vec<bool> = sizes(&mesh).into_iter().enumerate().map(too_large).collect();
             if !chosen.contains(&true) || chosen.len() > most {
                 break;

@@ -55,7 +55,8 @@ impl<'m, const D: usize, const N: usize> Wanted<'m, D, N> {
     /// The smallest size in an element with these corners (m).
     pub(crate) fn within(&self, corners: &[[f64; D]; N]) -> f64 {
         let middle: [f64; D] = std::array::from_fn(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64);
-        let towards = |corner: &[f64; D]| self.at(&std::array::from_fn(|c| middle[c] + TOWARDS * (corner[c] - middle[c])));
+        let towards =
+            |corner: &[f64; D]| self.at(&std::array::from_fn(|c| middle[c] + TOWARDS * (corner[c] - middle[c])));
         corners.iter().map(towards).fold(self.at(&middle), f64::min)
     }
 
@@ -76,7 +77,8 @@ fn near<const D: usize, const N: usize>(
         let around = &mesh.stars().star(node).elements;
         let size = around.iter().map(|e| planned[e.index()]).fold(f64::INFINITY, f64::min);
         let corners = around.iter().flat_map(|e| mesh.cells()[e.index()]);
-        let mut patch: Vec<ElementId> = corners.flat_map(|corner| mesh.stars().star(corner).elements.to_vec()).collect();
+        let mut patch: Vec<ElementId> =
+            corners.flat_map(|corner| mesh.stars().star(corner).elements.to_vec()).collect();
         patch.sort_unstable();
         patch.dedup();
         patch.into_iter().for_each(|element| near.entry(element).or_default().push((node, size)));

@@ -23,8 +23,8 @@ use percute_core::mesh::room;
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
-use percute_estimator::reference::{Comparison, Motion};
 use percute_estimator::Options;
+use percute_estimator::reference::{Comparison, Motion};
 
 /// The most refinements: each has eight times the work of the one before.
 pub const MOST_LEVELS: usize = 5;

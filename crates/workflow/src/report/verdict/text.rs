@@ -188,7 +188,9 @@ fn way(expected: &Expected, error: f64) -> String {
                 "A mean of {half} is out of reach: elements {finer} times smaller, {cost} times the cost, because {cause}"
             )
         }
-        Branch::Uniform => format!("Refine the whole mesh: elements {finer} times smaller for a mean of {half},{about}"),
+        Branch::Uniform => {
+            format!("Refine the whole mesh: elements {finer} times smaller for a mean of {half},{about}")
+        }
         Branch::Graded => {
             format!("Grade the mesh towards the nodes that touch: a mean of {half}{about}, by `percute adapt`")
         }

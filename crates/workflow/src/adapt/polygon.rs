@@ -1,0 +1,57 @@
+//! Polygons in the place of curves.
+
+use crate::message::short;
+use crate::plan::{Basis, Branch};
+use percute_core::ids::NodeId;
+use percute_core::mesh::Mesh;
+
+/// A boundary that turns at nodes that touch by an angle between these (degrees) may be that of a curve: a smaller one
+/// is rounding or a fine polygon, a larger one a corner.
+const CURVE: [f64; 2] = [1.0, 30.0];
+
+/// What to say of a mesh that is to be graded towards nodes of a polygon that is likely in the place of a curve.
+pub(super) fn warning<const D: usize, const N: usize>(mesh: &Mesh<D, N>, basis: &Basis) -> Option<String> {
+    if D != 2 || basis.branch() != Branch::Graded {
+        return None;
+    }
+    let turns = basis.nodes().iter().filter_map(|node| turn(mesh, *node));
+    let turn = turns.filter(|turn| (CURVE[0]..=CURVE[1]).contains(turn)).reduce(f64::max)?;
+    Some(format!(
+        "the outline turns by up to {}° at nodes that touch: if it stands for a curve, its vertices become corners as \
+         elements become smaller; mesh the curve (--mesher gmsh with --geometry FILE.geo), or begin with a finer outline",
+        short(turn, 2)
+    ))
+}
+
+/// The angle between the two edges of the boundary at a node (degrees).
+fn turn<const D: usize, const N: usize>(mesh: &Mesh<D, N>, node: NodeId) -> Option<f64> {
+    let around = mesh.stars().star(node).elements.iter().flat_map(|element| mesh.cell_facets()[element.index()]);
+    let edges = around.map(|facet| &mesh.facets()[facet.index()]);
+    let here = mesh.points()[node.index()];
+    let ends = edges.filter(|edge| edge.neighbour.is_none() && edge.nodes.contains(&node)).filter_map(|edge| {
+        let end = edge.nodes.iter().find(|other| **other != node)?;
+        let point = mesh.points()[end.index()];
+        Some([point[0] - here[0], point.get(1)? - here.get(1)?])
+    });
+    let [u, w] = ends.collect::<Vec<[f64; 2]>>().try_into().ok()?;
+    let (cross, dot) = (u[0] * w[1] - u[1] * w[0], u[0] * w[0] + u[1] * w[1]);
+    Some(180.0 - cross.abs().atan2(dot).to_degrees())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_core::mesh::TriangleMesh;
+
+    /// A disc of n rings is a polygon of 6 n edges.
+    #[test]
+    fn the_outline_of_a_disc_turns_at_its_nodes() {
+        let disc = TriangleMesh::disc(1.0, 6).unwrap();
+        let lowest = NodeId::new(3 * 6 * 5 + 1);
+        assert!((turn(&disc, lowest).unwrap() - 10.0).abs() < 1e-9);
+        assert_eq!(turn(&disc, NodeId::new(0)), None, "a node inside");
+        let square = TriangleMesh::rectangle(1.0, 1.0, 2, 2).unwrap();
+        let turns = [0, 1].map(|node| turn(&square, NodeId::new(node)).unwrap());
+        assert!((turns[0] - 90.0).abs() < 1e-9 && turns[1].abs() < 1e-9, "{turns:?}");
+    }
+}
