@@ -19,6 +19,7 @@ pub mod message;
 mod numbering;
 pub mod outline;
 pub mod outputs;
+pub mod quantity;
 mod reference;
 pub mod report;
 mod resume;
