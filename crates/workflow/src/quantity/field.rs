@@ -56,6 +56,14 @@ impl Field {
         }
     }
 
+    /// Its name in a sentence.
+    pub(super) fn told(self) -> &'static str {
+        match self {
+            Self::VonMises => "von Mises stress",
+            other => other.name(),
+        }
+    }
+
     /// Its unit.
     #[must_use]
     pub fn unit(self) -> &'static str {

@@ -6,8 +6,8 @@ use serde::Serialize;
 const ROUNDING: f64 = 1e-9;
 /// Orders are looked for up to this one, without its sign.
 const LARGEST_ORDER: f64 = 20.0;
-/// Values with a smaller order do not converge in practice: the limit is 28 times the last change away.
-const LEAST_ORDER: f64 = 0.05;
+/// Values with a smaller order do not converge in practice: the limit is 14 times the last change away, and more.
+const LEAST_ORDER: f64 = 0.1;
 
 /// How the values of a quantity change on the finest meshes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -68,7 +68,7 @@ mod tests {
         /// Values a + b h^p have this order and this limit, on meshes of any sizes; for p < 0 they have no limit.
         #[test]
         fn power_laws_are_recognised(
-            p in prop::sample::select(vec![-1.0, -0.45, -0.1, 0.1, 0.33, 2.0 / 3.0, 1.0, 2.0]),
+            p in prop::sample::select(vec![-1.0, -0.45, -0.1, 0.15, 0.33, 2.0 / 3.0, 1.0, 2.0]),
             a in 0.5..2.0_f64,
             b in prop::sample::select(vec![-0.3, 0.2]),
             sizes in prop::array::uniform2(1.3..3.0_f64),

@@ -22,6 +22,8 @@ use std::str::FromStr;
 
 /// Smaller changes from mesh to mesh are not worth a sentence: nobody refines for them.
 const SMALL: f64 = 0.01;
+/// Below this order the limit is three times the last change away, and more.
+const SLOW: f64 = 0.4;
 
 /// A quantity of a run, one number.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,15 +105,24 @@ impl Quantity {
         }
     }
 
-    /// A sentence about a quantity that does not converge, with the reason and the way out if they are known. None of
-    /// one that converges, or changes by less than 1 %.
+    /// A sentence about a quantity that does not converge or does so slowly, with the reason and the way out if they are
+    /// known. None of one that changes by less than 1 %.
     #[must_use]
     pub fn warning(&self, judgement: &Judgement, obstruction: Option<&Obstruction>) -> Option<String> {
         let change = judgement.change.filter(|change| change.abs() > SMALL)?;
-        let reason = match obstruction {
-            Some(found) if found.is_of_the_problem() || judgement.converges != Some(true) => found.told(),
+        let slow = judgement.order.zip(judgement.remaining).filter(|(order, _)| *order < SLOW);
+        let reason = match (obstruction, slow) {
+            (Some(found), _) if found.is_of_the_problem() || slow.is_some() || judgement.converges != Some(true) => {
+                found.told()
+            }
+            (_, Some((order, remaining))) => format!(
+                "its differences fall like h^{order:.1} only, and the limit is another {} away: take more levels",
+                percent(remaining.abs())
+            ),
             _ if judgement.converges == Some(false) => {
-                "its differences do not fall from mesh to mesh: take more levels".to_string()
+                let front = "; where a front passes, the largest value over time may have no limit";
+                let front = if matches!(self, Self::Probe(_)) { front } else { "" };
+                format!("its differences do not fall from mesh to mesh: take more levels{front}")
             }
             _ => return None,
         };
@@ -194,6 +205,25 @@ mod tests {
                 prop_assert!(told.contains("peak_force, impulse, rebound or a probe"), "{}", told);
             }
         }
+    }
+
+    /// Differences that grow, fall slowly, fall, and are small.
+    #[test]
+    fn only_what_does_not_converge_has_a_warning() {
+        let warning = |values: &[f64], found: Option<&Obstruction>| {
+            let sizes: Vec<f64> = (0..values.len()).map(|k| 0.5_f64.powi(k as i32)).collect();
+            Quantity::PeakForce.warning(&judge(values, &sizes), found)
+        };
+        let has = |values: &[f64], words: &str| warning(values, None).is_some_and(|told| told.contains(words));
+        assert!(has(&[1.0, 2.0, 4.0], "grows by 50.0 % on the finest mesh: its differences do not fall"));
+        // Differences 5, 4: h^0.3, and 4/(5/4 − 1) = 16 more.
+        assert!(has(&[109.0, 104.0, 100.0], "h^0.3 only, and the limit is another 16.0 % away"));
+        assert_eq!([warning(&[7.0, 5.0, 4.0], None), warning(&[1.0, 1.001, 1.003], None)], [None, None]);
+        // A corner is said whatever the differences are, a curve only where they do not fall.
+        let of = |values: &[f64], found: Obstruction| warning(values, Some(&found));
+        assert!(of(&[7.0, 5.0, 4.0], Obstruction::Corner).is_some_and(|told| told.contains("round the corner")));
+        assert_eq!(of(&[7.0, 5.0, 4.0], Obstruction::Curve), None);
+        assert!(of(&[1.0, 2.0, 4.0], Obstruction::Curve).is_some_and(|told| told.contains("smaller elements")));
     }
 
     #[test]

@@ -81,8 +81,8 @@ impl Obstruction {
     pub(super) fn told(&self) -> String {
         match self {
             Self::Corner => "one node carries the force; the force does not converge: round the corner".to_string(),
-            Self::Curve => "one node carries the force; the contact of the curve is narrower than an element: take \
-                            smaller elements there"
+            Self::Curve => "one node carries the force; the contact of the curve is narrower than an element: take a \
+                            mesh with smaller elements and more vertices there"
                 .to_string(),
             Self::ReEntrant { corner } => {
                 let place = vector(corner, 6);

@@ -1,7 +1,7 @@
 //! Probes: the largest value of a field at a point over time.
 
 use super::field::Field;
-use crate::message::{short, vector};
+use crate::message::{counted, short, vector};
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::mesh::{Around, Mesh};
 use percute_core::problem::Problem;
@@ -34,12 +34,7 @@ impl Probe {
     /// The probe in words.
     #[must_use]
     pub fn told(&self) -> String {
-        format!("{} at {}", self.field.name(), self.place())
-    }
-
-    /// The point in words.
-    pub(super) fn place(&self) -> String {
-        vector(&self.point, 6)
+        format!("{} at {}", self.field.told(), vector(&self.point, 6))
     }
 
     /// The elements of a mesh that contain it.
@@ -50,10 +45,9 @@ impl Probe {
         let (body, needed) = if D == 1 { ("a bar", "one coordinate") } else { ("a plane body", "two coordinates") };
         let name = self.field.name();
         let Ok(point) = <[f64; D]>::try_from(&self.point[..]) else {
-            let (example, given) = (if D == 1 { "0.1:stress" } else { EXAMPLE }, self.point.len());
-            return Err(format!(
-                "the point of {self} has {given} coordinates; {body} needs {needed} (m), as in {example}"
-            ));
+            let example = if D == 1 { "0.1:stress" } else { EXAMPLE };
+            let given = counted(self.point.len(), "coordinate");
+            return Err(format!("the point of {self} has {given}; {body} needs {needed} (m), as in {example}"));
         };
         if !self.field.is_of(D) {
             return Err(format!("{body} has no field {name:?}; {}", Field::choose(name, &[D])));
@@ -175,7 +169,7 @@ mod tests {
             let told = probe.and_then(|probe| probe.around(&plane).map(drop)).unwrap_err();
             assert!(words.iter().all(|word| told.contains(word)), "{text}: {told}");
         };
-        refused("0.01:von_mises", &["1 coordinates", "two coordinates (m)", EXAMPLE]);
+        refused("0.01:von_mises", &["1 coordinate;", "two coordinates (m)", EXAMPLE]);
         refused("0.01,0.02,0.03:von_mises", &["3 coordinates", EXAMPLE]);
         refused("0.01,0.02", &["no field", EXAMPLE]);
         refused("0.01,nan:von_mises", &["\"nan\"", "no number", EXAMPLE]);
