@@ -49,7 +49,7 @@ from percute.simulation import simulate, true_errors
 from percute.statement import BodyForce, Elastic, Plane, Support, Traction
 from percute.sweeping import Sweep, sweep
 from percute.true_error import Effectivity, TrueError
-from percute.verifying import Verification, verify
+from percute.verifying import Convergence, Verification, verify
 
 __all__ = [
     "Balance",
@@ -60,6 +60,7 @@ __all__ = [
     "Contact",
     "ContactPeak",
     "ContactStatus",
+    "Convergence",
     "Deformation",
     "Effectivity",
     "Elastic",

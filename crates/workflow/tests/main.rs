@@ -5,6 +5,7 @@
 
 mod deformation;
 mod numbering;
+mod quantity;
 mod schema;
 mod seeds;
 mod statement;
