@@ -50,7 +50,7 @@ from percute.simulation import simulate, true_errors
 from percute.statement import BodyForce, Elastic, Plane, Support, Traction
 from percute.sweeping import Sweep, sweep
 from percute.true_error import Effectivity, TrueError
-from percute.verifying import Verification, verify
+from percute.verifying import Convergence, Verification, verify
 
 __all__ = [
     "Adaptation",
@@ -62,6 +62,7 @@ __all__ = [
     "Contact",
     "ContactPeak",
     "ContactStatus",
+    "Convergence",
     "Deformation",
     "Effectivity",
     "Elastic",

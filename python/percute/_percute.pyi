@@ -26,6 +26,7 @@ __all__ = [
     "SERIES",
     "SweepPlan",
     "__version__",
+    "check_probes",
     "check_run",
     "close_files",
     "colour_scale",
@@ -319,9 +320,11 @@ def verification(
     stated: tuple[str, str | None, int | str],
     threads: int | None,
     long: bool,
+    probes: Sequence[str],
     tell: Callable[[str], object] | None,
     progress: _Tell,
 ) -> tuple[str, str]: ...
+def check_probes(problem: ProblemData, probes: Sequence[str]) -> None: ...
 def plausibility_warnings(
     problem: ProblemData,
     times: _Times,

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
 from percute.attached import attached
-from percute.checks import flag, instance, text, warn, whole
+from percute.checks import flag, instance, numbers, text, warn, whole, wrong
 from percute.errors import InputError
 from percute.estimating import pace, sampling
 from percute.problem import Problem
@@ -24,7 +24,28 @@ from percute.words import counted
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Verification", "verify"]
+__all__ = ["Convergence", "Verification", "verify"]
+
+Probes = str | Sequence[str | tuple[float | str, ...]] | None
+"""Probes as texts, such as "0.01,0.02:von_mises", or as tuples, such as (0.01, 0.02, "von_mises")."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Convergence:
+    """How a quantity changes on the finest meshes."""
+
+    unit: str
+    """The unit of the quantity."""
+    change: float | None
+    """Its change from the finest mesh but one to the finest, relative to the finest; None with one mesh or at zero."""
+    order: float | None
+    """p of differences that fall like h^p between the three finest meshes; negative where they grow. None where they change their sign."""
+    remaining: float | None
+    """The change from the finest mesh to the limit with this order, relative to the finest; None without a limit."""
+    converges: bool | None
+    """Whether differences fall and do not change their sign; None with fewer than three meshes, and where they fall and change their sign."""
+    warning: str | None
+    """A sentence about a quantity that does not converge, with the reason and the way out if they are known."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -53,10 +74,14 @@ class Verification:
     """Normal impulse of all planes (N s)."""
     rebound: NDArray[np.float64]
     """Normal velocity of the centre of mass after contact (m/s)."""
+    probes: dict[str, NDArray[np.float64]]
+    """Largest values of probes over time, without their sign, by their names such as "0.01,0.02:von_mises"."""
     expected: tuple[float, float]
     """The range of the effectivity index on the first mesh that its verdict states."""
     orders: dict[str, float | None]
-    """Observed orders of ``estimate``, ``averaged_peak_force``, ``impulse`` and ``rebound``; None where values do not converge."""
+    """Observed orders of ``estimate``, ``averaged_peak_force``, ``impulse``, ``rebound`` and probes; None where values do not converge."""
+    convergence: dict[str, Convergence]
+    """How ``averaged_peak_force``, ``impulse``, ``rebound`` and probes change on the finest meshes."""
     moved: float | None
     """By how much the mean true error of the first mesh moves from the finest mesh but one to the finest, relative; None with one level."""
     fine_enough: bool | None
@@ -80,7 +105,7 @@ class Verification:
         """Draw errors, effectivity index and contact over the element size.
 
         Above are estimate and true error, in the middle their quotient, the effectivity index, with the range that the verdict expects for
-        the first mesh, and below averaged peak force, impulse and rebound velocity over their values on the finest mesh.
+        the first mesh, and below averaged peak force, impulse, rebound velocity and probes over their values on the finest mesh.
 
         Parameters
         ----------
@@ -115,13 +140,19 @@ class Verification:
 
         pairs = {f"{key}_{name}": column(key, name) for key in ("estimate", "error", "effectivity") for name in ("sup", "mean")}
         settled = document["settled"] or {}
+        convergence = {each.pop("quantity"): Convergence(**each) for each in [dict(each) for each in document["convergence"]]}
+        names = [probe["name"] for probe in levels[0]["probes"]]
+        of_probes = {name: np.array([level["probes"][at]["value"] for level in levels]) for at, name in enumerate(names)}
+        orders = {name: order for name, order in document["orders"].items() if name != "probes"}
         return cls(
             elements=np.array([level["elements"] for level in levels]),
             steps=np.array([level["steps"] for level in levels]),
             **pairs,
             **{key: column(key) for key in ("averaged_peak_force", "impulse", "rebound")},
+            probes=of_probes,
             expected=tuple(levels[0]["expected"]),
-            orders=document["orders"],
+            orders=orders | dict(zip(names, document["orders"]["probes"], strict=True)),
+            convergence=convergence,
             moved=settled.get("moved"),
             fine_enough=settled.get("fine_enough"),
             per_metre=document["per_metre"],
@@ -144,6 +175,7 @@ def verify(
     every: int | Literal["auto"] = "auto",
     threads: int | None = None,
     long: bool = False,
+    probe: Probes = None,
     progress: ProgressOption = None,
 ) -> Verification:
     """Run a problem on its mesh and on nested refinements, and compare estimates with true errors against the finest.
@@ -169,6 +201,11 @@ def verify(
         How many threads to use; one for each core by default.
     long : bool, default: False
         Whether more than 1e10 elements times steps in all are allowed, which take minutes to hours.
+    probe : str or sequence of str or tuple, optional
+        Points of the undeformed body (m) with a field: ``"0.01,0.02:von_mises"``, or a list of such texts and of tuples
+        ``(0.01, 0.02, "von_mises")``. Fields are ``von_mises``, ``pressure``, ``displacement``, ``velocity``, of a plane body ``stress_xx``,
+        ``stress_yy``, ``stress_xy``, of a bar ``stress``. The value is the largest over all steps, without its sign; displacement and velocity
+        are magnitudes. On an edge or a node it is that of the mean of the elements around it, weighted by their angles there.
     progress : bool or callable, optional
         As for `simulate`.
 
@@ -193,10 +230,38 @@ def verify(
         sampling(every),
     )
     (workers, _), allowed = pace(threads, None), flag("long", long)
+    probes = _texts(probe)
+    _percute.check_probes(problem._data, probes)
     times = instants_of(problem, end, courant, step, steps, longest, after, allowed, progress)
     _percute.check_run(problem._data, times, allowed)
     warn(_percute.plausibility_warnings(problem._data, times, False))
     tell = print if progress is True else None
     with shown(progress) as seen, attached("verification", lambda done: Verification._of(json.loads(done[0]), done[1])):
-        document, table = _percute.verification(problem._data, times, count, stated, workers, allowed, tell, seen)
+        document, table = _percute.verification(problem._data, times, count, stated, workers, allowed, probes, tell, seen)
     return Verification._of(json.loads(document), table)
+
+
+def _texts(probe: object) -> list[str]:
+    """Give probes as the command reads them."""
+    given = [] if probe is None else [probe] if isinstance(probe, str) or _is_row(probe) else probe
+    if not isinstance(given, list | tuple):
+        raise _wrong(probe)
+    return [_text(each) for each in given]
+
+
+def _is_row(probe: object) -> bool:
+    """Tell whether a tuple is one probe, not several."""
+    return isinstance(probe, tuple) and len(probe) > 1 and not isinstance(probe[0], str | tuple | list)
+
+
+def _text(probe: object) -> str:
+    if isinstance(probe, str):
+        return probe
+    if not isinstance(probe, list | tuple) or len(probe) < 2 or not isinstance(probe[-1], str):
+        raise _wrong(probe)
+    point = numbers("probe", probe[:-1], most=1)
+    return f"{','.join(repr(float(x)) for x in point)}:{probe[-1]}"
+
+
+def _wrong(probe: object) -> InputError:
+    return wrong("probe", probe, 'a text such as "0.01,0.02:von_mises", a tuple such as (0.01, 0.02, "von_mises"), or a list of them')

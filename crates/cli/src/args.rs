@@ -228,10 +228,15 @@ pub struct VerifyArguments {
     /// Number of refinements, 1 to 5; each has about eight times (a bar: four times) the work of the one before
     #[arg(long, value_name = "N", default_value_t = 2)]
     pub levels: usize,
+    /// Follow a field at a point (m) of the undeformed body, such as 0.01,0.02:von_mises, and show its largest value
+    /// over time, without its sign, on each mesh: von_mises, pressure, displacement, velocity; of a plane body
+    /// stress_xx, stress_yy, stress_xy; of a bar stress. Once for each probe
+    #[arg(long, value_name = "X,Y:FIELD", allow_hyphen_values = true)]
+    pub probe: Vec<String>,
     /// Print one JSON document instead of the table
     #[arg(long)]
     pub json: bool,
-    /// Draw errors, effectivity index, force, impulse and rebound over the size of the elements (.svg, .png)
+    /// Draw errors, effectivity index, force, impulse, rebound and probes over the size of the elements (.svg, .png)
     #[arg(long, value_name = "FILE")]
     pub picture: Option<PathBuf>,
     /// Replace an existing picture

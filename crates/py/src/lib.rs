@@ -70,7 +70,7 @@ mod _percute {
     #[pymodule_export]
     use super::sweep::{SweepPlan, sweep_case};
     #[pymodule_export]
-    use super::verify::verification;
+    use super::verify::{check_probes, verification};
 
     /// Adds the constants.
     #[pymodule_init]

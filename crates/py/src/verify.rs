@@ -8,12 +8,23 @@ use percute_core::each_dimension;
 use percute_estimator::Options;
 use percute_workflow::Failure;
 use percute_workflow::effort::Long;
+use percute_workflow::quantity::probes as parsed;
 use percute_workflow::verify::{Verification, announced, cost, prepare, table, verify};
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The JSON document and the table.
 type Told = (String, String);
+
+/// The argument with the probes.
+const PROBE: &str = "`probe`";
+
+/// Refuses probes that do not fit the body of a problem.
+#[pyfunction]
+pub(crate) fn check_probes(py: Python<'_>, problem: &ProblemData, probes: Vec<String>) -> PyResult<()> {
+    let checked = each_dimension!(&problem.problem, problem => parsed(&probes, problem.mesh(), PROBE).map(drop));
+    checked.map_err(|error| errors::run(py, &error))
+}
 
 /// Runs a problem on its mesh and on refinements. Returns the JSON document and the table; with `tell` this is called
 /// with the cost first. What is raised on the way has those of the levels that are done as its `verification`.
@@ -27,6 +38,7 @@ pub(crate) fn verification(
     stated: Stated,
     threads: Option<usize>,
     long: bool,
+    probes: Vec<String>,
     tell: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Told> {
@@ -36,6 +48,7 @@ pub(crate) fn verification(
     let options = Options { threads, ..options(py, &reconstruction, acceleration.as_deref(), &every)? };
     let so_far: Arc<Mutex<Option<Verification>>> = Arc::default();
     let verified = each_dimension!(&problem.problem, problem => {
+        let probes = parsed(&probes, problem.mesh(), PROBE).map_err(|error| errors::run(py, &error))?;
         let (problem, long) = (problem.clone(), Long::asked(long, "`long=True`"));
         let prepared = bridge::blocking(py, None, move |_| prepare(&problem, &times, &options, (levels, long)))?;
         let prepared = prepared.map_err(|error| errors::run(py, &error))?;
@@ -47,7 +60,7 @@ pub(crate) fn verification(
             let mut keep = |done: &Verification| {
                 *keep.lock().unwrap_or_else(PoisonError::into_inner) = Some(done.clone());
             };
-            verify(&prepared, options, &mut watch, &mut keep)
+            verify(&prepared, options, &probes, &mut watch, &mut keep)
         };
         let done = bridge::blocking(py, progress, work);
         done.and_then(|done| done.map_err(|error: Failure| errors::run(py, &error)))

@@ -21,6 +21,7 @@ mod numbering;
 pub mod outline;
 pub mod outputs;
 pub mod plan;
+pub mod quantity;
 mod reference;
 pub mod report;
 pub mod restated;

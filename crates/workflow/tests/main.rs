@@ -6,6 +6,7 @@
 mod adapt;
 mod deformation;
 mod numbering;
+mod quantity;
 mod schema;
 mod seeds;
 mod statement;

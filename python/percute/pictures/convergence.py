@@ -46,13 +46,13 @@ def plot(verification: Verification, axes: Sequence[Axes] | None, save: object, 
     errors.set(yscale="log", ylim=(positive.min() / AROUND, positive.max() * AROUND))
     errors.yaxis.set_minor_formatter(pyplot().matplotlib.ticker.LogFormatter(minor_thresholds=(1, 0.5)))
     indices.axhspan(*verification.expected, color=_percute.SERIES[BAND], alpha=0.2, linewidth=0.0, label="expected by the verdict on the first mesh")
-    for each, quantities in ((errors, ERRORS), (indices, INDICES), (contact, CONTACT)):
-        for name, label, colour, line in quantities:
-            shown = _shown(getattr(verification, name), each is contact)
+    below = _below(verification)
+    for each, quantities in ((errors, _of(verification, ERRORS)), (indices, _of(verification, INDICES)), (contact, below)):
+        for shown, label, colour, line in quantities:
             if np.any(shown > 0.0 if each is errors else np.isfinite(shown)):
                 each.plot(sizes, shown, marker="o", markersize=5, linestyle=line, color=_percute.SERIES[colour], label=label)
     _pad(indices, [*_values(verification, INDICES), *verification.expected], "the error is zero to rounding")
-    _pad(contact, [value for name, *_ in CONTACT for value in _shown(getattr(verification, name), True)], "nothing touches")
+    _pad(contact, [value for shown, *_ in below for value in shown], "nothing touches")
     for each, label, columns in zip(plots, (f"error ({_percute.unit('J^½', verification.per_metre)})".replace("^½", "$^{1/2}$"), "effectivity index", "over the finest"), (2, 3, 3), strict=True):
         each.set(xscale="log", xlim=(sizes[-1] / BESIDE, BESIDE), ylabel=label)
         each.set_xticks(list(sizes), [f"1/{round(1 / size)}" if size < 1 else "1" for size in sizes])
@@ -70,11 +70,19 @@ def _values(verification: Verification, quantities: Sequence[tuple[str, str, int
     return values[np.isfinite(values)]
 
 
-def _shown(values: Floats, over_the_finest: bool) -> Floats:
-    """Give the values, or those over the finest; without that they are not drawn."""
-    if not over_the_finest:
-        return values
-    return np.asarray(values / values[-1] if values[-1] != 0.0 else np.full_like(values, np.nan))
+def _of(verification: Verification, quantities: Sequence[tuple[str, str, int, Any]]) -> list[tuple[Floats, str, int, Any]]:
+    """Give the values of quantities in place of their names."""
+    return [(getattr(verification, name), label, colour, line) for name, label, colour, line in quantities]
+
+
+def _below(verification: Verification) -> list[tuple[Floats, str, int, Any]]:
+    """Give contact and probes over their values on the finest mesh; without that they are not drawn."""
+    # Three colours are left; a fourth probe has the first of them, and a dashed line.
+    probes = [
+        (values, name, len(CONTACT) + at % 3, DASHED if at // 3 % 2 else "-") for at, (name, values) in enumerate(verification.probes.items())
+    ]
+    over = [(values / values[-1] if values[-1] != 0.0 else np.full_like(values, np.nan), *look) for values, *look in (*_of(verification, CONTACT), *probes)]
+    return [(np.asarray(values), str(label), int(colour), line) for values, label, colour, line in over]
 
 
 def _pad(axes: Axes, values: Sequence[float], none: str) -> None:

@@ -14,6 +14,7 @@ use percute_workflow::Failure;
 use percute_workflow::case::CaseOf;
 use percute_workflow::effort::Long;
 use percute_workflow::outputs::{self, OutputFile};
+use percute_workflow::quantity::probes;
 use percute_workflow::run::located;
 use percute_workflow::verify::{announced, cost, prepare, table, verify};
 
@@ -30,6 +31,7 @@ fn verify_case<const D: usize, const N: usize>(
     let picture = arguments.picture.as_deref().map(|file| OutputFile { what: "--picture", file });
     outputs::check(&case.inputs(Some(&arguments.case)), &[picture], force)?;
     picture.as_ref().map_or(Ok(()), |picture| file::picture(picture).map(drop))?;
+    let probes = probes(&arguments.probe, case.problem.mesh(), "--probe")?;
     case.check_run(true, Long::asked(long, "--long"))?;
     console.warn_about(case, quiet);
     let Some(case) = &resolved(case, quiet, console)? else { return Ok(INTERRUPTED) };
@@ -39,7 +41,7 @@ fn verify_case<const D: usize, const N: usize>(
         console.say(&announced(&cost(&prepared, &options)));
     }
     let watch = &mut Watch::new(console.progress && !quiet, console.stop);
-    let verified = verify(&prepared, options, watch, &mut |_| ());
+    let verified = verify(&prepared, options, &probes, watch, &mut |_| ());
     let verification = verified.map_err(|failure| located(case, failure))?;
     watch.clear();
     console.print(&if json { verification.to_json()? } else { table(&verification) })?;

@@ -1,7 +1,8 @@
 //! How far a body is inside another one.
 
 use super::Mesh;
-use crate::ids::{FacetId, NodeId};
+use super::place::foot;
+use crate::ids::{ElementId, FacetId, NodeId};
 
 /// The node of a body that is deepest inside another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +26,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
             if !other.encloses(point) {
                 return None;
             }
-            let ways = outline.iter().map(|(facet, ends)| (way(point, ends), *facet));
+            let ways = outline.iter().map(|(facet, ends)| (foot(point, ends).1, *facet));
             ways.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(depth, nearest)| (node, depth, nearest))
         };
         let deepest = nodes.into_iter().filter_map(depth).filter(|(_, depth, _)| *depth > tolerance);
@@ -43,33 +44,12 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         self.facet_groups().iter().filter(move |(_, all)| all.contains(&facet)).map(|(name, _)| name.as_str())
     }
 
-    fn ends(&self, facet: FacetId) -> [[f64; D]; D] {
-        self.facets()[facet.index()].nodes.map(|node| self.points()[node.index()])
-    }
-
     /// Whether a point is in an element, or on its boundary.
     fn encloses(&self, point: &[f64; D]) -> bool {
-        self.cells().iter().any(|cell| {
-            let corners = cell.map(|corner| self.points()[corner.index()]);
-            let beside = |c: usize| {
-                let [low, high] = [f64::min, f64::max].map(|pick| corners.iter().map(|p| p[c]).reduce(pick));
-                low.is_some_and(|low| point[c] < low) || high.is_some_and(|high| point[c] > high)
-            };
-            !(0..D).any(beside) && self.simplex().encloses(&corners, point, 0.0)
+        (0..self.element_count()).map(ElementId::new).any(|element| {
+            !self.is_beside(element, point, 0.0) && self.simplex().encloses(&self.cell_points(element), point, 0.0)
         })
     }
-}
-
-/// The distance of a point from a facet (m): a point, or a line between two.
-fn way<const D: usize>(point: &[f64; D], ends: &[[f64; D]; D]) -> f64 {
-    let from = |end: &[f64; D]| -> [f64; D] { std::array::from_fn(|c| point[c] - end[c]) };
-    let dot = |a: &[f64; D], b: &[f64; D]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
-    let (start, last) = (from(&ends[0]), &ends[D - 1]);
-    let along: [f64; D] = std::array::from_fn(|c| last[c] - ends[0][c]);
-    let length = dot(&along, &along);
-    let at = if length > 0.0 { (dot(&start, &along) / length).clamp(0.0, 1.0) } else { 0.0 };
-    let rest: [f64; D] = std::array::from_fn(|c| start[c] - at * along[c]);
-    dot(&rest, &rest).sqrt()
 }
 
 #[cfg(test)]

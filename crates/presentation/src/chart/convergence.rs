@@ -4,7 +4,7 @@ use super::{LETTER, ROOM, ROW, SAMPLE, SIZE};
 use crate::axes::{Look, Plot};
 use crate::scale::Scale;
 use crate::svg::{Anchor, Svg};
-use percute_workflow::verify::{Level, Verification};
+use percute_workflow::verify::{Level, ProbeValue, Verification};
 
 /// Height of a plot, room below it for the sizes of the elements (pixels).
 const HEIGHT: f64 = 190.0;
@@ -48,8 +48,8 @@ const CONTACT: [Quantity; 3] = [
 /// The meaning of the shaded range.
 const EXPECTED: &str = "expected by the verdict on the first mesh";
 
-/// Estimate and true error, effectivity index, and peak force, impulse and rebound velocity over their values on the
-/// finest mesh, all over the size of the elements, as an SVG document. The range of the index that the verdict expects
+/// Estimate and true error, effectivity index, and peak force, impulse, rebound velocity and probes over their values on
+/// the finest mesh, all over the size of the elements, as an SVG document. The range of the index that the verdict expects
 /// on the first mesh is shaded. None with fewer than two meshes or without an error.
 #[must_use]
 pub fn convergence(verification: &Verification) -> Option<String> {
@@ -78,8 +78,8 @@ pub fn convergence(verification: &Verification) -> Option<String> {
         Chart {
             label: "over the finest".to_string(),
             y: padded(&contact, &[]),
+            rows: contact.len().div_ceil(3).max(1),
             lines: contact,
-            rows: 1,
             band: None,
             none: "nothing touches",
         },
@@ -97,17 +97,16 @@ pub fn convergence(verification: &Verification) -> Option<String> {
 
 /// A quantity at the levels that have it: element size over that of the first mesh, and value.
 struct Line {
-    class: &'static str,
-    name: &'static str,
+    class: String,
+    name: String,
     points: Vec<(f64, f64)>,
 }
 
 impl Line {
     /// The values over `scale`.
     fn new(quantity: &Quantity, levels: &[Level], scale: f64) -> Self {
-        let point = |(k, level): (usize, &Level)| Some((size(k), (quantity.of)(level)? / scale));
-        let points = levels.iter().enumerate().filter_map(point).filter(|(_, value)| value.is_finite()).collect();
-        Self { class: quantity.class, name: quantity.name, points }
+        let (class, name) = (quantity.class.to_string(), quantity.name.to_string());
+        Self { class, name, points: points(levels, quantity.of, scale) }
     }
 
     /// Without the values that a logarithmic scale cannot show.
@@ -115,6 +114,12 @@ impl Line {
         self.points.retain(|&(_, value)| value > 0.0);
         self
     }
+}
+
+/// Element size over that of the first mesh, and value over `scale`, at the levels that have one.
+fn points(levels: &[Level], of: impl Fn(&Level) -> Option<f64>, scale: f64) -> Vec<(f64, f64)> {
+    let point = |(k, level): (usize, &Level)| Some((size(k), of(level)? / scale));
+    levels.iter().enumerate().filter_map(point).filter(|(_, value)| value.is_finite()).collect()
 }
 
 /// One of the plots, with its scale, the rows of its legend, a range that is shaded, and the reason for no values. On a
@@ -152,8 +157,8 @@ impl Chart {
         }
         for line in &self.lines {
             let places: Vec<_> = line.points.iter().map(|&(x, y)| plot.at(x, y)).collect();
-            places.iter().for_each(|&at| svg.circle(line.class, at, 3.5));
-            svg.polyline(line.class, places);
+            places.iter().for_each(|&at| svg.circle(&line.class, at, 3.5));
+            svg.polyline(&line.class, places);
         }
         if self.lines.is_empty() {
             let middle = [corner[0] + 0.5 * plot.size[0], corner[1] + 0.5 * HEIGHT];
@@ -164,7 +169,7 @@ impl Chart {
 
     /// Names beside samples, column by column.
     fn legend(&self, svg: &mut Svg, top: f64) {
-        let lines = self.lines.iter().map(|line| (line.class, line.name));
+        let lines = self.lines.iter().map(|line| (&line.class[..], &line.name[..]));
         let entries: Vec<_> = lines.chain(self.band.map(|_| ("s2 band", EXPECTED))).collect();
         let mut x = ROOM[0];
         for column in entries.chunks(self.rows) {
@@ -196,11 +201,19 @@ fn with_values(lines: impl Iterator<Item = Line>) -> Vec<Line> {
     lines.filter(|line| !line.points.is_empty()).collect()
 }
 
-/// The lines of contact, each over its value on the finest mesh; those without one are left out.
+/// The lines of contact and of probes, each over its value on the finest mesh; those without one are left out.
 fn over_the_finest(levels: &[Level]) -> Vec<Line> {
-    let finest = |of: fn(&Level) -> Option<f64>| levels.last().and_then(of).filter(|value| *value != 0.0);
-    let line = |quantity: &Quantity| Some(Line::new(quantity, levels, finest(quantity.of)?));
-    with_values(CONTACT.iter().filter_map(line))
+    let finest = |of: &dyn Fn(&Level) -> Option<f64>| levels.last().and_then(of).filter(|value| *value != 0.0);
+    let line = |quantity: &Quantity| Some(Line::new(quantity, levels, finest(&quantity.of)?));
+    let probe = |(at, probe): (usize, &ProbeValue)| {
+        let of = |level: &Level| level.probes.get(at).map(|probe| probe.value);
+        // Three colours are left; a fourth probe has the first of them, and a dashed line.
+        let look = if (at / 3).is_multiple_of(2) { "solid" } else { "dashed" };
+        let class = format!("s{} {look}", CONTACT.len() + at % 3);
+        Some(Line { class, name: probe.name.clone(), points: points(levels, of, finest(&of)?) })
+    };
+    let probes = levels.last().map_or(&[][..], |level| &level.probes);
+    with_values(CONTACT.iter().filter_map(line).chain(probes.iter().enumerate().filter_map(probe)))
 }
 
 /// A logarithmic scale with room on both sides of the errors; none without any.

@@ -2,6 +2,7 @@
 
 use super::criterion::{Settled, order};
 use crate::info::memory;
+use crate::quantity::{Judgement, Obstruction, Probe, Quantity, judge};
 use crate::report::Report;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -34,12 +35,51 @@ pub struct Level {
     pub impulse: Option<f64>,
     /// Normal velocity of the centre of mass after contact (m/s); none without a coefficient of restitution.
     pub rebound: Option<f64>,
+    /// The probes.
+    pub probes: Vec<ProbeValue>,
     /// Whether the estimate is zero to rounding.
     #[serde(skip)]
     pub(super) exact: bool,
+    /// All quantities, the probes last.
+    #[serde(skip)]
+    followed: Vec<Followed>,
     /// Whether forces and energies are per metre of thickness.
     #[serde(skip)]
     per_metre: bool,
+}
+
+/// A quantity on a mesh.
+#[derive(Clone, Debug)]
+pub(super) struct Followed {
+    pub(super) quantity: Quantity,
+    pub(super) value: Option<f64>,
+    /// What may keep it from converging.
+    pub(super) obstruction: Option<Obstruction>,
+}
+
+/// A probe on a mesh.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProbeValue {
+    /// The probe as it is written, such as `0.01,0.02:von_mises`.
+    pub name: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Its largest value over time, without its sign.
+    pub value: f64,
+}
+
+/// How a quantity changes on the finest meshes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Convergence {
+    /// The name of the quantity in [`Level`], of a probe as it is written.
+    pub quantity: String,
+    /// Its unit.
+    pub unit: String,
+    /// Its change, order and limit.
+    #[serde(flatten)]
+    pub judgement: Judgement,
+    /// A sentence, if it does not converge, with the reason and the way out.
+    pub warning: Option<String>,
 }
 
 /// The largest error and the mean.
@@ -53,7 +93,7 @@ pub struct Measures {
 
 /// Orders p with which quantities fall or converge like h^p on the finest meshes; none where there are too few, or no
 /// convergence.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Orders {
     /// Of the mean estimate: from the two finest meshes.
     pub estimate: Option<f64>,
@@ -63,6 +103,8 @@ pub struct Orders {
     pub impulse: Option<f64>,
     /// Of the velocity after contact.
     pub rebound: Option<f64>,
+    /// Of the probes.
+    pub probes: Vec<Option<f64>>,
 }
 
 /// A problem on nested meshes.
@@ -72,6 +114,8 @@ pub struct Verification {
     pub levels: Vec<Level>,
     /// Orders of convergence.
     pub orders: Orders,
+    /// How peak force, impulse, rebound and the probes change on the finest meshes.
+    pub convergence: Vec<Convergence>,
     /// Whether the finest mesh is fine enough; none with fewer than two refinements, or without an error.
     pub settled: Option<Settled>,
     /// Whether the work was stopped before all levels were done.
@@ -133,14 +177,21 @@ impl Cost {
     }
 }
 
+/// The quantities of a level, the probes last.
+pub(super) fn quantities(probes: &[Probe]) -> Vec<Quantity> {
+    let contact = [Quantity::PeakForce, Quantity::Impulse, Quantity::Rebound];
+    contact.into_iter().chain(probes.iter().cloned().map(Quantity::Probe)).collect()
+}
+
 impl Level {
-    pub(super) fn new(report: &Report) -> Self {
-        let (e, contact) = (&report.error, report.contact.as_ref().filter(|contact| contact.first_touch.is_some()));
-        let impulse = |plane: (&crate::report::ContactResultants, &crate::report::ObstacleSummary)| -> f64 {
-            let all: f64 =
-                plane.0.impulse.last().map_or(0.0, |l| l.iter().zip(&plane.1.normal).map(|(a, b)| a * b).sum());
-            // Two surfaces that touch are two obstacles with one impulse.
-            if plane.1.point.is_some() { all } else { 0.5 * all }
+    pub(super) fn new(report: &Report, followed: Vec<Followed>) -> Self {
+        let e = &report.error;
+        let of = |wanted: &Quantity| followed.iter().find(|each| each.quantity == *wanted)?.value;
+        let probe = |each: &Followed| match &each.quantity {
+            Quantity::Probe(probe) => {
+                Some(ProbeValue { name: probe.to_string(), unit: probe.field().unit(), value: each.value? })
+            }
+            _ => None,
         };
         Self {
             elements: report.problem.elements,
@@ -150,14 +201,12 @@ impl Level {
             error: None,
             effectivity: None,
             expected: report.verdict.effectivity,
-            averaged_peak_force: contact.and_then(|contact| Some(contact.averaged_peak?.force)),
-            impulse: contact.map(|contact| contact.obstacles.iter().zip(&report.problem.obstacles).map(impulse).sum()),
-            rebound: report
-                .rebound
-                .as_ref()
-                .filter(|found| found.restitution.is_some())
-                .and_then(|found| found.normal_after),
+            averaged_peak_force: of(&Quantity::PeakForce),
+            impulse: of(&Quantity::Impulse),
+            rebound: of(&Quantity::Rebound),
+            probes: followed.iter().filter_map(probe).collect(),
             exact: e.is_zero(),
+            followed,
             per_metre: report.problem.per_metre,
         }
     }
@@ -173,17 +222,44 @@ impl Level {
 
 impl Verification {
     pub(super) fn new(levels: Vec<Level>, settled: Option<Settled>, interrupted: bool) -> Self {
-        let of = |quantity: fn(&Level) -> Option<f64>| converging(&levels, quantity);
+        let per_metre = levels.first().is_some_and(|level| level.per_metre);
+        let convergence = Convergence::of(&levels, Units { per_metre });
         let estimates = levels.iter().rev().map(|level| level.estimate.mean);
         let estimates: Vec<f64> = estimates.take(2).collect();
-        let orders = Orders {
-            estimate: estimates.get(1).and_then(|coarse| order(*coarse, estimates[0])),
-            averaged_peak_force: of(|level| level.averaged_peak_force),
-            impulse: of(|level| level.impulse),
-            rebound: of(|level| level.rebound),
+        let estimate = estimates.get(1).and_then(|coarse| order(*coarse, estimates[0]));
+        let of = |at: usize| convergence.get(at).and_then(Convergence::order);
+        let probes = convergence.iter().skip(3).map(Convergence::order).collect();
+        let orders = Orders { estimate, averaged_peak_force: of(0), impulse: of(1), rebound: of(2), probes };
+        Self { levels, orders, convergence, settled, interrupted, per_metre }
+    }
+}
+
+impl Convergence {
+    /// Those of all quantities.
+    fn of(levels: &[Level], units: Units) -> Vec<Self> {
+        let Some(finest) = levels.last() else { return Vec::new() };
+        let each = |(at, Followed { quantity, obstruction, .. }): (usize, &Followed)| {
+            let values: Option<Vec<f64>> = levels.iter().rev().take(3).map(|level| level.followed[at].value).collect();
+            let values: Vec<f64> = values.unwrap_or_default().into_iter().rev().collect();
+            let sizes: Vec<f64> = (0..values.len()).map(|k| 0.5_f64.powi(k as i32)).collect();
+            let judgement = judge(&values, &sizes);
+            Self {
+                quantity: match quantity {
+                    Quantity::PeakForce => "averaged_peak_force".to_string(),
+                    Quantity::Probe(probe) => probe.to_string(),
+                    other => other.to_string(),
+                },
+                unit: quantity.unit(units).to_string(),
+                judgement,
+                warning: quantity.warning(&judgement, obstruction.as_ref()),
+            }
         };
-        let per_metre = levels.first().is_some_and(|level| level.per_metre);
-        Self { levels, orders, settled, interrupted, per_metre }
+        finest.followed.iter().enumerate().map(each).collect()
+    }
+
+    /// The order, if the values converge.
+    pub(super) fn order(&self) -> Option<f64> {
+        self.judgement.order.filter(|_| self.judgement.converges == Some(true))
     }
 }
 
@@ -201,11 +277,4 @@ impl Verification {
     pub fn to_json(&self) -> Result<String, std::io::Error> {
         serde_json::to_string(self).map_err(std::io::Error::from)
     }
-}
-
-/// The order of the differences between the three finest meshes.
-fn converging(levels: &[Level], quantity: fn(&Level) -> Option<f64>) -> Option<f64> {
-    let last: Option<Vec<f64>> = levels.iter().rev().take(3).map(quantity).collect();
-    let [fine, middle, coarse] = last?.try_into().ok()?;
-    order(coarse - middle, middle - fine)
 }

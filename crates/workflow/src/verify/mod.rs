@@ -8,7 +8,7 @@ mod levels;
 mod table;
 
 pub use criterion::Settled;
-pub use levels::{Cost, Level, Orders, Verification};
+pub use levels::{Convergence, Cost, Level, Orders, ProbeValue, Verification};
 pub use table::{announced, table};
 
 use crate::case::{Source, problem_from, statement};
@@ -16,8 +16,10 @@ use crate::effort::{Effort, Long};
 use crate::failure::Failure;
 use crate::info::memory;
 use crate::numbering::Ordered;
+use crate::quantity::{Probe, ProbeSink, Quantity};
 use crate::report::{Report, Subject};
 use crate::run::{Results, whole};
+use levels::Followed;
 use percute_core::dynamics::critical_time_step;
 use percute_core::mesh::room;
 use percute_core::observer::Observer;
@@ -85,10 +87,11 @@ pub fn cost<const D: usize, const N: usize>(prepared: &[Prepared<D, N>], options
 /// the mesh is the reference. If the observer breaks, the levels done remain.
 ///
 /// # Errors
-/// As [`run`](crate::run::run) and [`true_errors`](crate::run::true_errors).
+/// A probe that does not fit the body; as [`run`](crate::run::run) and [`true_errors`](crate::run::true_errors).
 pub fn verify<const D: usize, const N: usize>(
     prepared: &[Prepared<D, N>],
     options: Options,
+    probes: &[Probe],
     observer: &mut dyn Observer,
     done: &mut dyn FnMut(&Verification),
 ) -> Result<Verification, Failure> {
@@ -98,18 +101,22 @@ pub fn verify<const D: usize, const N: usize>(
     let so_far = |levels: &[Level], first_errors: &[f64]| {
         Verification::new(levels.to_vec(), Settled::last(first_errors), levels.len() < prepared.len())
     };
-    for (each, problem) in prepared.iter().zip(&ordered) {
+    let quantities = levels::quantities(probes);
+    let sinks = |problem| quantities.iter().map(|quantity| quantity.sink(problem)).collect::<Result<Vec<_>, _>>();
+    // A probe that does not fit is refused before the first run.
+    let sinks: Vec<_> = ordered.iter().map(|each| sinks(each.problem())).collect::<Result<_, _>>()?;
+    for ((each, problem), mut sinks) in prepared.iter().zip(&ordered).zip(sinks) {
         let mut comparison = Comparison::new(problem.problem());
         for (coarse, motion) in ordered.iter().zip(&motions) {
             comparison.add(coarse.problem(), motion).map_err(|error| problem.failure(error.into()))?;
         }
         // Nothing is compared with the motion of the finest.
         let mut motion = (motions.len() + 1 < prepared.len()).then(Motion::default);
-        let sink = &mut (&mut comparison, &mut motion);
-        let Some(results) = whole(problem, &each.times, options, sink, observer)? else { break };
+        let beside = &mut ((&mut comparison, &mut motion), &mut sinks);
+        let Some(results) = whole(problem, &each.times, options, beside, observer)? else { break };
         let errors = comparison.finish()?;
         levels.iter_mut().zip(&errors).for_each(|(level, error)| level.compare(error));
-        levels.push(each.level(options, &results));
+        levels.push(each.level(options, &results, &quantities, &sinks));
         first_errors.extend(errors.first().map(|error| error.mean));
         motions.extend(motion);
         done(&so_far(&levels, &first_errors));
@@ -118,10 +125,22 @@ pub fn verify<const D: usize, const N: usize>(
 }
 
 impl<const D: usize, const N: usize> Prepared<D, N> {
-    fn level(&self, options: Options, results: &Results<D>) -> Level {
+    fn level(
+        &self,
+        options: Options,
+        results: &Results<D>,
+        quantities: &[Quantity],
+        sinks: &[Option<ProbeSink<'_, D, N>>],
+    ) -> Level {
         let Self { problem, times, critical_step } = self;
         let (name, critical_step) = ("", *critical_step);
         let subject = Subject { name, problem, times, critical_step, held: None, checked: None, unended: None };
-        Level::new(&Report::new(&subject, options, results.findings(), 0.0))
+        let report = Report::new(&subject, options, results.findings(), 0.0);
+        let followed = |(quantity, sink): (&Quantity, &Option<ProbeSink<'_, D, N>>)| Followed {
+            quantity: quantity.clone(),
+            value: quantity.value(&report, sink.as_ref()),
+            obstruction: quantity.obstruction(problem.mesh(), &report),
+        };
+        Level::new(&report, quantities.iter().zip(sinks).map(followed).collect())
     }
 }

@@ -1,7 +1,7 @@
 //! A verification in lines of 80 columns.
 
 use super::criterion::Settled;
-use super::levels::{Cost, Level, Orders, Verification};
+use super::levels::{Convergence, Cost, Level, Orders, Verification};
 use crate::message::{bytes, counted, percent, short, trimmed};
 
 /// What will be run, before the work starts.
@@ -25,23 +25,15 @@ pub fn table(verification: &Verification) -> String {
     let head = ["elements", "steps", "est. mean", "true mean", "index sup", "mean", "peak", "impulse", "rebound"];
     let mut lines = vec![row(&head.map(str::to_string))];
     lines.extend(verification.levels.iter().map(|level| row(&cells(level))));
-    let Orders { estimate, averaged_peak_force, impulse, rebound } = verification.orders;
-    let order = |order: Option<f64>| order.map_or_else(|| "–".to_string(), |p| format!("h^{p:.1}"));
-    let blank = String::new;
-    lines.push(row(&[
-        "order".to_string(),
-        blank(),
-        order(estimate),
-        blank(),
-        blank(),
-        blank(),
-        order(averaged_peak_force),
-        order(impulse),
-        order(rebound),
-    ]));
+    if verification.levels.len() > 1 {
+        lines.push(row(&changes(verification)));
+    }
+    lines.push(row(&orders(verification)));
     let [energy, force, impulse] = ["J^½", "N", "N s"].map(|unit| verification.units().of(unit));
     lines.push(format!("Errors in {energy}, averaged peak force in {force}, impulse in {impulse}, rebound in m/s;"));
     lines.push("the true error is that against the finest mesh.".to_string());
+    lines.extend(probes(verification));
+    lines.extend(verification.convergence.iter().filter_map(|each| each.warning.clone()));
     lines.extend(expected(verification));
     lines.push(conclusion(verification));
     lines.join("\n") + "\n"
@@ -64,8 +56,50 @@ fn cells(level: &Level) -> [String; 9] {
     ]
 }
 
+/// The changes of the contact quantities from the finest mesh but one to the finest.
+fn changes(verification: &Verification) -> [String; 9] {
+    let change = |at: usize| verification.convergence.get(at).map_or_else(String::new, changed);
+    let mut cells: [String; 9] = Default::default();
+    (cells[0], cells[6], cells[7], cells[8]) = ("change".to_string(), change(0), change(1), change(2));
+    cells
+}
+
+fn orders(verification: &Verification) -> [String; 9] {
+    let Orders { estimate, averaged_peak_force, impulse, rebound, .. } = verification.orders;
+    let mut cells: [String; 9] = Default::default();
+    (cells[0], cells[2]) = ("order".to_string(), power(estimate));
+    (cells[6], cells[7], cells[8]) = (power(averaged_peak_force), power(impulse), power(rebound));
+    cells
+}
+
+/// The values of each probe, in lines of their own.
+fn probes(verification: &Verification) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (at, each) in verification.convergence.iter().skip(3).enumerate() {
+        let Convergence { quantity, unit, .. } = each;
+        lines.push(format!("probe {quantity} in {unit}, the largest over time without its sign:"));
+        let values = verification.levels.iter().filter_map(|level| level.probes.get(at));
+        let values: String = values.map(|probe| format!("{:>11}", trimmed(probe.value, 4))).collect();
+        lines.push(values);
+        if verification.levels.len() > 1 {
+            lines.push(format!("{:>11} change, order {}", changed(each), power(each.order())));
+        }
+    }
+    lines
+}
+
+/// A change with its sign, in tenths of a per cent: a column has room for them.
+fn changed(convergence: &Convergence) -> String {
+    let shown = |change: f64| format!("{:+.1} %", 100.0 * change).replace('-', "−");
+    convergence.judgement.change.map_or_else(|| "–".to_string(), shown)
+}
+
+fn power(order: Option<f64>) -> String {
+    order.map_or_else(|| "–".to_string(), |p| format!("h^{p:.1}"))
+}
+
 fn row(cells: &[String; 9]) -> String {
-    let widths = [9, 7, 10, 10, 10, 7, 10, 10, 8];
+    let widths = [8, 7, 10, 10, 10, 7, 10, 10, 8];
     let line: String = cells.iter().zip(widths).map(|(cell, width)| format!("{cell:>width$}")).collect();
     line.trim_end().to_string()
 }

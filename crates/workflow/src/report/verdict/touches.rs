@@ -3,7 +3,6 @@
 use percute_core::contact::{CORNER, ContactResults};
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::material::Elastic;
-use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -191,7 +190,7 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
 
     /// By how much the outline turns at a node (rad): π less the angle inside the body.
     pub(super) fn turn(&self, at: usize) -> f64 {
-        let angles = self.elements(at).iter().map(|&element| angle(self.problem.mesh(), element, self.node(at)));
+        let angles = self.elements(at).iter().map(|&element| self.problem.mesh().angle(element, self.node(at)));
         PI - angles.sum::<f64>() * if self.on_line[at] { 2.0 } else { 1.0 }
     }
 
@@ -235,13 +234,4 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
         }
         zones
     }
-}
-
-/// The angle of a triangle at one of its nodes (rad); 0 for other elements.
-fn angle<const D: usize, const N: usize>(mesh: &Mesh<D, N>, element: ElementId, node: NodeId) -> f64 {
-    let Some(k) = mesh.local_node(element, node).filter(|_| D == 2 && N == 3) else { return 0.0 };
-    let points = mesh.cell_points(element);
-    let side = |to: usize| -> [f64; D] { std::array::from_fn(|c| points[to % N][c] - points[k][c]) };
-    let (a, b) = (side(k + 1), side(k + 2));
-    (a[0] * b[1 % D] - a[1 % D] * b[0]).abs().atan2((0..D).map(|c| a[c] * b[c]).sum())
 }

@@ -1,0 +1,145 @@
+//! The fields of a probe.
+
+use crate::message::{hint, list};
+use percute_core::element_state::ElementState;
+use percute_core::history::State;
+use percute_core::mesh::Around;
+use percute_core::problem::Problem;
+use std::str::FromStr;
+
+/// A field at a point, by the names of `history.plot` in Python.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Field {
+    /// Von Mises stress.
+    VonMises,
+    /// Pressure −⅓ tr σ.
+    Pressure,
+    /// σ of a bar.
+    Stress,
+    /// σ₁₁ of a plane body.
+    StressXx,
+    /// σ₂₂ of a plane body.
+    StressYy,
+    /// σ₁₂ of a plane body.
+    StressXy,
+    /// Magnitude of the displacement.
+    Displacement,
+    /// Magnitude of the velocity.
+    Velocity,
+}
+
+impl Field {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::VonMises,
+        Self::Pressure,
+        Self::Stress,
+        Self::StressXx,
+        Self::StressYy,
+        Self::StressXy,
+        Self::Displacement,
+        Self::Velocity,
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::VonMises => "von_mises",
+            Self::Pressure => "pressure",
+            Self::Stress => "stress",
+            Self::StressXx => "stress_xx",
+            Self::StressYy => "stress_yy",
+            Self::StressXy => "stress_xy",
+            Self::Displacement => "displacement",
+            Self::Velocity => "velocity",
+        }
+    }
+
+    /// Its name in a sentence.
+    pub(super) fn told(self) -> &'static str {
+        match self {
+            Self::VonMises => "von Mises stress",
+            other => other.name(),
+        }
+    }
+
+    /// Its unit.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Displacement => "m",
+            Self::Velocity => "m/s",
+            _ => "Pa",
+        }
+    }
+
+    /// Whether it follows from the stress.
+    pub(super) fn is_stress(self) -> bool {
+        self.unit() == "Pa"
+    }
+
+    /// Whether bodies of a dimension have it.
+    pub(super) fn is_of(self, dimension: usize) -> bool {
+        match self {
+            Self::Stress => dimension == 1,
+            Self::StressXx | Self::StressYy | Self::StressXy => dimension == 2,
+            _ => true,
+        }
+    }
+
+    /// The fields of bodies of a dimension in a sentence, and the one that was meant.
+    pub(super) fn choose(given: &str, dimensions: &[usize]) -> String {
+        let known = Self::ALL.into_iter().filter(|field| dimensions.iter().any(|&dimension| field.is_of(dimension)));
+        let known: Vec<&str> = known.map(Self::name).collect();
+        format!("choose from {}{}", list(known.iter().copied()), hint(given, known))
+    }
+
+    /// Its value at a point, with its sign: the mean of the elements that contain the point, by their shares.
+    pub(super) fn at<const D: usize, const N: usize>(
+        self,
+        problem: &Problem<D, N>,
+        around: &[Around<N>],
+        state: &State<'_, D>,
+    ) -> f64 {
+        let displacement = state.step().displacement;
+        let stress = |of: fn(&ElementState<D>) -> f64| -> f64 {
+            let value = |a: &Around<N>| a.share * of(&ElementState::new(problem, a.element, displacement));
+            around.iter().map(value).sum()
+        };
+        match self {
+            Self::VonMises => stress(ElementState::von_mises),
+            Self::Pressure => stress(ElementState::pressure),
+            Self::Stress | Self::StressXx => stress(|element| element.stress[0][0]),
+            Self::StressYy => stress(|element| element.stress[1 % D][1 % D]),
+            Self::StressXy => stress(|element| element.stress[0][1 % D]),
+            Self::Displacement => magnitude(problem, around, |node| displacement[node]),
+            Self::Velocity => magnitude(problem, around, |node| state.velocity_of(node)),
+        }
+    }
+}
+
+/// The magnitude of a nodal field at a point.
+fn magnitude<const D: usize, const N: usize>(
+    problem: &Problem<D, N>,
+    around: &[Around<N>],
+    field: impl Fn(usize) -> [f64; D],
+) -> f64 {
+    let mut mean = [0.0; D];
+    for Around { element, shapes, share } in around {
+        for (node, shape) in problem.mesh().cells()[element.index()].iter().zip(shapes) {
+            let value = field(node.index());
+            (0..D).for_each(|c| mean[c] += share * shape * value[c]);
+        }
+    }
+    mean.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+impl FromStr for Field {
+    type Err = String;
+
+    fn from_str(given: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|field| field.name() == given);
+        found.ok_or_else(|| format!("there is no field {given:?}; {}", Self::choose(given, &[1, 2])))
+    }
+}
