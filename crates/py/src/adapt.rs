@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Shared with the thread of a run.
 type Shared<const D: usize, const N: usize> = Arc<Mutex<Adapting<D, N>>>;
-/// Target, measure, limit and number of runs.
+/// Target, measure or quantity, limit and number of runs.
 type Wanted = (f64, String, f64, usize);
 
 /// An adaptation on its way.
@@ -43,11 +43,16 @@ impl AdaptingData {
         let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
         let (reconstruction, acceleration, every) = stated;
         let options = Options { threads, ..options(py, &reconstruction, acceleration.as_deref(), &every)? };
-        let measure = if measure == "sup" { Measure::Sup } else { Measure::Mean };
+        let known = Measure::NAMES.into_iter().find(|(name, _)| *name == measure).map(|(_, measure)| measure);
+        let on = match known {
+            Some(_) => None,
+            None => Some(measure.parse().map_err(|told| errors::input(py, format!("`measure`: {told}")))?),
+        };
+        let measure = known.unwrap_or_default();
         let geometry = |(file, scale): (Option<PathBuf>, f64)| {
             Mesher::Gmsh(file.map_or(Geometry::Outline, |file| Geometry::File(file, scale)))
         };
-        let wish = (Wish { target, measure, limit, runs }, gmsh.map_or(Mesher::Bisection, geometry));
+        let wish = (Wish { target, measure, on, limit, runs }, gmsh.map_or(Mesher::Bisection, geometry));
         let adapting = match &problem.problem {
             ByDimension::Bar(problem) => {
                 Adapting::new(problem, &times, options, wish).map(shared).map(ByDimension::Bar)

@@ -4,6 +4,7 @@ use super::threads;
 use clap::Args;
 use percute_workflow::adapt::{LIMIT, Measure, RUNS};
 use percute_workflow::message::hint;
+use percute_workflow::quantity::Quantity;
 use std::path::PathBuf;
 
 /// Arguments of `percute adapt`.
@@ -17,6 +18,10 @@ pub struct AdaptArguments {
     /// Whether the target is about the mean error or the largest (sup)
     #[arg(long, value_name = "MEASURE", default_value = "mean", value_parser = measure)]
     pub measure: Measure,
+    /// A quantity that the target is about, instead of the error: within this part of its limit. peak_force, impulse,
+    /// rebound, or a probe such as probe:0.01,0.02:von_mises
+    #[arg(long, value_name = "QUANTITY", conflicts_with = "measure")]
+    pub target_on: Option<Quantity>,
     /// How meshes are made: by bisection of the first mesh, or by the program Gmsh
     #[arg(long, value_name = "MESHER", default_value = "bisect", value_parser = ["bisect", "gmsh"])]
     pub mesher: String,

@@ -3,6 +3,7 @@
 use super::iteration::{Iteration, Made, Needed, Reason};
 use super::meshing::{Mesher, Meshing};
 use super::polygon;
+use super::toward::missing;
 use super::{Adaptation, Best, Next, Wish};
 use crate::effort::Effort;
 use crate::failure::Failure;
@@ -11,9 +12,8 @@ use crate::numbering::Ordered;
 use crate::plan::{Basis, Branch, Plan, sizes};
 use crate::report::{Report, Subject};
 use crate::restated::Restated;
-use crate::run::whole;
+use crate::run::{Results, whole};
 use percute_core::dynamics::critical_time_step;
-use percute_core::history::Discard;
 use percute_core::mesh::{Generated, Mesh};
 use percute_core::observer::Observer;
 use percute_core::problem::Problem;
@@ -164,44 +164,55 @@ where
 
     fn simulated(&mut self, planned: Planned<D, N>, observer: &mut dyn Observer) -> Result<(), Failure> {
         let Planned { problem, times, critical_step, made } = planned;
-        let Some(results) = whole(&Ordered::new(&problem), &times, self.options, &mut Discard, observer)? else {
+        let (name, held, checked, unended) = ("", None, None, None);
+        let subject = Subject { name, problem: &problem, times: &times, critical_step, held, checked, unended };
+        let Some((results, report, value)) = self.followed(&subject, observer)? else {
             self.reason = Some(Reason::Interrupted);
             return Ok(());
         };
-        let (name, held, checked, unended) = ("", None, None, None);
-        let subject = Subject { name, problem: &problem, times: &times, critical_step, held, checked, unended };
-        let report = Report::new(&subject, self.options, results.findings(), 0.0);
         let run = self.iterations.len();
-        self.take(Best { run, problem, times, critical_step, results, report }, made);
+        self.take(Best { run, problem, times, critical_step, results, report }, made, value);
         Ok(())
     }
 
-    /// Takes a run in.
-    fn take(&mut self, last: Best<D, N>, made: Made) {
+    /// The results of a run, its report, and the value of the quantity of the target; none if the observer broke.
+    #[allow(clippy::type_complexity)]
+    fn followed(
+        &self,
+        subject: &Subject<'_, D, N>,
+        observer: &mut dyn Observer,
+    ) -> Result<Option<(Results<D>, Report, Option<f64>)>, Failure> {
+        let ordered = Ordered::new(subject.problem);
+        let on = self.wish.on.as_ref();
+        let mut sink = on.map_or(Ok(None), |quantity| quantity.sink(ordered.problem()))?;
+        let Some(results) = whole(&ordered, subject.times, self.options, &mut sink, observer)? else { return Ok(None) };
+        let report = Report::new(subject, self.options, results.findings(), 0.0);
+        let Some(quantity) = on else { return Ok(Some((results, report, None))) };
+        match quantity.value(&report, sink.as_ref()) {
+            None => Err(Failure::Argument(missing(quantity))),
+            value => Ok(Some((results, report, value))),
+        }
+    }
+
+    /// Takes a run in, with the value of the quantity of the target.
+    fn take(&mut self, last: Best<D, N>, made: Made, quantity: Option<f64>) {
         let mesh = last.problem.mesh();
         let basis = Basis::new(mesh, &last.results.estimate, &last.results.contact);
         let iteration = Iteration::new(&last.report, basis.as_ref(), &sizes(mesh), self.wish.measure, made);
-        let (error, doubtful) = (iteration.error, !iteration.doubts.is_empty());
-        let trusted = self.iterations.iter().any(|earlier| earlier.doubts.is_empty());
-        self.iterations.push(iteration);
+        let iteration = Iteration { quantity, ..iteration };
         if self.warnings.is_empty() && self.meshing.keeps_polygons() {
             self.warnings.extend(basis.as_ref().and_then(|basis| polygon::warning(mesh, basis)));
         }
-        let better = |best: &Best<D, N>| {
-            let best = &self.iterations[best.run];
-            (doubtful, error) < (!best.doubts.is_empty(), best.error)
-        };
+        let worth = |run: &Iteration| (!run.doubts.is_empty(), run.error);
+        // The limit of a quantity is nearer on each finer mesh.
+        let better = |best: &Best<D, N>| quantity.is_some() || worth(&iteration) < worth(&self.iterations[best.run]);
         if self.best.as_ref().is_none_or(better) {
             self.best = Some(last.clone());
         }
+        let obstruction = self.wish.on.as_ref().and_then(|quantity| quantity.obstruction(mesh, &last.report));
+        self.iterations.push(iteration);
+        self.reason = self.wish.end(&self.iterations, obstruction.as_ref());
         self.last = Some((last, basis));
-        let reached = error <= self.wish.target;
-        self.reason = match () {
-            () if doubtful && (trusted || reached) => Some(Reason::Doubt),
-            () if reached => Some(Reason::Reached),
-            () if self.iterations.len() == self.wish.runs => Some(Reason::Runs),
-            () => None,
-        };
     }
 
     /// The work of a run with the wanted error, by the last one.
@@ -209,7 +220,9 @@ where
         let (last, basis) = self.last.as_ref()?;
         let effort = Effort::of(&last.problem, &last.times, self.options.every);
         let wanted = self.wish.target / self.iterations[last.run].error;
-        Some(Needed::of(&effort).times(Plan::whole(basis.as_ref()?, wanted)?.cost))
+        // Nothing is known of a quantity.
+        let basis = basis.as_ref().filter(|_| self.wish.on.is_none())?;
+        Some(Needed::of(&effort).times(Plan::whole(basis, wanted)?.cost))
     }
 
     /// The mesh that follows from the last run, or the reason why there is none.
@@ -220,7 +233,8 @@ where
     ) -> Result<Result<(Mesh<D, N>, Made), Reason>, Failure> {
         let Some(basis) = basis else { return Ok(Err(Reason::NoSources)) };
         let (mesh, error) = (last.problem.mesh(), self.iterations[last.run].error);
-        let plan = Plan::new(basis, self.wish.target / error, &self.meshing.largest(mesh));
+        let wanted = self.wish.wanted(&self.iterations[last.run], basis);
+        let plan = Plan::new(basis, wanted, &self.meshing.largest(mesh));
         // The plan of a map holds for a step: its mesh may have all that is missing in a few places.
         let needed = self.needed.filter(|_| plan.branch == Branch::Uniform);
         if needed.is_some_and(|needed| needed.element_steps > self.wish.limit) {
@@ -242,7 +256,7 @@ impl<const D: usize, const N: usize> Adapting<D, N> {
         let Self { wish, iterations, best, needed, warnings, reason, .. } = self;
         let needed = needed.filter(|_| *reason != Some(Reason::Reached));
         Adaptation {
-            wish: *wish,
+            wish: wish.clone(),
             iterations: iterations.clone(),
             reason: reason.clone(),
             needed,

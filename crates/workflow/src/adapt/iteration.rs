@@ -47,6 +47,8 @@ pub struct Iteration {
     pub error: f64,
     /// That which was expected of its mesh; none of the first.
     pub predicted: Option<f64>,
+    /// The value of the quantity that the target is about, if it is about one.
+    pub quantity: Option<f64>,
     /// Parts of the sources in the squared mean error: surface, front, dispersion, mesh; none without an error.
     pub sources: Option<[f64; 4]>,
     /// How far the estimate can be trusted.
@@ -71,6 +73,7 @@ impl Iteration {
             sizes,
             error: measure.of(report),
             predicted: made.predicted,
+            quantity: None,
             sources: basis.map(parts),
             trust: report.verdict.trust,
             doubts: report.verdict.doubts.clone(),
@@ -99,6 +102,8 @@ pub enum Reason {
     SameMesh,
     /// The estimate of the last run is not trusted, for reasons that finer meshes do not remove: a run before counts.
     Doubt,
+    /// The quantity of the target has no limit: a sentence with the reason and the way out.
+    NoLimit(String),
     /// There are no sources of the error to plan from.
     NoSources,
     /// The next run failed.

@@ -11,6 +11,7 @@ mod iteration;
 mod meshing;
 mod polygon;
 mod table;
+mod toward;
 
 pub use adapting::Adapting;
 pub use gmsh::Geometry;
@@ -20,6 +21,7 @@ pub use table::{announced, conclusion, table};
 
 use crate::failure::Failure;
 use crate::plan::Branch;
+use crate::quantity::Quantity;
 use crate::report::Report;
 use crate::run::Results;
 use percute_core::mesh::{Generated, Mesh};
@@ -27,7 +29,6 @@ use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
-use serde::Serialize;
 
 /// The most elements times steps of a run, unless another limit is given: less than a minute.
 pub const LIMIT: f64 = 1e8;
@@ -37,12 +38,14 @@ pub const RUNS: usize = 8;
 const LARGEST_TARGET: f64 = 0.5;
 
 /// What is wanted of an adaptation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Wish {
-    /// The relative error to reach.
+    /// The relative error to reach; of a quantity, its relative distance from the limit.
     pub target: f64,
-    /// Which one.
+    /// Which error, of the fields.
     pub measure: Measure,
+    /// The quantity that the target is about, if it is not the error of the fields.
+    pub on: Option<Quantity>,
     /// The most elements times steps of a run.
     pub limit: f64,
     /// The most runs.
@@ -53,20 +56,20 @@ impl Wish {
     /// For a target, with the other values as they are by default.
     #[must_use]
     pub fn new(target: f64) -> Self {
-        Self { target, measure: Measure::default(), limit: LIMIT, runs: RUNS }
+        Self { target, measure: Measure::default(), on: None, limit: LIMIT, runs: RUNS }
     }
 
     /// # Errors
     /// A value out of its range.
     pub fn check(&self) -> Result<(), Failure> {
-        let Self { target, limit, runs, .. } = *self;
-        let told = if !(target > 0.0 && target < LARGEST_TARGET) {
+        let Self { target, limit, runs, .. } = self;
+        let told = if !(*target > 0.0 && *target < LARGEST_TARGET) {
             format!(
                 "`target` is {target}; give a relative error above 0 and below {LARGEST_TARGET}, such as 0.05 or 5%"
             )
-        } else if !(limit >= 1.0 && limit.is_finite()) {
+        } else if !(*limit >= 1.0 && limit.is_finite()) {
             format!("`limit` is {limit}; give a number of elements times steps, such as 1e9")
-        } else if runs == 0 {
+        } else if *runs == 0 {
             "`runs` is 0; give a number of runs, 1 or more".to_string()
         } else {
             return Ok(());

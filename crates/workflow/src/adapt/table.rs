@@ -1,8 +1,11 @@
 //! An adaptation in lines of 80 columns.
 
 use super::iteration::{Iteration, Measure, Reason};
+use super::toward::judged;
 use super::{Adaptation, Next};
-use crate::message::{counted, percent, short, whole_percent};
+use crate::message::{counted, percent, short, trimmed, whole_percent};
+use crate::quantity::{Judgement, Quantity};
+use percute_core::units::Units;
 use serde::Serialize;
 
 /// The next run, before it starts.
@@ -23,9 +26,11 @@ const MUCH: f64 = 1.5;
 /// The runs and how they ended.
 #[must_use]
 pub fn table<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>) -> String {
-    let head = ["run", "mesh", "elements", "steps", "smallest", "largest", "error", "expected", "trust"];
+    let columns = if adaptation.wish.on.is_some() { ["value", "change"] } else { ["expected", "trust"] };
+    let head = ["run", "mesh", "elements", "steps", "smallest", "largest", "error", columns[0], columns[1]];
     let mut lines = vec![row(&head.map(str::to_string))];
-    lines.extend(adaptation.iterations.iter().enumerate().map(|(run, iteration)| row(&cells(run, iteration))));
+    let runs = &adaptation.iterations;
+    lines.extend((0..runs.len()).map(|run| row(&cells(&runs[..=run]))));
     if adaptation.iterations.is_empty() {
         lines.clear();
     } else {
@@ -39,12 +44,17 @@ pub fn table<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>) -> S
 #[must_use]
 pub fn conclusion<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>) -> String {
     let wish = &adaptation.wish;
-    let target = format!("{} ({})", percent(wish.target), measure(wish.measure));
+    let on = wish.on.as_ref().map_or_else(|| measure(wish.measure).to_string(), Quantity::told);
+    let target = format!("{} ({on})", percent(wish.target));
     let Some(best) = &adaptation.best else {
         return "Interrupted before the first run was done.".to_string();
     };
     let Iteration { error, elements, .. } = adaptation.iterations[best.run];
-    let reached = format!("run {} has {} on {}", best.run, percent(error), counted(elements, "element"));
+    let found = match &wish.on {
+        None => percent(error),
+        Some(quantity) => of_quantity(quantity, adaptation),
+    };
+    let reached = format!("run {} has {found} on {}", best.run, counted(elements, "element"));
     let needed = adaptation.needed.map(|needed| format!(" The target needs about {}.", needed.told()));
     let needed = needed.unwrap_or_default();
     let Some(reason) = &adaptation.reason else { return format!("Target {target} not reached yet: {reached}.") };
@@ -61,6 +71,7 @@ pub fn conclusion<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>)
             let doubts = adaptation.iterations.last().map_or_else(String::new, |last| last.doubts.join("; "));
             format!("Target {target} not reached: {reached}. The estimate of the last run is not trusted: {doubts}.")
         }
+        Reason::NoLimit(why) => format!("Target {target} not reached: {reached}. {why}"),
         Reason::NoSources => {
             format!("Target {target} not reached: {reached}, and the sources of the error are unknown.")
         }
@@ -69,13 +80,29 @@ pub fn conclusion<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>)
     }
 }
 
+/// The value of the quantity of the target, its last change, and its order.
+fn of_quantity<const D: usize, const N: usize>(quantity: &Quantity, adaptation: &Adaptation<D, N>) -> String {
+    let (runs, judgement) = (&adaptation.iterations, judged(&adaptation.iterations));
+    let value = runs.last().and_then(|run| run.quantity).map_or_else(String::new, |value| trimmed(value, 4));
+    let units = adaptation.best.as_ref().map_or(Units { per_metre: false }, |best| best.problem.units());
+    let changed = judgement.change.map_or_else(String::new, |part| format!(", {} from the run before", change(part)));
+    let order = judgement.order.map_or_else(String::new, |order| format!(", differences like h^{order:.1}"));
+    format!("{value} {}{changed}{order},", quantity.unit(units))
+}
+
 fn measure(measure: Measure) -> &'static str {
     Measure::NAMES.into_iter().find(|(_, known)| *known == measure).map_or("", |(name, _)| name)
 }
 
-fn cells(run: usize, iteration: &Iteration) -> [String; 9] {
-    let Iteration { branch, elements, steps, sizes, error, predicted, trust, .. } = iteration;
+/// The row of the last of these runs.
+fn cells(runs: &[Iteration]) -> [String; 9] {
+    let (run, blank) = (runs.len() - 1, || "–".to_string());
+    let Iteration { branch, elements, steps, sizes, error, predicted, quantity, trust, .. } = &runs[run];
     let [smallest, largest] = sizes.map(|size| short(1e3 * size, 3));
+    let [first, second] = match quantity {
+        None => [predicted.map_or_else(blank, percent), trust.to_string()],
+        Some(value) => [trimmed(*value, 4), judged(runs).change.map_or_else(blank, change)],
+    };
     [
         run.to_string(),
         branch.map_or_else(|| "given".to_string(), |branch| branch.to_string()),
@@ -84,9 +111,14 @@ fn cells(run: usize, iteration: &Iteration) -> [String; 9] {
         smallest,
         largest,
         percent(*error),
-        predicted.map_or_else(|| "–".to_string(), percent),
-        trust.to_string(),
+        first,
+        second,
     ]
+}
+
+/// The change from mesh to mesh, with its sign.
+fn change(part: f64) -> String {
+    if part < 0.0 { format!("−{}", percent(-part)) } else { format!("+{}", percent(part)) }
 }
 
 fn row(cells: &[String; 9]) -> String {
@@ -114,6 +146,7 @@ fn sources(iterations: &[Iteration]) -> String {
 struct Document<'a> {
     target: f64,
     measure: Measure,
+    on: Option<String>,
     limit: f64,
     reached: bool,
     reason: Option<&'a Reason>,
@@ -125,6 +158,8 @@ struct Document<'a> {
     end: Option<f64>,
     step: Option<f64>,
     iterations: &'a [Iteration],
+    /// How the quantity of the target changes.
+    convergence: Option<Judgement>,
 }
 
 impl<const D: usize, const N: usize> Adaptation<D, N> {
@@ -136,6 +171,7 @@ impl<const D: usize, const N: usize> Adaptation<D, N> {
         let document = Document {
             target: self.wish.target,
             measure: self.wish.measure,
+            on: self.wish.on.as_ref().map(ToString::to_string),
             limit: self.wish.limit,
             reached: self.reason == Some(Reason::Reached),
             reason: self.reason.as_ref(),
@@ -146,6 +182,7 @@ impl<const D: usize, const N: usize> Adaptation<D, N> {
             end: self.best.as_ref().map(|best| best.times.end()),
             step: self.best.as_ref().map(|best| best.times.longest_step()),
             iterations: &self.iterations,
+            convergence: self.wish.on.as_ref().map(|_| judged(&self.iterations)),
         };
         serde_json::to_string(&document).map_err(std::io::Error::from)
     }

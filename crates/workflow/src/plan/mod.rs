@@ -96,6 +96,12 @@ impl Plan {
         Self::of(branch, exponents, &sizing, ratio)
     }
 
+    /// The exponents of an estimated run.
+    #[must_use]
+    pub fn exponents(basis: &Basis) -> Exponents {
+        Exponents::of(&basis.sources)
+    }
+
     /// The plan for a mean error that is `wanted` times that of the run in one step, however far, for its cost. None of
     /// a mesh to be graded: as it becomes finer, the error falls faster than exponents of coarse meshes tell.
     #[must_use]

@@ -73,7 +73,7 @@ fn distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
 
 impl Obstruction {
     /// Whether the quantity has no limit that elements of any size would reach.
-    pub(super) fn is_of_the_problem(&self) -> bool {
+    pub(crate) fn is_of_the_problem(&self) -> bool {
         matches!(self, Self::Corner | Self::ReEntrant { .. })
     }
 
