@@ -110,6 +110,8 @@ class Adaptation:
     """The same in a sentence."""
     needed: float | None
     """Elements times steps that the target needs, if it is not reached and they can be told."""
+    reachable: float | None
+    """The relative error of a uniform mesh with as much work as the limit allows, if that ended the runs."""
     warnings: tuple[str, ...]
     """Warnings about the meshes, such as one of a polygon in the place of a curve."""
     iterations: Iterations
@@ -283,6 +285,7 @@ def _adaptation(adapting: _percute.AdaptingData) -> Adaptation:
         reason=next(iter(reason)) if isinstance(reason, dict) else (reason or "interrupted"),
         conclusion=document["conclusion"],
         needed=None if needed is None else needed["element_steps"],
+        reachable=document["reachable"],
         warnings=tuple(document["warnings"]),
         iterations=Iterations._of(document["iterations"]),
         best=document["best"],

@@ -138,7 +138,8 @@ where
         let times = times.map_err(|error| Failure::Argument(error.to_string()))?;
         let work = Needed::of(&Effort::of(&problem, &times, self.options.every));
         if work.element_steps > self.wish.limit {
-            self.needed = self.needed.or(Some(work));
+            // A bisection may overshoot the sizes of the plan.
+            self.needed = Some(self.needed.filter(|needed| needed.element_steps > work.element_steps).unwrap_or(work));
             self.reason = Some(Reason::Limit);
             return Ok(());
         }
@@ -260,8 +261,18 @@ impl<const D: usize, const N: usize> Adapting<D, N> {
             iterations: iterations.clone(),
             reason: reason.clone(),
             needed,
+            reachable: self.reachable().filter(|_| *reason == Some(Reason::Limit)),
             warnings: warnings.clone(),
             best: best.clone(),
         }
+    }
+
+    /// The relative error of a uniform mesh with as much work as the limit allows, by the last run.
+    fn reachable(&self) -> Option<f64> {
+        let (last, basis) = self.last.as_ref()?;
+        let basis = basis.as_ref().filter(|basis| self.wish.on.is_none() && basis.branch() == Branch::Uniform)?;
+        let q = Plan::exponents(basis).far;
+        let less = (self.wish.limit / basis.element_steps()).powf(-q / (D + 1) as f64);
+        Some(less * self.iterations[last.run].error)
     }
 }

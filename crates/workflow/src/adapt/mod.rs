@@ -89,6 +89,8 @@ pub struct Adaptation<const D: usize, const N: usize> {
     pub reason: Option<Reason>,
     /// The work that the target needs, if it is not reached and can be told.
     pub needed: Option<Needed>,
+    /// The relative error of a uniform mesh with as much work as the limit allows, if that ended the runs.
+    pub reachable: Option<f64>,
     /// Warnings about the meshes.
     pub warnings: Vec<String>,
     /// The best run; none if the first was interrupted.

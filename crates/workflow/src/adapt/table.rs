@@ -61,9 +61,12 @@ pub fn conclusion<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>)
     match reason {
         Reason::Reached => format!("Target {target} reached: {reached}."),
         Reason::Limit => format!(
-            "Target {target} not reached within the limit of {} elements times steps: {reached}.{needed} A larger \
-             --limit goes on.",
-            short(wish.limit, 2)
+            "Target {target} not reached within the limit of {} elements times steps: {reached}.{needed}{} A larger \
+             limit goes on.",
+            short(wish.limit, 2),
+            adaptation
+                .reachable
+                .map_or_else(String::new, |error| format!(" The limit allows about {}.", percent(error)))
         ),
         Reason::Runs => format!("Target {target} not reached in {}: {reached}.{needed}", counted(wish.runs, "run")),
         Reason::SameMesh => format!("Target {target} not reached: {reached}, and the next mesh is the same."),
@@ -152,6 +155,7 @@ struct Document<'a> {
     reason: Option<&'a Reason>,
     conclusion: String,
     needed: Option<super::Needed>,
+    reachable: Option<f64>,
     warnings: &'a [String],
     best: Option<usize>,
     /// End and step of the best run (s).
@@ -177,6 +181,7 @@ impl<const D: usize, const N: usize> Adaptation<D, N> {
             reason: self.reason.as_ref(),
             conclusion: conclusion(self),
             needed: self.needed,
+            reachable: self.reachable,
             warnings: &self.warnings,
             best: self.best.as_ref().map(|best| best.run),
             end: self.best.as_ref().map(|best| best.times.end()),
