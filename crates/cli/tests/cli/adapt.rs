@@ -1,12 +1,12 @@
 //! `percute adapt` and `percute plan`.
 
-use crate::common::{BLOCK, Bench, stderr, stdout};
+use crate::common::{Bench, stderr, stdout};
 use crate::interrupt::{send_interrupt, start};
 
 /// A corner that strikes slowly.
 const CORNER: &str = "[mesh]\nrectangle = { width = 0.05, height = 0.04, nx = 10, ny = 8 }\n[material]\nyoung = 70e9\n\
     poisson = 0.3\ndensity = 2700.0\nplane = \"stress\"\n[initial]\nvelocity = [-0.7, -3.94]\n[[obstacle]]\n\
-    point = [0.0, -1e-6]\nnormal = [0.1736, 0.9848]\n[time]\nend = 40e-6\ncourant = 0.9\n";
+    point = [0.0, -1e-6]\nnormal = [0.1736, 0.9848]\nfriction = 0.2\n[time]\nend = 40e-6\ncourant = 0.9\n";
 
 /// The table ends with the target, and the saved mesh has its error.
 #[test]
@@ -88,7 +88,7 @@ fn a_plan_has_a_size_field() {
 /// A reconstruction without sources is refused before any work.
 #[test]
 fn a_reconstruction_without_sources_is_refused() {
-    let bench = Bench::new(&format!("{BLOCK}\n").replace("every = 1", "reconstruction = \"consistent\"\nevery = 1"));
+    let bench = Bench::new(&format!("{CORNER}[estimate]\nreconstruction = \"consistent\"\n"));
     let done = bench.percute(&["adapt", "case.toml", "--target", "10%", "--quiet"]);
     let told = stderr(&done);
     assert_eq!(done.status.code(), Some(2), "{told}");
