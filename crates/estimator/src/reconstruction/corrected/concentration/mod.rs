@@ -4,6 +4,7 @@
 //! the gap under it is linear in the force, while the square of the true error is quadratic: at low speed, the estimate
 //! of a corner or a curve would be many times too large.
 
+mod bracket;
 mod faced;
 mod own_contact;
 mod own_forces;
@@ -107,7 +108,7 @@ impl<const D: usize> Concentration<D> {
         at: usize,
         faced: &Faced,
         direction: &[f64; D],
-        gaps: &'a [f64],
+        gaps: &[f64],
     ) -> Option<NodeCosts<'a>> {
         let (nodes, star) = (problem.surface().nodes(), &self.nodes[at]);
         let widest = faced.reach.map(|reach| reach.halvings());
