@@ -4,8 +4,7 @@
 use super::maps::Contribution;
 use super::sampled_levels::SampledLevels;
 use super::sampling::{
-    ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, SampledStress, Sampling,
-    trapezoid,
+    ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, Sampling, trapezoid,
 };
 use super::sliding::SlidingMisfit;
 use super::waiting::{ContactInstant, Waiting, WaitingSample};
@@ -17,14 +16,15 @@ use crate::measure::Balanced;
 use crate::numbers::Reader;
 use crate::reconstruction::ReconstructionMethod;
 use crate::residual::{Residuals, worse};
+use crate::stress::KeptForm;
 use crate::time_level::{Side, Velocities};
 use crate::traction::EquilibratedLevel;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 
-/// The pointwise equilibrium of σ_DA is checked in one interval of so many, more often than away from contact: with one
-/// of 4, checks took a sixth of the estimate on 640 elements.
-const CHECK: usize = 16;
+/// The pointwise equilibrium of σ_DA is checked in one interval of so many: a check costs as much as the stress of four
+/// intervals.
+const CHECK: usize = 64;
 
 /// Part of the largest initial velocity below which a node is at rest. Where it sticks, its velocity is rounding, 1e-15
 /// of the largest, and a quotient of two of them says nothing.
@@ -43,6 +43,7 @@ pub(super) struct BesideShare {
 #[derive(Clone, Debug)]
 pub(super) struct NearElement<const D: usize, const N: usize> {
     pub(super) element: ElementId,
+    form: KeptForm,
     /// Position of each node in the contact surface, the first one of a node at two planes.
     contact: [Option<usize>; N],
     /// Candidate facets that the element owns.
@@ -63,6 +64,13 @@ pub(super) struct NearElement<const D: usize, const N: usize> {
     pub(super) residuals: Residuals,
 }
 
+/// Number of such elements.
+pub(super) fn near_count<const D: usize, const N: usize>(problem: &Problem<D, N>) -> usize {
+    let mut touches = vec![false; problem.mesh().node_count()];
+    problem.surface().nodes().iter().for_each(|contact| touches[contact.node.index()] = true);
+    problem.mesh().cells().iter().filter(|cell| cell.iter().any(|node| touches[node.index()])).count()
+}
+
 /// All such elements, by number.
 pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<NearElement<D, N>> {
     let mesh = problem.mesh();
@@ -78,6 +86,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
         let contact = mesh.cells()[e].map(|n| of_node[n.index()]);
         contact.iter().any(Option::is_some).then(|| NearElement {
             element: ElementId::new(e),
+            form: KeptForm::new(problem, ElementId::new(e)),
             contact,
             facets,
             start: None,
@@ -118,22 +127,26 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         if levels.before.is_none() {
             self.start = Some(self.at(&sampler, &levels.levels.forces()[0].now, 0.0));
         }
-        sampler.with_stress(|stress| {
-            for interval in levels.intervals() {
-                self.interval(&sampler, interval, stress).append(numbers);
-            }
-        });
+        let mut reached = None;
+        for interval in levels.intervals() {
+            self.interval(&sampler, interval, &mut reached).append(numbers);
+        }
     }
+
+    /// An interval; `reached` has the fields at the end of the one before, and then those at its own end.
 
     fn interval(
         &mut self,
         sampler: &ElementSampler<'_, '_, D, N>,
         [from, to]: [EquilibratedLevel<'_, D>; 2],
-        stress: &dyn Fn(&Balanced<D, N>, bool) -> SampledStress<D, N>,
+        reached: &mut Option<Balanced<D, N>>,
     ) -> Waiting<D, N> {
-        let start = sampler.balanced(&from, &self.contact, Side::After);
+        let jumps = from.forces().before.is_some();
+        let same = reached.take().filter(|_| !jumps);
+        let start = same.unwrap_or_else(|| sampler.balanced(&from, &self.contact, Side::After));
         let end = sampler.balanced(&to, &self.contact, Side::Before);
-        let begins = from.index() == 0 || from.forces().before.is_some();
+        *reached = Some(end);
+        let begins = from.index() == 0 || jumps;
         let turn = (self.checks + self.element.index()).is_multiple_of(CHECK);
         self.checks += 1;
         if begins {
@@ -158,16 +171,17 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let problem = sampler.problem();
         let beside = [&from, &to].map(|level| level.forces().density.beside(problem, self.element));
         let loaded = Waiting::<D, N>::is_loaded(&hats, &beside);
+        let stress = |balanced: &Balanced<D, N>| sampler.stress(&self.form, balanced, loaded);
         let single = forces.mid_velocity.is_some() && to.index() == from.index() + 1;
         let mid = single.then(|| WaitingSample {
             at: ContactInstant {
                 velocities: sampler.velocities_half_way([&from, &to], &self.contact),
                 friction: friction(0),
             },
-            stress: stress(&Balanced::middle(&start, &end), loaded),
+            stress: stress(&Balanced::middle(&start, &end)),
         });
-        let stop = WaitingSample { at: self.at(sampler, &forces.now, friction(1)), stress: stress(&end, loaded) };
-        Waiting { start: begins.then(|| stress(&start, loaded)), mid, stop, touching, pressures, sliding, beside, hats }
+        let stop = WaitingSample { at: self.at(sampler, &forces.now, friction(1)), stress: stress(&end) };
+        Waiting { start: begins.then(|| stress(&start)), mid, stop, touching, pressures, sliding, beside, hats }
     }
 
     fn at(

@@ -10,7 +10,7 @@ use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, h
 use crate::numbers::Reader;
 use crate::options::Acceleration;
 use crate::residual::{Residuals, worse};
-use crate::stress::{EnergyForms, Loading};
+use crate::stress::{KeptForm, Loading};
 use crate::time_level::{Side, Velocities};
 use crate::traction::{EquilibratedLevel, Equilibration};
 use percute_core::ids::ElementId;
@@ -191,19 +191,10 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         self.shared.problem
     }
 
-    /// Hands over a function that makes σ_DA of the fields that balance, with its loading or without.
-    pub(super) fn with_stress<R>(
-        &self,
-        then: impl FnOnce(&dyn Fn(&Balanced<D, N>, bool) -> SampledStress<D, N>) -> R,
-    ) -> R {
-        let (problem, points) = (self.shared.problem, self.shared.problem.mesh().cell_points(self.id));
-        let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
-        let [lane, ..] = forms.prepare(problem, std::iter::once((self.id, points)));
-        let form = forms.of(problem, self.id, &points, lane);
-        then(&|balanced, loaded| {
-            let AdmissibleStress { mean, fluctuation } = self.measure.stress(&form, balanced);
-            SampledStress { mean, fluctuation: fluctuation.energy(), loading: loaded.then_some(balanced.loading) }
-        })
+    /// σ_DA of the fields that balance, by the form of the element, with its loading or without.
+    pub(super) fn stress(&self, form: &KeptForm, balanced: &Balanced<D, N>, loaded: bool) -> SampledStress<D, N> {
+        let AdmissibleStress { mean, fluctuation } = self.measure.stress(form, balanced);
+        SampledStress { mean, fluctuation: fluctuation.energy(), loading: loaded.then_some(balanced.loading) }
     }
 
     /// The fields of the element at a half-step instant; `contact` gives the contact node at each local node.
