@@ -24,7 +24,7 @@ use percute_core::problem::Problem;
 
 /// The pointwise equilibrium of σ_DA is checked in one interval of so many: a check costs as much as the stress of four
 /// intervals.
-const CHECK: usize = 64;
+const CHECK: usize = 256;
 
 /// Part of the largest initial velocity below which a node is at rest. Where it sticks, its velocity is rounding, 1e-15
 /// of the largest, and a quotient of two of them says nothing.
@@ -160,8 +160,8 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let touches = |level: &EquilibratedLevel<'_, D>, at: usize| level.forces().level.surface.touching[at];
         let touching = [&from, &to]
             .map(|level| self.contact.map(|at| entries(at).map(|at| at.is_some_and(|at| touches(level, at)))));
-        let facets = if forces.off_contact.is_empty() { &[][..] } else { &self.facets };
-        let pressures = facets.iter().map(|&f| FacetPressures::gather(f, from.index(), &forces.off_contact));
+        let facets = self.facets.iter().filter(|&&f| forces.off_contact.iter().any(|step| step.act_on(f)));
+        let pressures = facets.map(|&f| FacetPressures::gather(f, from.index(), &forces.off_contact));
         let pressures = pressures.filter(|pressures| !pressures.is_zero()).collect();
         let sliding = forces.corner_sliding.iter().filter(|sliding| self.facets.contains(&sliding.facet));
         let sliding = sliding.cloned().collect();

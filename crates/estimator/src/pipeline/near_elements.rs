@@ -92,7 +92,7 @@ impl<const D: usize, const N: usize> NearElements<D, N> {
                 block.iter_mut().for_each(|near| near.append(shared, levels, numbers));
             });
             let blocks = group.len().div_ceil(BLOCK);
-            self.buffers[..blocks].iter().try_for_each(|block| self.backlog.push(block))?;
+            self.buffers[..blocks].iter_mut().try_for_each(|block| self.backlog.push(block))?;
         }
         Ok(())
     }

@@ -21,6 +21,7 @@ use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::problem::Problem;
 use star::NodeStar;
+use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
@@ -126,7 +127,7 @@ impl<const D: usize> Concentration<D> {
             stars.push(LoadedStar { energy: &stress.energy, frame: other.frame, edges });
         }
         let shapes = ShapeCosts::new([direction[0], direction[D - 1]], compliance, gaps, &star.tributary, stars);
-        Some(NodeCosts { shapes, compliance: faced.compliance, widest })
+        Some(NodeCosts { shapes, compliance: faced.compliance, widest, found: Cell::default() })
     }
 
     /// The nodes at the far ends of the edges of a node.

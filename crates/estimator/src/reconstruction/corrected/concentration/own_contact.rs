@@ -71,7 +71,7 @@ impl<const D: usize> Own<D> {
         last: Option<OwnContact<D>>,
     ) -> (f64, TractionShape) {
         if let Some(last) = last.filter(|last| last.width > 0.0) {
-            let shape = costs.shape(last.width);
+            let shape = costs.shape_again(last.width);
             let [free, under] = [0.0, last.width].map(|force| self.remaining(costs, &shape, force));
             return ((-free * last.width / (under - free)).max(0.0), shape);
         }

@@ -167,7 +167,7 @@ impl<'a, const D: usize, const N: usize> Known<'a, D, N> {
             return None;
         }
         let costs = costs()?;
-        let shape = costs.shape(if pushed > 0.0 { pushed } else { largest });
+        let shape = costs.shape_again(if pushed > 0.0 { pushed } else { largest });
         let keeps = match last {
             None => costs.is_alone(&shape),
             Some(_) => pushed == 0.0 || !concentration.touches_beside(at, costs.wide(&shape), simulated),
