@@ -116,11 +116,11 @@ impl<const D: usize, const N: usize> ElementVelocities<D, N> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SampledStress<const D: usize, const N: usize> {
     /// Its mean (Pa).
-    mean: [[f64; D]; D],
+    pub(super) mean: [[f64; D]; D],
     /// The energy of the rest (J per unit of section or thickness).
-    fluctuation: f64,
+    pub(super) fluctuation: f64,
     /// The loading that it balances, where other stresses need it.
-    loading: Option<Loading<D, N>>,
+    pub(super) loading: Option<Loading<D, N>>,
 }
 
 impl<const D: usize, const N: usize> SampledStress<D, N> {
@@ -176,9 +176,9 @@ pub(super) struct Sampling<'a, 'p, const D: usize, const N: usize> {
 /// The maps of one element, with the data that all share.
 pub(super) struct ElementSampler<'a, 'p, const D: usize, const N: usize> {
     shared: &'a Sampling<'a, 'p, D, N>,
-    id: ElementId,
+    pub(super) id: ElementId,
     pub(super) element: &'a Element<D, N>,
-    measure: ElementMeasure<'a, D, N>,
+    pub(super) measure: ElementMeasure<'a, D, N>,
 }
 
 impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
@@ -259,8 +259,18 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         let residual = self.measure.resultant_residual(balanced, level.force_scale());
         residuals.element_resultants = worse(residuals.element_resultants, residual);
         if turn {
-            self.measure.check_stress(balanced, level.force_scale(), residuals);
+            self.check_stress(balanced, level, residuals);
         }
+    }
+
+    /// Checks their stress.
+    pub(super) fn check_stress(
+        &self,
+        balanced: &Balanced<D, N>,
+        level: &EquilibratedLevel<'_, D>,
+        residuals: &mut Residuals,
+    ) {
+        self.measure.check_stress(balanced, level.force_scale(), residuals);
     }
 
     /// Samples an interval at its beginning, middle and end, goes on with the integral, and keeps the maps that are

@@ -44,7 +44,7 @@ impl KeptForm {
 }
 
 impl FluctuationForm for KeptForm {
-    #[inline]
+    #[inline(always)]
     fn fluctuation<T: Value, const D: usize, const N: usize>(
         &self,
         loading: &Loading<D, N, T>,

@@ -22,6 +22,7 @@ use percute_core::material::Law;
 use percute_core::problem::Problem;
 use star::NodeStar;
 use std::cell::Cell;
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
@@ -65,7 +66,10 @@ impl<const D: usize> Concentration<D> {
     ) -> Option<TractionShape> {
         let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
         let normal = frame.split(force).0;
-        let gaps = self.gaps(at, faced, gap).filter(|_| normal > 0.0)?;
+        if normal.partial_cmp(&0.0) != Some(Ordering::Greater) {
+            return None;
+        }
+        let gaps = self.gaps(at, faced, gap)?;
         let shape = match own {
             Some(own) => own,
             None => self.costs(problem, at, faced, &force.map(|f| f / normal), &gaps)?.shape(normal),
