@@ -88,7 +88,8 @@ impl Backlog {
         match &mut batch.place {
             Place::Memory(blocks) => {
                 self.held += block.len();
-                let other = self.spare.pop().unwrap_or_else(|| Vec::with_capacity(block.len()));
+                // Later blocks may be a little longer.
+                let other = self.spare.pop().unwrap_or_else(|| Vec::with_capacity(block.len() + block.len() / 16));
                 blocks.push(std::mem::replace(block, other));
                 Ok(())
             }
