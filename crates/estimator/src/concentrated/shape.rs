@@ -358,6 +358,25 @@ mod tests {
         }
     }
 
+    /// Products that are made together are those of two hats, bit by bit, in either order of the edges.
+    #[test]
+    fn products_are_those_of_two_hats() {
+        let (energy, gaps) = corner(0.3);
+        let direction = [0.2, 1.0];
+        for edges in [[0, 1], [1, 0]] {
+            let star = LoadedStar { energy: &energy, frame: StarFrame([0.8, 0.6]), edges };
+            let costs = ShapeCosts::new(direction, 1.0 / YOUNG, &gaps, &[0.5, 0.5], vec![star]);
+            let product = |hats| star.product(hats, [direction; 2]);
+            for a in 1..=HATS {
+                assert_eq!([costs.own[0][a], costs.own[1][a]], [0, 1].map(|edge| product([(edge, a); 2])));
+                for b in 1..=HATS {
+                    assert_eq!(costs.cross[0][a][b], product([(0, a), (1, b)]), "{edges:?} {a} {b}");
+                    assert_eq!(costs.cross[1][a][b], product([(1, b), (0, a)]), "{edges:?} {a} {b}");
+                }
+            }
+        }
+    }
+
     /// Hats within a part of an edge are the best of those that are halved often enough.
     #[test]
     fn hats_may_be_within_a_part_of_an_edge() {

@@ -72,3 +72,33 @@ impl KeptTriangle {
         sums
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_core::material::Elastic;
+    use percute_core::problem::TriangleProblem;
+    use percute_testkit::{Random, random_rectangle};
+
+    /// The form that is kept gives the bits of the form that is made anew, among others.
+    #[test]
+    fn a_form_that_is_kept_is_that_of_the_element() {
+        let mesh = random_rectangle(1.0, 1.0, 4, 7).unwrap();
+        let law = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
+        let problem = TriangleProblem::builder(mesh).material(law).build().unwrap();
+        let mut random = Random::new(3);
+        let ids: Vec<ElementId> = (0..8).map(ElementId::new).collect();
+        let points = |id: &ElementId| problem.mesh().cell_points(*id);
+        let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
+        let lanes = forms.prepare(&problem, ids.iter().map(|id| (*id, points(id))));
+        for (id, lane) in ids.iter().zip(lanes) {
+            let mut vector = || [(); 2].map(|()| random.between(-1.0, 1.0));
+            let loading =
+                Loading { traction: [(); 3].map(|()| [vector(), vector()]), volume: [(); 3].map(|()| vector()) };
+            let made = forms.of(&problem, *id, &points(id), lane).fluctuation(&loading);
+            let kept = KeptForm::new(&problem, *id).fluctuation(&loading);
+            assert!(made.energy() > 0.0);
+            assert_eq!((made.edges, made.nodes), (kept.edges, kept.nodes), "{id:?}");
+        }
+    }
+}

@@ -97,8 +97,8 @@ mod tests {
         0.5 * (low + high)
     }
 
-    /// Bit by bit the place of all bisections, with a third of the values where the function is smooth, and not many
-    /// more of them where it jumps.
+    /// Bit by bit the place of all bisections, with 24 of 40 values at most where the function is smooth, and not many
+    /// more than 40 where it jumps.
     #[test]
     fn the_place_is_that_of_all_bisections() {
         let mut random = Random::new(5);
