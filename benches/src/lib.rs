@@ -5,6 +5,7 @@ mod csr;
 mod order;
 mod run;
 mod setup;
+mod small;
 mod two_blocks;
 
 pub use block::{Block, Motion, SIZES, material, problem};
@@ -12,6 +13,7 @@ pub use csr::Csr;
 pub use order::Order;
 pub use run::{Clock, estimated, processor, simulated, steps, wall};
 pub use setup::setup;
+pub use small::{Small, small};
 pub use two_blocks::{Contact, two_blocks};
 
 /// Any failure of a measurement.

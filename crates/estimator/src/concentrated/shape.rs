@@ -2,7 +2,10 @@
 
 use super::star_stress::Symmetric;
 use super::{EdgeTraction, HATS, StarFrame, place};
+use crate::simd::dispatch;
+use std::array::from_fn;
 use std::ops::Deref;
+use std::sync::LazyLock;
 
 /// Weight of the distance of the shares from the tributary ones. From 0.1 to 1, results change by 6 % at most.
 const TRIBUTARY: f64 = 0.3;
@@ -26,8 +29,14 @@ impl Hat {
     }
 }
 
+/// A number for each number of halvings.
+type ByHalvings = [f64; HATS + 1];
+
+/// [`Hat::far`] by halvings.
+static FAR: LazyLock<ByHalvings> = LazyLock::new(|| from_fn(|halvings| EdgeTraction::hat(halvings).moments()[1]));
+
 fn far(halvings: usize) -> f64 {
-    EdgeTraction::hat(halvings).moments()[1]
+    FAR[halvings]
 }
 
 /// A hat on each candidate edge of a node, of which there are one or two; their shares sum to 1.
@@ -79,20 +88,49 @@ impl LoadedStar<'_> {
         let of = |c: usize, d: usize| along[c] * force[d] * self.energy.at(place(e, a, c), place(f, b, d));
         of(0, 0) + of(0, 1) + of(1, 0) + of(1, 1)
     }
+
+    /// Adds the products of narrow hats of the first and of the second edge under forces along one direction, by the
+    /// halvings of both, in either order.
+    fn add_cross(&self, direction: [f64; 2], cross: &mut [[ByHalvings; HATS + 1]; 2]) {
+        let force = self.frame.own(direction);
+        let weight = |c: usize, d: usize| force[c] * force[d];
+        let ordered = self.edges[0] < self.edges[1];
+        let [first, last] = if ordered { self.edges } else { [self.edges[1], self.edges[0]] };
+        let start = place(first, 1, 0);
+        for k in 1..=HATS {
+            let [along, across] =
+                [0, 1].map(|component| &self.energy.row(place(last, k, component))[start..][..2 * HATS]);
+            for j in 1..=HATS {
+                let [plain, one, other, turned] =
+                    [along[2 * j - 2], across[2 * j - 2], along[2 * j - 1], across[2 * j - 1]];
+                let sum = |one: f64, other: f64| {
+                    weight(0, 0) * plain + weight(0, 1) * one + weight(1, 0) * other + weight(1, 1) * turned
+                };
+                let ((a, b), [forth, back]) = if ordered { ((j, k), [0, 1]) } else { ((k, j), [1, 0]) };
+                cross[forth][a][b] += sum(one, other);
+                cross[back][a][b] += sum(other, one);
+            }
+        }
+    }
 }
 
 /// The cost of shapes for the forces of one direction on a node.
 #[derive(Clone, Debug)]
 pub(crate) struct ShapeCosts<'a> {
     /// Gap at the far end less that at the node, each at least 0 (m), edge by edge.
-    gaps: &'a [f64],
+    gaps: [f64; 2],
     /// Tributary shares.
-    tributary: &'a [f64],
+    tributary: [f64; 2],
+    /// Number of edges.
+    edges: usize,
     /// The force over its normal part.
     direction: [f64; 2],
     stars: Vec<LoadedStar<'a>>,
-    /// ∫τ:K⁻¹τ under a unit normal force (m/N): products of the hats of both edges, by their halvings.
-    products: [[[[f64; HATS + 1]; HATS + 1]; 2]; 2],
+    /// ∫τ:K⁻¹τ of each hat under a unit normal force (m/N), edge by edge.
+    own: [ByHalvings; 2],
+    /// Products of the hats of the first and of the second edge, by their halvings. In the other order they differ by
+    /// rounding.
+    cross: [[ByHalvings; HATS + 1]; 2],
     /// 2 times the cost of a share that differs from the tributary one by 1, under a unit normal force.
     penalty: f64,
 }
@@ -103,40 +141,84 @@ impl<'a> ShapeCosts<'a> {
     pub(crate) fn new(
         direction: [f64; 2],
         compliance: f64,
-        gaps: &'a [f64],
-        tributary: &'a [f64],
+        gaps: &[f64],
+        tributary: &[f64],
         stars: Vec<LoadedStar<'a>>,
     ) -> Self {
-        let mut products = [[[[0.0; HATS + 1]; HATS + 1]; 2]; 2];
-        let pairs = (0..gaps.len()).flat_map(|e| (0..gaps.len()).map(move |f| (e, f)));
-        for (e, f) in pairs {
-            for (a, row) in products[e][f].iter_mut().enumerate().skip(1) {
-                for (b, product) in row.iter_mut().enumerate().skip(1) {
-                    *product = stars.iter().map(|star| star.product([(e, a), (f, b)], [direction; 2])).sum();
-                }
+        let (mut own, mut cross) = ([[0.0; HATS + 1]; 2], [[[0.0; HATS + 1]; HATS + 1]; 2]);
+        for star in &stars {
+            for (edge, own) in own.iter_mut().enumerate().take(gaps.len()) {
+                (1..=HATS).for_each(|k| own[k] += star.product([(edge, k); 2], [direction; 2]));
+            }
+            if gaps.len() > 1 {
+                star.add_cross(direction, &mut cross);
             }
         }
         let square: f64 = direction.iter().map(|d| d * d).sum();
-        Self { gaps, tributary, direction, stars, products, penalty: 2.0 * TRIBUTARY * square * compliance }
+        let of_edges = |numbers: &[f64]| from_fn(|edge| numbers.get(edge).copied().unwrap_or(0.0));
+        Self {
+            gaps: of_edges(gaps),
+            tributary: of_edges(tributary),
+            edges: gaps.len(),
+            direction,
+            stars,
+            own,
+            cross,
+            penalty: 2.0 * TRIBUTARY * square * compliance,
+        }
     }
 
     /// The shape of least gap energy and stress energy under a normal force (N). On an axis of symmetry two mirrored
     /// shapes may cost the same: rounding must not choose between them, and the best symmetric one is taken. Hats have
     /// so many halvings at least on each edge.
     pub(crate) fn shape(&self, normal: f64, least: [usize; 2]) -> TractionShape {
-        let halvings = |edge: usize| least[edge]..=HATS;
-        if self.gaps.len() == 1 {
-            return self.cheapest(halvings(0).map(TractionShape::of_one), normal).1;
+        let halvings = least[0]..=HATS;
+        if self.edges == 1 {
+            return self.cheapest(halvings.map(TractionShape::of_one), normal).1;
         }
         let pair = |halvings: [usize; 2]| {
             let share = self.share(halvings, normal);
             TractionShape::of_two([share, 1.0 - share], halvings)
         };
-        let (cost, best) = self.cheapest(halvings(0).flat_map(|a| halvings(1).map(move |b| [a, b])).map(pair), normal);
-        let [first, second] = best.hats.map(|hat| hat.halvings);
+        let (cost, [first, second]) = dispatch(
+            #[inline(always)]
+            || self.cheapest_pair(normal, least),
+        );
         let alike = least[0] == least[1] && first != second;
         let tied = alike && self.cost(&pair([second, first]), normal) <= (1.0 + TIE) * cost;
-        if tied { self.cheapest(halvings(0).map(|k| pair([k, k])), normal).1 } else { best }
+        if tied { self.cheapest(halvings.map(|k| pair([k, k])), normal).1 } else { pair([first, second]) }
+    }
+
+    /// The halvings of the cheapest two hats, the first of those that cost the same, and the cost over the normal force
+    /// (m).
+    #[inline(always)]
+    fn cheapest_pair(&self, normal: f64, least: [usize; 2]) -> (f64, [usize; 2]) {
+        let far = &*FAR;
+        let mut best: Option<(f64, [usize; 2])> = None;
+        for a in least[0]..=HATS {
+            // One loop without a branch.
+            let mut costs = [0.0; HATS + 1];
+            for b in 0..=HATS {
+                costs[b] = self.cost_of_pair([a, b], far, normal);
+            }
+            for b in least[1]..=HATS {
+                if best.is_none_or(|(cost, _)| costs[b].total_cmp(&cost).is_lt()) {
+                    best = Some((costs[b], [a, b]));
+                }
+            }
+        }
+        best.unwrap_or((0.0, [0; 2]))
+    }
+
+    /// [`cost`](Self::cost) of two hats with the best share.
+    #[inline(always)]
+    fn cost_of_pair(&self, [a, b]: [usize; 2], far: &ByHalvings, normal: f64) -> f64 {
+        let share = self.share_at([a, b], [far[a], far[b]], normal);
+        let (other, [t, u], [g, h]) = (1.0 - share, self.tributary, self.gaps);
+        let aside = (share - t) * (share - t) + (other - u) * (other - u);
+        let (both, [forth, back]) = (share * other, [self.cross[0][a][b], self.cross[1][a][b]]);
+        let stress = (share * share * self.own[0][a] + both * forth) + (both * back + other * other * self.own[1][b]);
+        share * g * far[a] + other * h * far[b] + 0.5 * normal * (stress + self.penalty * aside)
     }
 
     /// The cheapest of some shapes, with its cost over the normal force (m).
@@ -147,8 +229,13 @@ impl<'a> ShapeCosts<'a> {
 
     /// The best share of the first of two hats: the cost is quadratic in it.
     fn share(&self, [a, b]: [usize; 2], normal: f64) -> f64 {
-        let [own, cross, other] = [self.products[0][0][a][a], self.products[0][1][a][b], self.products[1][1][b][b]];
-        let way = self.gaps[0] * far(a) - self.gaps[1] * far(b);
+        self.share_at([a, b], [far(a), far(b)], normal)
+    }
+
+    #[inline(always)]
+    fn share_at(&self, [a, b]: [usize; 2], far: [f64; 2], normal: f64) -> f64 {
+        let [own, cross, other] = [self.own[0][a], self.cross[0][a][b], self.own[1][b]];
+        let way = self.gaps[0] * far[0] - self.gaps[1] * far[1];
         let curvature = own - 2.0 * cross + other + 2.0 * self.penalty;
         ((other - cross + 2.0 * self.penalty * self.tributary[0] - way / normal) / curvature).clamp(0.0, 1.0)
     }
@@ -167,7 +254,12 @@ impl<'a> ShapeCosts<'a> {
     /// ∫τ:K⁻¹τ under a unit normal force (m/N).
     fn stress(&self, shape: &TractionShape) -> f64 {
         let product = |(e, a): (usize, &Hat)| {
-            let row = |(f, b): (usize, &Hat)| a.share * b.share * self.products[e][f][a.halvings][b.halvings];
+            let of = |f: usize, b: usize| match [e, f] {
+                [0, 1] => self.cross[0][a.halvings][b],
+                [1, 0] => self.cross[1][b][a.halvings],
+                _ => self.own[e][b],
+            };
+            let row = |(f, b): (usize, &Hat)| a.share * b.share * of(f, b.halvings);
             shape.iter().enumerate().map(row).sum::<f64>()
         };
         shape.iter().enumerate().map(product).sum()
@@ -181,7 +273,7 @@ impl<'a> ShapeCosts<'a> {
 
     /// The same without the mean gap of the edges, where this is that of the motion.
     pub(crate) fn beyond_edges(&self, shape: &TractionShape, plane: [f64; 2], normal: f64) -> f64 {
-        let least = self.gaps.iter().fold(f64::INFINITY, |least, gap| least.min(gap.max(0.0)));
+        let least = self.gaps[..self.edges].iter().fold(f64::INFINITY, |least, gap| least.min(gap.max(0.0)));
         normal * self.local(shape, plane, self.direction) - least * far(HATS)
     }
 
@@ -217,7 +309,7 @@ mod tests {
         (made.energy, [at(0)[1], at(2)[1]])
     }
 
-    fn costs<'a>(energy: &'a Symmetric, gaps: &'a [f64; 2]) -> ShapeCosts<'a> {
+    fn costs<'a>(energy: &'a Symmetric, gaps: &[f64; 2]) -> ShapeCosts<'a> {
         let star = LoadedStar { energy, frame: StarFrame([1.0, 0.0]), edges: [0, 1] };
         ShapeCosts::new([0.0, 1.0], 1.0 / YOUNG, gaps, &[0.5, 0.5], vec![star])
     }
@@ -261,6 +353,25 @@ mod tests {
                     assert!(best <= least * (1.0 + 1e-12), "{a} {b}");
                     let closed = costs.cost(&shape(costs.share([a, b], force)), force);
                     assert!(closed <= least * (1.0 + 1e-12), "{a} {b} {closed} {least}");
+                }
+            }
+        }
+    }
+
+    /// Products that are made together are those of two hats, bit by bit, in either order of the edges.
+    #[test]
+    fn products_are_those_of_two_hats() {
+        let (energy, gaps) = corner(0.3);
+        let direction = [0.2, 1.0];
+        for edges in [[0, 1], [1, 0]] {
+            let star = LoadedStar { energy: &energy, frame: StarFrame([0.8, 0.6]), edges };
+            let costs = ShapeCosts::new(direction, 1.0 / YOUNG, &gaps, &[0.5, 0.5], vec![star]);
+            let product = |hats| star.product(hats, [direction; 2]);
+            for a in 1..=HATS {
+                assert_eq!([costs.own[0][a], costs.own[1][a]], [0, 1].map(|edge| product([(edge, a); 2])));
+                for b in 1..=HATS {
+                    assert_eq!(costs.cross[0][a][b], product([(0, a), (1, b)]), "{edges:?} {a} {b}");
+                    assert_eq!(costs.cross[1][a][b], product([(1, b), (0, a)]), "{edges:?} {a} {b}");
                 }
             }
         }

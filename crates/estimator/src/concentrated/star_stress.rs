@@ -31,6 +31,12 @@ impl Symmetric {
         let (i, j) = (i.max(j), i.min(j));
         self.0[i * (i + 1) / 2 + j]
     }
+
+    /// The entries of a row up to the diagonal.
+    #[inline]
+    pub(super) fn row(&self, i: usize) -> &[f64] {
+        &self.0[i * (i + 1) / 2..][..=i]
+    }
 }
 
 /// The stresses of unit resultants in a star, in the order of [`super::place`].

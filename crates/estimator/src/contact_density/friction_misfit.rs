@@ -15,6 +15,13 @@ pub(crate) struct FacetDensity<'a, const D: usize, const M: usize> {
     pub(crate) hats: [&'a [NarrowHat<D>]; M],
 }
 
+impl<const D: usize, const M: usize> FacetDensity<'_, D, M> {
+    /// Whether nothing acts on the facet and on those beside it.
+    pub(crate) fn is_zero(&self) -> bool {
+        *self.wide == [[0.0; D]; D] && self.hats.iter().all(|hats| hats.is_empty())
+    }
+}
+
 /// The power of the misfit of the mean of densities on a facet (W), with this velocity at its nodes (m/s): hats keep
 /// their shapes.
 pub(crate) fn facet_power<const D: usize, const N: usize, const M: usize>(

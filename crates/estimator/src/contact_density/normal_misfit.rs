@@ -107,7 +107,11 @@ impl<const D: usize> NormalForces<D> {
             problem.obstacles()[problem.surface().facets()[facet].obstacle].flat_frame().split(force).0
         };
         let linear = (0..problem.surface().facets().len()).filter_map(|facet| {
-            let ends = densities.map(|density| density.wide()[facet].map(|force| normal(facet, &force)));
+            let wide = densities.map(|density| &density.wide()[facet]);
+            if wide == [&[[0.0; D]; D]; 2] {
+                return None;
+            }
+            let ends = wide.map(|forces| forces.map(|force| normal(facet, &force)));
             (ends != [[0.0; D]; 2]).then_some(LinearForce { facet, ends })
         });
         let mut linear: Vec<_> = linear.collect();
@@ -121,6 +125,12 @@ impl<const D: usize> NormalForces<D> {
         // Hats of one facet keep their order.
         hats.sort_by_key(HatForce::place);
         Self { linear, hats }
+    }
+
+    /// Whether there are any on one facet.
+    fn act_on(&self, facet: usize) -> bool {
+        let linear = self.linear.binary_search_by_key(&facet, |linear| linear.facet);
+        linear.is_ok() || self.hats.iter().any(|hat| hat.hat.facet == facet)
     }
 
     /// Those on one facet.
@@ -152,6 +162,11 @@ impl<const D: usize> OffContact<D> {
         sudden: [&Densities<D>; 2],
     ) -> Self {
         Self { acting: NormalForces::new(problem, acting), sudden: NormalForces::new(problem, sudden) }
+    }
+
+    /// Whether there are any on one facet.
+    pub(crate) fn act_on(&self, facet: usize) -> bool {
+        self.acting.act_on(facet) || self.sudden.act_on(facet)
     }
 
     /// Adds a step to those of an interval. Energies are measured at the ends of the interval and in the middle of its

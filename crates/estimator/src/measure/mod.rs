@@ -12,7 +12,7 @@ use crate::inertia::{Inertia, arms, mass_product};
 use crate::kinematic::ElementMotion;
 use crate::lanes::Value;
 use crate::options::Acceleration;
-use crate::stress::{EnergyForm, LOADS, Loading, StressMap, facet_node, hooke};
+use crate::stress::{FluctuationForm, LOADS, Loading, StressMap, facet_node, hooke};
 use crate::time_level::{Side, Velocities};
 use crate::traction::{EquilibratedLevel, Equilibration};
 pub(crate) use admissible_stress::AdmissibleStress;
@@ -186,7 +186,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     #[inline(always)]
     pub(crate) fn stress<T: Value>(
         &self,
-        form: &EnergyForm<'_>,
+        form: &impl FluctuationForm,
         balanced: &Balanced<D, N, T>,
     ) -> AdmissibleStress<D, N, T> {
         let mut mean = [[balanced.terms.zero(); D]; D];

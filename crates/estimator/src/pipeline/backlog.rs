@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::ops::Range;
 
 /// Memory (bytes) that may always be taken, and for each contact node.
-const HELD: usize = 1 << 20;
+const HELD: usize = 64 << 20;
 const HELD_PER_NODE: usize = 8 << 10;
 
 /// Intervals of all elements, block after block.
@@ -21,7 +21,8 @@ struct Batch {
 
 #[derive(Debug)]
 enum Place {
-    Memory(Vec<f64>),
+    /// Block after block.
+    Memory(Vec<Vec<f64>>),
     /// From this number of the file on.
     File(u64),
 }
@@ -38,8 +39,8 @@ pub(super) struct Backlog {
     /// Where the file ends.
     end: u64,
     file: ScratchFile,
-    /// Memory of a batch that is gone.
-    spare: Vec<f64>,
+    /// Memory of blocks that are gone.
+    spare: Vec<Vec<f64>>,
     /// Numbers that were read.
     read: Vec<f64>,
 }
@@ -67,9 +68,7 @@ impl Backlog {
     /// Begins a batch of these intervals.
     pub(super) fn begin(&mut self, intervals: Range<usize>) {
         let place = if self.held + self.last <= self.most {
-            let mut numbers = std::mem::take(&mut self.spare);
-            numbers.reserve_exact(self.last);
-            Place::Memory(numbers)
+            Place::Memory(Vec::new())
         } else {
             self.spare = Vec::new();
             if !self.batches.iter().rev().any(|batch| matches!(batch.place, Place::File(_))) {
@@ -81,15 +80,17 @@ impl Backlog {
         self.batches.push_back(Batch { intervals, lengths: Vec::new(), place });
     }
 
-    /// Appends a block to the last batch.
-    pub(super) fn push(&mut self, block: &[f64]) -> Result<(), ScratchError> {
+    /// Appends a block to the last batch, and leaves other memory in its place.
+    pub(super) fn push(&mut self, block: &mut Vec<f64>) -> Result<(), ScratchError> {
         let Some(batch) = self.batches.back_mut() else { return Ok(()) };
         batch.lengths.push(block.len() as u32);
         self.last += block.len();
         match &mut batch.place {
-            Place::Memory(numbers) => {
+            Place::Memory(blocks) => {
                 self.held += block.len();
-                numbers.extend_from_slice(block);
+                // Later blocks may be a little longer.
+                let other = self.spare.pop().unwrap_or_else(|| Vec::with_capacity(block.len() + block.len() / 16));
+                blocks.push(std::mem::replace(block, other));
                 Ok(())
             }
             Place::File(_) => {
@@ -108,16 +109,15 @@ impl Backlog {
     /// Some blocks of the first batch.
     pub(super) fn blocks(&mut self, blocks: Range<usize>) -> Result<Vec<&[f64]>, ScratchError> {
         let Some(batch) = self.batches.front() else { return Ok(Vec::new()) };
+        let place = match &batch.place {
+            Place::Memory(held) => return Ok(held[blocks].iter().map(Vec::as_slice).collect()),
+            Place::File(place) => *place,
+        };
         let numbers = |lengths: &[u32]| lengths.iter().map(|&length| length as usize).sum::<usize>();
         let (start, count) = (numbers(&batch.lengths[..blocks.start]), numbers(&batch.lengths[blocks.clone()]));
-        let mut left = match &batch.place {
-            Place::Memory(numbers) => &numbers[start..][..count],
-            Place::File(place) => {
-                self.read.resize(count, 0.0);
-                self.file.read(place + start as u64, &mut self.read)?;
-                &self.read[..]
-            }
-        };
+        self.read.resize(count, 0.0);
+        self.file.read(place + start as u64, &mut self.read)?;
+        let mut left = &self.read[..];
         let next = |length: &u32| {
             let (block, rest) = left.split_at(*length as usize);
             left = rest;
@@ -128,23 +128,23 @@ impl Backlog {
 
     /// Forgets the first batch.
     pub(super) fn pop(&mut self) {
-        if let Some(Batch { place: Place::Memory(mut numbers), .. }) = self.batches.pop_front() {
-            self.held -= numbers.len();
-            numbers.clear();
-            self.spare = numbers;
+        if let Some(Batch { place: Place::Memory(blocks), .. }) = self.batches.pop_front() {
+            self.held -= blocks.iter().map(Vec::len).sum::<usize>();
+            self.spare = blocks;
         }
     }
 
     /// Bytes in memory.
     #[cfg(test)]
     pub(super) fn held(&self) -> usize {
-        (self.held + self.spare.capacity() + self.read.capacity()) * size_of::<f64>()
+        let spare: usize = self.spare.iter().map(Vec::capacity).sum();
+        (self.held + spare + self.read.capacity()) * size_of::<f64>()
     }
 
-    /// Takes any memory.
+    /// Takes this memory at most (bytes).
     #[cfg(test)]
-    pub(super) fn lift_limit(&mut self) {
-        self.most = usize::MAX;
+    pub(super) fn limit(&mut self, bytes: usize) {
+        self.most = bytes / size_of::<f64>();
     }
 
     /// Waits in this file.

@@ -1,30 +1,26 @@
 //! Elements with a candidate node of contact: their tractions may have two values at an instant,
 //! and their motion is known only when the next contact of their nodes is.
 
+mod append;
+mod side_by_side;
+
 use super::maps::Contribution;
-use super::sampled_levels::SampledLevels;
 use super::sampling::{
-    ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, SampledStress, Sampling,
-    trapezoid,
+    ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, Sampling, trapezoid,
 };
 use super::sliding::SlidingMisfit;
-use super::waiting::{ContactInstant, Waiting, WaitingSample};
+use super::waiting::{ContactInstant, Waiting};
 use crate::concentrated::HatStress;
-use crate::contact_density::{BesideStress, FacetPressures, NarrowHat, NormalMisfit};
+use crate::contact_density::{BesideStress, NarrowHat, NormalMisfit};
 use crate::element::Element;
 use crate::kinematic::ContactTrack;
 use crate::measure::Balanced;
 use crate::numbers::Reader;
 use crate::reconstruction::ReconstructionMethod;
 use crate::residual::{Residuals, worse};
-use crate::time_level::{Side, Velocities};
-use crate::traction::EquilibratedLevel;
+use crate::stress::KeptForm;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
-
-/// The pointwise equilibrium of σ_DA is checked in one interval of so many, more often than away from contact: with one
-/// of 4, checks took a sixth of the estimate on 640 elements.
-const CHECK: usize = 16;
 
 /// Part of the largest initial velocity below which a node is at rest. Where it sticks, its velocity is rounding, 1e-15
 /// of the largest, and a quotient of two of them says nothing.
@@ -43,6 +39,7 @@ pub(super) struct BesideShare {
 #[derive(Clone, Debug)]
 pub(super) struct NearElement<const D: usize, const N: usize> {
     pub(super) element: ElementId,
+    form: KeptForm,
     /// Position of each node in the contact surface, the first one of a node at two planes.
     contact: [Option<usize>; N],
     /// Candidate facets that the element owns.
@@ -57,10 +54,19 @@ pub(super) struct NearElement<const D: usize, const N: usize> {
     pub(super) beside: BesideShare,
     /// Intervals so far.
     checks: usize,
+    /// The fields that balance at the last level, unless the contact force jumps there.
+    reached: Option<Balanced<D, N>>,
     pub(super) course: Course,
     /// Its contributions at the steps requested.
     pub(super) kept: Vec<Contribution>,
     pub(super) residuals: Residuals,
+}
+
+/// Number of such elements.
+pub(super) fn near_count<const D: usize, const N: usize>(problem: &Problem<D, N>) -> usize {
+    let mut touches = vec![false; problem.mesh().node_count()];
+    problem.surface().nodes().iter().for_each(|contact| touches[contact.node.index()] = true);
+    problem.mesh().cells().iter().filter(|cell| cell.iter().any(|node| touches[node.index()])).count()
 }
 
 /// All such elements, by number.
@@ -78,6 +84,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
         let contact = mesh.cells()[e].map(|n| of_node[n.index()]);
         contact.iter().any(Option::is_some).then(|| NearElement {
             element: ElementId::new(e),
+            form: KeptForm::new(problem, ElementId::new(e)),
             contact,
             facets,
             start: None,
@@ -85,6 +92,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
             corner_friction: 0.0,
             beside: BesideShare::default(),
             checks: 0,
+            reached: None,
             course: Course::default(),
             kept: Vec::new(),
             residuals: Residuals::default(),
@@ -107,78 +115,6 @@ pub(super) struct ContactSampling<'a, 'p, const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> NearElement<D, N> {
-    /// Appends the intervals between consecutive levels to numbers.
-    pub(super) fn append(
-        &mut self,
-        shared: &Sampling<'_, '_, D, N>,
-        levels: &SampledLevels<'_, D>,
-        numbers: &mut Vec<f64>,
-    ) {
-        let sampler = ElementSampler::new(shared, self.element);
-        if levels.before.is_none() {
-            self.start = Some(self.at(&sampler, &levels.levels.forces()[0].now, 0.0));
-        }
-        sampler.with_stress(|stress| {
-            for interval in levels.intervals() {
-                self.interval(&sampler, interval, stress).append(numbers);
-            }
-        });
-    }
-
-    fn interval(
-        &mut self,
-        sampler: &ElementSampler<'_, '_, D, N>,
-        [from, to]: [EquilibratedLevel<'_, D>; 2],
-        stress: &dyn Fn(&Balanced<D, N>, bool) -> SampledStress<D, N>,
-    ) -> Waiting<D, N> {
-        let start = sampler.balanced(&from, &self.contact, Side::After);
-        let end = sampler.balanced(&to, &self.contact, Side::Before);
-        let begins = from.index() == 0 || from.forces().before.is_some();
-        let turn = (self.checks + self.element.index()).is_multiple_of(CHECK);
-        self.checks += 1;
-        if begins {
-            sampler.check(&start, &from, turn, &mut self.residuals);
-        }
-        sampler.check(&end, &to, turn, &mut self.residuals);
-        let forces = to.forces();
-        let friction = |k: usize| self.facets.iter().map(|&f| forces.friction[f][k]).sum::<f64>();
-        let surface = sampler.problem().surface();
-        let entries = |at: Option<usize>| [at, at.and_then(|at| surface.nodes()[at].beside)];
-        let touches = |level: &EquilibratedLevel<'_, D>, at: usize| level.forces().level.surface.touching[at];
-        let touching = [&from, &to]
-            .map(|level| self.contact.map(|at| entries(at).map(|at| at.is_some_and(|at| touches(level, at)))));
-        let facets = if forces.off_contact.is_empty() { &[][..] } else { &self.facets };
-        let pressures = facets.iter().map(|&f| FacetPressures::gather(f, from.index(), &forces.off_contact));
-        let pressures = pressures.filter(|pressures| !pressures.is_zero()).collect();
-        let sliding = forces.corner_sliding.iter().filter(|sliding| self.facets.contains(&sliding.facet));
-        let sliding = sliding.cloned().collect();
-        let hats: [Vec<_>; 2] = [&from, &to].map(|level| {
-            self.contact.iter().flatten().flat_map(|&at| level.forces().density.hats_of(at)).copied().collect()
-        });
-        let problem = sampler.problem();
-        let beside = [&from, &to].map(|level| level.forces().density.beside(problem, self.element));
-        let loaded = Waiting::<D, N>::is_loaded(&hats, &beside);
-        let single = forces.mid_velocity.is_some() && to.index() == from.index() + 1;
-        let mid = single.then(|| WaitingSample {
-            at: ContactInstant {
-                velocities: sampler.velocities_half_way([&from, &to], &self.contact),
-                friction: friction(0),
-            },
-            stress: stress(&Balanced::middle(&start, &end), loaded),
-        });
-        let stop = WaitingSample { at: self.at(sampler, &forces.now, friction(1)), stress: stress(&end, loaded) };
-        Waiting { start: begins.then(|| stress(&start, loaded)), mid, stop, touching, pressures, sliding, beside, hats }
-    }
-
-    fn at(
-        &self,
-        sampler: &ElementSampler<'_, '_, D, N>,
-        velocities: &Velocities<D>,
-        friction: f64,
-    ) -> ContactInstant<D, N> {
-        ContactInstant { velocities: sampler.velocities(velocities, &self.contact), friction }
-    }
-
     /// Replaces the normal components by those of problem P_CA.
     fn settle(&self, context: &ContactSampling<'_, '_, D, N>, at: &mut ContactInstant<D, N>, instant: usize) {
         for (i, node) in self.contact.iter().enumerate() {

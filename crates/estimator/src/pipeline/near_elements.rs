@@ -6,7 +6,7 @@
 
 use super::backlog::{self, Backlog};
 use super::maps::Maps;
-use super::near::{ContactSampling, NearElement, near_elements};
+use super::near::{ContactSampling, NearElement, near_count, near_elements};
 use super::sampled_interval::SampledInterval;
 use super::sampled_levels::SampledLevels;
 use super::sampling::{ElementSample, Sampling};
@@ -15,6 +15,7 @@ use crate::kinematic::ContactTracks;
 use crate::lanes::LANES;
 use crate::numbers::Reader;
 use crate::scratch_file::{ScratchError, ScratchFile};
+use crate::stress::KeptForm;
 use percute_core::problem::Problem;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -26,12 +27,15 @@ const GROUP: usize = 16;
 /// The most bytes that near elements and their intervals take in memory, at so many samples, each so many steps after
 /// the one before.
 pub(super) fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, samples: usize, spacing: usize) -> usize {
-    let (nodes, elements) = (problem.surface().nodes().len(), near_elements(problem).len());
+    let (nodes, elements) = (problem.surface().nodes().len(), near_count(problem));
     let interval = bytes_of_interval::<D, N>(spacing);
     let (all, most) = (samples.saturating_mul(elements).saturating_mul(interval), backlog::most_bytes(nodes));
     // The memory of a group has room for more; what is in the file is read into another.
     let groups = (2 + usize::from(all > most)) * elements.min(BLOCK * GROUP) * LANES * interval;
-    elements * size_of::<NearElement<D, N>>() + all.min(most) + groups + ContactTracks::memory(problem, span(spacing))
+    elements * (size_of::<NearElement<D, N>>() + KeptForm::memory())
+        + all.min(most)
+        + groups
+        + ContactTracks::memory(problem, span(spacing))
 }
 
 /// Whether the intervals of a flight over the whole run have no room in memory.
@@ -40,7 +44,7 @@ pub(super) fn may_need_a_file<const D: usize, const N: usize>(
     samples: usize,
     spacing: usize,
 ) -> bool {
-    let all = samples.saturating_mul(near_elements(problem).len()).saturating_mul(bytes_of_interval::<D, N>(spacing));
+    let all = samples.saturating_mul(near_count(problem)).saturating_mul(bytes_of_interval::<D, N>(spacing));
     all > backlog::most_bytes(problem.surface().nodes().len())
 }
 
@@ -88,7 +92,7 @@ impl<const D: usize, const N: usize> NearElements<D, N> {
                 block.iter_mut().for_each(|near| near.append(shared, levels, numbers));
             });
             let blocks = group.len().div_ceil(BLOCK);
-            self.buffers[..blocks].iter().try_for_each(|block| self.backlog.push(block))?;
+            self.buffers[..blocks].iter_mut().try_for_each(|block| self.backlog.push(block))?;
         }
         Ok(())
     }

@@ -10,7 +10,7 @@ use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, h
 use crate::numbers::Reader;
 use crate::options::Acceleration;
 use crate::residual::{Residuals, worse};
-use crate::stress::{EnergyForms, Loading};
+use crate::stress::{KeptForm, Loading};
 use crate::time_level::{Side, Velocities};
 use crate::traction::{EquilibratedLevel, Equilibration};
 use percute_core::ids::ElementId;
@@ -116,11 +116,11 @@ impl<const D: usize, const N: usize> ElementVelocities<D, N> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SampledStress<const D: usize, const N: usize> {
     /// Its mean (Pa).
-    mean: [[f64; D]; D],
+    pub(super) mean: [[f64; D]; D],
     /// The energy of the rest (J per unit of section or thickness).
-    fluctuation: f64,
+    pub(super) fluctuation: f64,
     /// The loading that it balances, where other stresses need it.
-    loading: Option<Loading<D, N>>,
+    pub(super) loading: Option<Loading<D, N>>,
 }
 
 impl<const D: usize, const N: usize> SampledStress<D, N> {
@@ -176,9 +176,9 @@ pub(super) struct Sampling<'a, 'p, const D: usize, const N: usize> {
 /// The maps of one element, with the data that all share.
 pub(super) struct ElementSampler<'a, 'p, const D: usize, const N: usize> {
     shared: &'a Sampling<'a, 'p, D, N>,
-    id: ElementId,
+    pub(super) id: ElementId,
     pub(super) element: &'a Element<D, N>,
-    measure: ElementMeasure<'a, D, N>,
+    pub(super) measure: ElementMeasure<'a, D, N>,
 }
 
 impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
@@ -191,19 +191,10 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         self.shared.problem
     }
 
-    /// Hands over a function that makes σ_DA of the fields that balance, with its loading or without.
-    pub(super) fn with_stress<R>(
-        &self,
-        then: impl FnOnce(&dyn Fn(&Balanced<D, N>, bool) -> SampledStress<D, N>) -> R,
-    ) -> R {
-        let (problem, points) = (self.shared.problem, self.shared.problem.mesh().cell_points(self.id));
-        let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
-        let [lane, ..] = forms.prepare(problem, std::iter::once((self.id, points)));
-        let form = forms.of(problem, self.id, &points, lane);
-        then(&|balanced, loaded| {
-            let AdmissibleStress { mean, fluctuation } = self.measure.stress(&form, balanced);
-            SampledStress { mean, fluctuation: fluctuation.energy(), loading: loaded.then_some(balanced.loading) }
-        })
+    /// σ_DA of the fields that balance, by the form of the element, with its loading or without.
+    pub(super) fn stress(&self, form: &KeptForm, balanced: &Balanced<D, N>, loaded: bool) -> SampledStress<D, N> {
+        let AdmissibleStress { mean, fluctuation } = self.measure.stress(form, balanced);
+        SampledStress { mean, fluctuation: fluctuation.energy(), loading: loaded.then_some(balanced.loading) }
     }
 
     /// The fields of the element at a half-step instant; `contact` gives the contact node at each local node.
@@ -268,8 +259,18 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         let residual = self.measure.resultant_residual(balanced, level.force_scale());
         residuals.element_resultants = worse(residuals.element_resultants, residual);
         if turn {
-            self.measure.check_stress(balanced, level.force_scale(), residuals);
+            self.check_stress(balanced, level, residuals);
         }
+    }
+
+    /// Checks their stress.
+    pub(super) fn check_stress(
+        &self,
+        balanced: &Balanced<D, N>,
+        level: &EquilibratedLevel<'_, D>,
+        residuals: &mut Residuals,
+    ) {
+        self.measure.check_stress(balanced, level.force_scale(), residuals);
     }
 
     /// Samples an interval at its beginning, middle and end, goes on with the integral, and keeps the maps that are

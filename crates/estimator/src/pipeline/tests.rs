@@ -58,6 +58,9 @@ impl StateSink<2> for Watched<'_> {
     }
 }
 
+/// Memory of intervals that wait (bytes), of which 1000 steps need more.
+const LIMIT: usize = 1 << 20;
+
 /// Four times as many steps take the same memory within 10 %; without the limit they take almost four times as much,
 /// and both estimates have the same bits.
 #[test]
@@ -68,8 +71,8 @@ fn memory_does_not_grow_with_the_steps() {
         let mut watched = Watched::new(&problem, &times);
         if !limited {
             watched.pipeline.preparation.tracks_mut().lift_limit();
-            watched.pipeline.window.near_mut().backlog_mut().lift_limit();
         }
+        watched.pipeline.window.near_mut().backlog_mut().limit(if limited { LIMIT } else { usize::MAX });
         watched.run().unwrap();
         assert_eq!(watched.pipeline.window.near_mut().backlog_mut().has_been_in_file(), limited);
         (watched.most, Box::new(watched.pipeline).finish().unwrap())
@@ -87,6 +90,7 @@ fn a_file_that_fails_is_an_error() {
     let problem = rebound();
     let times = instants(&problem, 1000);
     let mut watched = Watched::new(&problem, &times);
+    watched.pipeline.window.near_mut().backlog_mut().limit(LIMIT);
     watched.pipeline.window.near_mut().backlog_mut().wait_in(ScratchFile::within("/no/such/folder".into()));
     let Err(SimulationError::Sink { cause, step }) = watched.run() else { panic!("no error") };
     assert!(step > 10, "{step}");

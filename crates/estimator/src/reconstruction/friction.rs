@@ -29,13 +29,17 @@ pub(super) fn friction<const D: usize, const N: usize>(
             wide: &densities.wide()[f],
             hats: facet.nodes.map(|k| densities.hats_of(k)),
         });
+        let so_far = now.friction[f][1];
+        if start.is_zero() && end.is_zero() {
+            friction.push([so_far; 2]);
+            continue;
+        }
         let power = |velocity: &[[f64; D]], densities: &[&FacetDensity<'_, D, D>]| {
             let velocity = facet.nodes.map(|k| surface.against_obstacle(k, velocity));
             facet_power(problem, f, &velocity, densities)
         };
         let (a, b) = (power(now.now.motion.velocity(), &[&start]), power(next.now.velocity(), &[&end]));
         let m = next.mid_velocity.as_ref().map_or(0.0, |velocity| power(velocity, &[&start, &end]));
-        let so_far = now.friction[f][1];
         friction.push(trapezoids(length, [a, m, b]).map(|work| so_far + work));
     }
     friction

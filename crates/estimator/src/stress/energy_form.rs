@@ -8,7 +8,10 @@
 //! The form of the fluctuation follows from the shape and the law. It is written LLᵀ, so that Lᵀ gives coordinates in
 //! which the energy is the sum of squares. Coordinates are linear in the loads: half way between two instants they are
 //! the mean. The form takes more memory than all other data of an element, so it is made anew for each window of
-//! levels, for [`LANES`] triangles at once, and triangles of the same shape share it.
+//! levels, for [`LANES`] triangles at once, and triangles of the same shape share it. Elements around contact nodes,
+//! of which there are few, keep theirs ([`KeptForm`]).
+
+mod kept;
 
 use super::bar::BarStress;
 use super::fluctuation::{MODES, START, gram};
@@ -17,6 +20,7 @@ use super::triangle::reference_compliance;
 use super::{Fluctuation, Loading};
 use crate::lanes::{LANES, Lanes, Value};
 use crate::simd::dispatch;
+pub(crate) use kept::KeptForm;
 use nalgebra::Matrix2;
 use percute_core::ids::ElementId;
 use percute_core::material::LinearLaw;
@@ -96,10 +100,16 @@ impl EnergyForms {
     }
 }
 
-impl EnergyForm<'_> {
+/// A form by which fluctuations are made.
+pub(crate) trait FluctuationForm {
     /// The coordinates of the fluctuation of the stress that balances a loading.
+    fn fluctuation<T: Value, const D: usize, const N: usize>(&self, loading: &Loading<D, N, T>)
+    -> Fluctuation<D, N, T>;
+}
+
+impl FluctuationForm for EnergyForm<'_> {
     #[inline(always)]
-    pub(crate) fn fluctuation<T: Value, const D: usize, const N: usize>(
+    fn fluctuation<T: Value, const D: usize, const N: usize>(
         &self,
         loading: &Loading<D, N, T>,
     ) -> Fluctuation<D, N, T> {
@@ -108,7 +118,9 @@ impl EnergyForm<'_> {
             Self::Triangle(form) => form.fluctuation(loading),
         }
     }
+}
 
+impl EnergyForm<'_> {
     /// The slope of the energy (J per unit of section or thickness) of a fluctuation in the difference of the tractions
     /// on each edge, that at the second node less that at the first; in 1D, where an edge is a point, zero.
     #[inline(always)]
@@ -164,13 +176,19 @@ pub(crate) struct TriangleForms {
     factors: Box<FactorLanes>,
 }
 
-/// The form of one triangle.
+/// The map from a triangle to the reference triangle.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct TriangleForm<'a> {
+struct ReferenceMap {
     /// B⁻¹, which takes tractions to the reference triangle.
     inverse: Matrix2<f64>,
     /// J = 2|E|.
     jacobian: f64,
+}
+
+/// The form of one triangle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TriangleForm<'a> {
+    map: ReferenceMap,
     factors: &'a FactorLanes,
     lane: usize,
 }
@@ -229,7 +247,7 @@ impl TriangleForms {
         let (b11, b12, b21, b22) = (edge(1, 0), edge(2, 0), edge(1, 1), edge(2, 1));
         let jacobian = b11 * b22 - b12 * b21;
         let inverse = Matrix2::new(b22, -b12, -b21, b11) * (1.0 / jacobian);
-        TriangleForm { inverse, jacobian, factors: &self.factors, lane }
+        TriangleForm { map: ReferenceMap { inverse, jacobian }, factors: &self.factors, lane }
     }
 }
 
@@ -239,16 +257,8 @@ impl TriangleForm<'_> {
         &self,
         loading: &Loading<D, N, T>,
     ) -> Fluctuation<D, N, T> {
-        let loads = self.pull_back(loading);
-        let (edges, nodes) = (self.columns::<0, T>(&loads), self.columns::<COLUMNS, T>(&loads));
-        let mut coordinates = Fluctuation::filled(loads[0].zero());
-        for k in 0..N {
-            for c in 0..D {
-                coordinates.edges[k][c] = edges[2 * k + c];
-                coordinates.nodes[k][c] = nodes[2 * k + c];
-            }
-        }
-        coordinates
+        let loads = self.map.pull_back(loading);
+        coordinates(self.columns::<0, T>(&loads), self.columns::<COLUMNS, T>(&loads))
     }
 
     /// The products of some columns of L with loads. Above the diagonal L is 0: a loop of fixed length is worth the
@@ -266,28 +276,12 @@ impl TriangleForm<'_> {
         sums
     }
 
-    /// The loads of the fluctuation on the reference triangle.
-    #[inline(always)]
-    fn pull_back<T: Value, const D: usize, const N: usize>(&self, loading: &Loading<D, N, T>) -> [T; LOADS] {
-        let rows = [[self.inverse[(0, 0)], self.inverse[(0, 1)]], [self.inverse[(1, 0)], self.inverse[(1, 1)]]];
-        let Loading { traction: t, volume: g } = loading;
-        // One by one: a loop over them would be compiled into one over their components.
-        let [a, b] = turned(&rows, difference(&t[0]));
-        let [c, d] = turned(&rows, difference(&t[1]));
-        let [e, f] = turned(&rows, difference(&t[2]));
-        let [p, q] = turned(&rows, [g[0][0], g[0][1]]);
-        let [r, s] = turned(&rows, [g[1][0], g[1][1]]);
-        let [u, v] = turned(&rows, [g[2][0], g[2][1]]);
-        let size = self.jacobian;
-        [a, b, c, d, e, f, p * size, q * size, r * size, s * size, u * size, v * size]
-    }
-
     #[inline(always)]
     fn difference_slope<T: Value, const D: usize, const N: usize>(
         &self,
         fluctuation: &Fluctuation<D, N, T>,
     ) -> [[T; D]; N] {
-        let [[xx, xy], [yx, yy]] = [0, 1].map(|c| [self.inverse[(0, c)], self.inverse[(1, c)]]);
+        let [[xx, xy], [yx, yy]] = [0, 1].map(|c| [self.map.inverse[(0, c)], self.map.inverse[(1, c)]]);
         let zero = fluctuation.nodes[0][0].zero();
         let (mut slopes, lane) = ([[zero; D]; N], self.lane % LANES);
         for k in 0..N {
@@ -305,6 +299,40 @@ impl TriangleForm<'_> {
         }
         slopes
     }
+}
+
+impl ReferenceMap {
+    /// The loads of the fluctuation on the reference triangle.
+    #[inline(always)]
+    fn pull_back<T: Value, const D: usize, const N: usize>(&self, loading: &Loading<D, N, T>) -> [T; LOADS] {
+        let rows = [[self.inverse[(0, 0)], self.inverse[(0, 1)]], [self.inverse[(1, 0)], self.inverse[(1, 1)]]];
+        let Loading { traction: t, volume: g } = loading;
+        // One by one: a loop over them would be compiled into one over their components.
+        let [a, b] = turned(&rows, difference(&t[0]));
+        let [c, d] = turned(&rows, difference(&t[1]));
+        let [e, f] = turned(&rows, difference(&t[2]));
+        let [p, q] = turned(&rows, [g[0][0], g[0][1]]);
+        let [r, s] = turned(&rows, [g[1][0], g[1][1]]);
+        let [u, v] = turned(&rows, [g[2][0], g[2][1]]);
+        let size = self.jacobian;
+        [a, b, c, d, e, f, p * size, q * size, r * size, s * size, u * size, v * size]
+    }
+}
+
+/// A fluctuation with these coordinates of edges and nodes.
+#[inline(always)]
+fn coordinates<T: Value, const D: usize, const N: usize>(
+    edges: [T; COLUMNS],
+    nodes: [T; COLUMNS],
+) -> Fluctuation<D, N, T> {
+    let mut coordinates = Fluctuation::filled(edges[0].zero());
+    for k in 0..N {
+        for c in 0..D {
+            coordinates.edges[k][c] = edges[2 * k + c];
+            coordinates.nodes[k][c] = nodes[2 * k + c];
+        }
+    }
+    coordinates
 }
 
 /// Makes the factors of these shapes; apart, so that the loops over elements stay small.

@@ -9,6 +9,7 @@ use crate::pipeline::fixture::{SHOWS, impact};
 use crate::pipeline::maps::Maps;
 use crate::reconstruction;
 use crate::request::Request;
+use crate::time_level::Velocities;
 use crate::traction::Equilibration;
 use percute_core::dynamics::Evaluation;
 use percute_core::history::Step;

@@ -1,6 +1,7 @@
 //! What the edges of a node face, and the cost of its tractions there.
 
 use crate::concentrated::{HATS, ShapeCosts, TractionShape};
+use std::cell::Cell;
 
 /// A hat with less than this share does not make a node wide.
 const SHARE: f64 = 1e-6;
@@ -46,12 +47,27 @@ pub(super) struct NodeCosts<'a> {
     pub(super) compliance: f64,
     /// The halvings of the widest hat on each edge.
     pub(super) widest: [usize; 2],
+    /// Normal forces with their shapes, of the last two that [`shape_again`](Self::shape_again) was asked for.
+    pub(super) found: Cell<[Option<(f64, TractionShape)>; 2]>,
 }
 
 impl NodeCosts<'_> {
     /// The best shape under a normal force (N).
     pub(super) fn shape(&self, normal: f64) -> TractionShape {
         self.shapes.shape(self.compliance * normal, self.widest)
+    }
+
+    /// The same of a force that comes again.
+    pub(super) fn shape_again(&self, normal: f64) -> TractionShape {
+        let [last, before] = self.found.get();
+        match [last, before].into_iter().flatten().find(|(force, _)| *force == normal) {
+            Some((_, shape)) => shape,
+            None => {
+                let shape = self.shape(normal);
+                self.found.set([Some((normal, shape)), last]);
+                shape
+            }
+        }
     }
 
     /// Whether the mesh lacks the local compliance: no hat is as wide as it may be.

@@ -4,6 +4,7 @@
 //! the gap under it is linear in the force, while the square of the true error is quadratic: at low speed, the estimate
 //! of a corner or a curve would be many times too large.
 
+mod bracket;
 mod faced;
 mod own_contact;
 mod own_forces;
@@ -20,6 +21,8 @@ use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::problem::Problem;
 use star::NodeStar;
+use std::cell::Cell;
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
@@ -63,7 +66,10 @@ impl<const D: usize> Concentration<D> {
     ) -> Option<TractionShape> {
         let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
         let normal = frame.split(force).0;
-        let gaps = self.gaps(at, faced, gap).filter(|_| normal > 0.0)?;
+        if normal.partial_cmp(&0.0) != Some(Ordering::Greater) {
+            return None;
+        }
+        let gaps = self.gaps(at, faced, gap)?;
         let shape = match own {
             Some(own) => own,
             None => self.costs(problem, at, faced, &force.map(|f| f / normal), &gaps)?.shape(normal),
@@ -107,7 +113,7 @@ impl<const D: usize> Concentration<D> {
         at: usize,
         faced: &Faced,
         direction: &[f64; D],
-        gaps: &'a [f64],
+        gaps: &[f64],
     ) -> Option<NodeCosts<'a>> {
         let (nodes, star) = (problem.surface().nodes(), &self.nodes[at]);
         let widest = faced.reach.map(|reach| reach.halvings());
@@ -125,7 +131,7 @@ impl<const D: usize> Concentration<D> {
             stars.push(LoadedStar { energy: &stress.energy, frame: other.frame, edges });
         }
         let shapes = ShapeCosts::new([direction[0], direction[D - 1]], compliance, gaps, &star.tributary, stars);
-        Some(NodeCosts { shapes, compliance: faced.compliance, widest })
+        Some(NodeCosts { shapes, compliance: faced.compliance, widest, found: Cell::default() })
     }
 
     /// The nodes at the far ends of the edges of a node.

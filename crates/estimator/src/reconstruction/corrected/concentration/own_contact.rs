@@ -1,12 +1,10 @@
 //! The contact of one node of the auxiliary solution that touches alone.
 
 use super::NodeCosts;
+use super::bracket::bisected;
 use crate::concentrated::TractionShape;
 use crate::reconstruction::corrected::motions::Approach;
 use percute_core::contact::{Coulomb, Frame};
-
-/// Bisections of the force: to 1e-12 of the largest.
-const BISECTIONS: usize = 40;
 
 /// The contact.
 #[derive(Clone, Copy, Debug)]
@@ -73,16 +71,11 @@ impl<const D: usize> Own<D> {
         last: Option<OwnContact<D>>,
     ) -> (f64, TractionShape) {
         if let Some(last) = last.filter(|last| last.width > 0.0) {
-            let shape = costs.shape(last.width);
+            let shape = costs.shape_again(last.width);
             let [free, under] = [0.0, last.width].map(|force| self.remaining(costs, &shape, force));
             return ((-free * last.width / (under - free)).max(0.0), shape);
         }
-        let (mut low, mut high) = (0.0, largest);
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (low + high);
-            if self.remaining(costs, &costs.shape(middle), middle) < 0.0 { low = middle } else { high = middle }
-        }
-        let force = 0.5 * (low + high);
+        let force = bisected(largest, |force| self.remaining(costs, &costs.shape(force), force));
         (force, costs.shape(force))
     }
 

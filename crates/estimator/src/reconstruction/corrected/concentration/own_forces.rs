@@ -14,10 +14,11 @@
 //! force would take back the work of a force that the own contact does not know.
 
 use super::own_contact::{Own, OwnContact};
-use super::{Concentration, Faced};
+use super::{Concentration, Faced, NodeCosts};
 use crate::concentrated::TractionShape;
 use crate::reconstruction::corrected::motions::Approach;
 use percute_core::problem::Problem;
+use std::cell::OnceCell;
 
 /// Forces that move each other are made in turn at most so often, until they change by less than this part. Those at
 /// two planes of a node settle in 10 to 30 turns, but where widths jump.
@@ -95,12 +96,15 @@ impl<const D: usize> OwnForces<D> {
         let simulated = known.contact.to_vec();
         let last: Vec<_> = nodes.iter().map(|&(at, _)| self.contacts[at].take()).collect();
         let mut made: Vec<Option<(Approach<D>, Option<OwnContact<D>>)>> = vec![None; nodes.len()];
+        // The costs of shapes are the same in all turns.
+        let costs: Vec<OnceCell<Option<NodeCosts<'_>>>> = vec![OnceCell::new(); nodes.len()];
         for _ in 0..TURNS {
             let (mut size, mut change) = (0.0_f64, 0.0_f64);
-            for (((at, faced), last), made) in nodes.iter().zip(&last).zip(&mut made) {
+            for ((((at, faced), last), made), costs) in nodes.iter().zip(&last).zip(&mut made).zip(&costs) {
                 let (before, under) = (known.contact[*at], approach(*at, known.contact));
                 if made.is_none_or(|(known, _)| known != under) {
-                    let own = known.own_contact((*at, faced), *last, &simulated, under);
+                    let costs = || costs.get_or_init(|| known.costs((*at, faced), *last)).as_ref();
+                    let own = known.own_contact(*at, *last, &simulated, under, costs);
                     known.act(*at, own.map_or(simulated[*at], |own| own.force));
                     *made = Some((under, own));
                 }
@@ -125,7 +129,7 @@ impl<const D: usize> OwnForces<D> {
     }
 }
 
-impl<const D: usize, const N: usize> Known<'_, D, N> {
+impl<'a, const D: usize, const N: usize> Known<'a, D, N> {
     /// Puts a force (N) on a node, and the opposite one on the node that it faces.
     fn act(&mut self, at: usize, force: [f64; D]) {
         self.contact[at] = force;
@@ -136,14 +140,15 @@ impl<const D: usize, const N: usize> Known<'_, D, N> {
 
     /// The contact of its own of a node that touches alone or did at the step before, in place of its force among
     /// those of the simulation (N).
-    fn own_contact(
+    fn own_contact<'c>(
         &self,
-        (at, faced): (usize, &Faced),
+        at: usize,
         last: Option<OwnContact<D>>,
         simulated: &[[f64; D]],
         approach: Approach<D>,
+        costs: impl FnOnce() -> Option<&'c NodeCosts<'c>>,
     ) -> Option<OwnContact<D>> {
-        let Self { problem, concentration, gap, steps, .. } = self;
+        let Self { problem, concentration, steps, .. } = self;
         let node = &problem.surface().nodes()[at];
         let obstacle = &problem.obstacles()[node.obstacle];
         // Reactions of a foreign history need not be in the cone.
@@ -161,10 +166,8 @@ impl<const D: usize, const N: usize> Known<'_, D, N> {
         if last.is_none() && pushed == 0.0 && largest == 0.0 {
             return None;
         }
-        let gaps = concentration.gaps(at, faced, gap)?;
-        let direction = last.map_or(*own.frame.normal(), |last| last.direction);
-        let costs = concentration.costs(problem, at, faced, &direction, &gaps)?;
-        let shape = costs.shape(if pushed > 0.0 { pushed } else { largest });
+        let costs = costs()?;
+        let shape = costs.shape_again(if pushed > 0.0 { pushed } else { largest });
         let keeps = match last {
             None => costs.is_alone(&shape),
             Some(_) => pushed == 0.0 || !concentration.touches_beside(at, costs.wide(&shape), simulated),
@@ -172,6 +175,15 @@ impl<const D: usize, const N: usize> Known<'_, D, N> {
         if !keeps {
             return None;
         }
-        Some(own.contact(&costs, own.normal(&costs, largest, last), steps(at), last))
+        Some(own.contact(costs, own.normal(costs, largest, last), steps(at), last))
+    }
+
+    /// The costs of the shapes of a node; none where its tributary density is best.
+    fn costs(&self, (at, faced): (usize, &Faced), last: Option<OwnContact<D>>) -> Option<NodeCosts<'a>> {
+        let Self { problem, concentration, gap, .. } = self;
+        let gaps = concentration.gaps(at, faced, gap)?;
+        let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
+        let direction = last.map_or(*frame.normal(), |last| last.direction);
+        concentration.costs(problem, at, faced, &direction, &gaps)
     }
 }

@@ -35,9 +35,7 @@ pub(super) fn subtract_plain_part<R: Registers>(
         let (first, last) = (gradient(r, &[g, h], [a, b]), gradient(r, &[i, k], [b, c]));
         let moduli = &laws.rest[pair.law as usize];
         subtract_stresses(r, pair, [stress(r, moduli, &first), stress(r, moduli, &last)], to);
-        let kept =
-            |[along, across]: Columns<R>, root: f64| r.mul(r.join(r.first(along), r.first(across)), r.splat(root));
-        let (first, last) = (kept(first, around.roots[0]), kept(last, around.roots[1]));
+        let (first, last) = (kept(r, first, around.roots[0]), kept(r, last, around.roots[1]));
         (own[0].0, own[1].0) = (r.store(first), r.store(last));
         let both = r.add(first, last);
         for (patch, sum) in around.patches.iter().zip([both, first, both, last]) {
@@ -45,6 +43,12 @@ pub(super) fn subtract_plain_part<R: Registers>(
             patch.0 = r.store(r.add(r.load(&patch.0), sum));
         }
     }
+}
+
+/// V times the gradient of the first pair of motions.
+#[inline(always)]
+fn kept<R: Registers>(r: R, [along, across]: Columns<R>, root: f64) -> R::Eight {
+    r.mul(r.join(r.first(along), r.first(across)), r.splat(root))
 }
 
 /// Subtracts the part of K x of the first pair of motions that is made of smoothed strains from `to` (N): means of the
@@ -60,21 +64,35 @@ pub(super) fn subtract_smoothed_part<R: Registers>(
 ) {
     let (own, _) = own.as_chunks::<2>();
     for ((pair, around), own) in pairs.iter().zip(around).zip(own) {
-        let patch = |k: usize| r.load(&patches[around.patches[k] as usize].0);
-        let [p, q, s, t] = [patch(0), patch(1), patch(2), patch(3)];
+        let [p, q, s, t] = around.patches.map(
+            #[inline(always)]
+            |patch| r.load(&patches[patch as usize].0),
+        );
         let shared = r.add(p, s);
         let moduli = &laws.smoothed[pair.law as usize];
-        let smoothed = |which: usize, nodes: R::Eight| {
-            let ([a, b, c], beyond) = (around.weights[which], around.beyond[which]);
-            let mut sum = r.add(nodes, r.mul(r.load(&own[which].0), r.splat(a + b + c)));
-            for (weight, place) in [a, b, c].into_iter().zip(beyond) {
-                sum = r.add(sum, r.mul(r.load(&gradients[place as usize - start].0), r.splat(weight)));
-            }
-            stress_of_first(r, moduli, r.mul(sum, r.splat(around.roots[which])))
-        };
-        let (first, last) = (smoothed(0, r.add(shared, q)), smoothed(1, r.add(shared, t)));
+        let first = smoothed(r, around, 0, (r.load(&own[0].0), r.add(shared, q)), (gradients, start));
+        let last = smoothed(r, around, 1, (r.load(&own[1].0), r.add(shared, t)), (gradients, start));
+        let (first, last) = (stress_of_first(r, moduli, first), stress_of_first(r, moduli, last));
         subtract_first_stresses(r, pair, [first, last], to);
     }
+}
+
+/// √V times the smoothed gradient in A or B, from its own and the sum of those of its nodes. A function: closures that
+/// are not inlined would pass each register through memory.
+#[inline(always)]
+fn smoothed<R: Registers>(
+    r: R,
+    around: &Around,
+    which: usize,
+    (own, nodes): (R::Eight, R::Eight),
+    (gradients, start): (&[Gradient], usize),
+) -> R::Eight {
+    let ([a, b, c], beyond) = (around.weights[which], around.beyond[which]);
+    let mut sum = r.add(nodes, r.mul(own, r.splat(a + b + c)));
+    for (weight, place) in [a, b, c].into_iter().zip(beyond) {
+        sum = r.add(sum, r.mul(r.load(&gradients[place as usize - start].0), r.splat(weight)));
+    }
+    r.mul(sum, r.splat(around.roots[which]))
 }
 
 /// Subtracts K x from `to` (N), and adds (M − M_c) x of the first pair of motions to `lumping`.
@@ -145,11 +163,17 @@ pub(super) fn stress<R: Registers>(r: R, moduli: &Moduli, [along, across]: &Colu
 #[inline(always)]
 fn stress_of_first<R: Registers>(r: R, moduli: &Moduli, gradient: R::Eight) -> [R::Four; 2] {
     let other = r.swap(gradient);
-    let column = |k: usize, own: R::Four, other: R::Four| {
-        let [direct, cross] = [&moduli.own[k], &moduli.partner[k]].map(|moduli| r.first(r.load(moduli)));
-        r.add4(r.mul4(own, direct), r.mul4(other, cross))
-    };
-    [column(0, r.first(gradient), r.last(other)), column(1, r.last(gradient), r.first(other))]
+    [
+        column_of_first(r, moduli, 0, [r.first(gradient), r.last(other)]),
+        column_of_first(r, moduli, 1, [r.last(gradient), r.first(other)]),
+    ]
+}
+
+/// A column of it, at the derivatives along its axis and the other one, with their components exchanged.
+#[inline(always)]
+fn column_of_first<R: Registers>(r: R, moduli: &Moduli, k: usize, [own, other]: [R::Four; 2]) -> R::Four {
+    let (direct, cross) = (r.first(r.load(&moduli.own[k])), r.first(r.load(&moduli.partner[k])));
+    r.add4(r.mul4(own, direct), r.mul4(other, cross))
 }
 
 /// Forces of a stress of A or B at two nodes (N): its product with the gradients there.
@@ -188,22 +212,29 @@ fn subtract_stresses<R: Registers>(r: R, pair: &Pair, [a, b]: [Columns<R>; 2], t
 #[inline(always)]
 fn subtract_first_stresses<R: Registers>(r: R, pair: &Pair, stresses: [[R::Four; 2]; 2], to: &mut [Nodal]) {
     let [g, h, i, k] = pair.gradients;
-    let force = |[along, across]: [R::Four; 2], gradient: [f64; 2]| {
-        r.add4(r.mul4(along, r.splat4(gradient[0])), r.mul4(across, r.splat4(gradient[1])))
-    };
     let [a, b] = stresses;
-    let (first, shared, last) = (force(a, g), r.add4(force(a, h), force(b, i)), force(b, k));
+    let (first, shared) = (force_of_first(r, a, g), r.add4(force_of_first(r, a, h), force_of_first(r, b, i)));
+    let last = force_of_first(r, b, k);
     let sum = r.add4(r.add4(first, last), shared);
     let [n0, n1, n2, n3] = places(pair);
-    let add = |to: &mut Nodal, change: R::Four| {
-        let whole = r.load(&to.0);
-        to.0 = r.store(r.with_first(whole, r.add4(r.first(whole), change)));
-    };
-    let minus = |change: R::Four| r.sub4(r.splat4(0.0), change);
-    add(&mut to[n0], sum);
-    add(&mut to[n1], minus(first));
-    add(&mut to[n2], minus(shared));
-    add(&mut to[n3], minus(last));
+    let nothing = r.splat4(0.0);
+    add_to_first(r, &mut to[n0], sum);
+    add_to_first(r, &mut to[n1], r.sub4(nothing, first));
+    add_to_first(r, &mut to[n2], r.sub4(nothing, shared));
+    add_to_first(r, &mut to[n3], r.sub4(nothing, last));
+}
+
+/// The force of a stress at a node (N), of the first pair of motions.
+#[inline(always)]
+fn force_of_first<R: Registers>(r: R, [along, across]: [R::Four; 2], gradient: [f64; 2]) -> R::Four {
+    r.add4(r.mul4(along, r.splat4(gradient[0])), r.mul4(across, r.splat4(gradient[1])))
+}
+
+/// Adds to the first pair of motions.
+#[inline(always)]
+fn add_to_first<R: Registers>(r: R, to: &mut Nodal, change: R::Four) {
+    let whole = r.load(&to.0);
+    to.0 = r.store(r.with_first(whole, r.add4(r.first(whole), change)));
 }
 
 /// Adds the nodal forces of the skew part of the stress that lumping the mass is for a motion w of elements of a plane

@@ -1,0 +1,104 @@
+//! The form of an element that is kept.
+
+use super::{COLUMNS, EnergyForm, EnergyForms, FluctuationForm, LOADS, ReferenceMap, coordinates};
+use crate::lanes::Value;
+use crate::stress::bar::BarStress;
+use crate::stress::{Fluctuation, Loading};
+use percute_core::ids::ElementId;
+use percute_core::problem::Problem;
+
+/// The form of one element.
+#[derive(Clone, Debug)]
+pub(crate) enum KeptForm {
+    Bar(BarStress),
+    Triangle(Box<KeptTriangle>),
+}
+
+/// The form of one triangle.
+#[derive(Clone, Debug)]
+pub(crate) struct KeptTriangle {
+    map: ReferenceMap,
+    /// L; above the diagonal, 0.
+    factor: [[f64; LOADS]; LOADS],
+}
+
+impl KeptForm {
+    /// That of an element, which it shares with no other.
+    pub(crate) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, id: ElementId) -> Self {
+        let points = problem.mesh().cell_points(id);
+        let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
+        let [lane, ..] = forms.prepare(problem, std::iter::once((id, points)));
+        match forms.of(problem, id, &points, lane) {
+            EnergyForm::Bar(map) => Self::Bar(map),
+            EnergyForm::Triangle(form) => Self::Triangle(Box::new(KeptTriangle {
+                map: form.map,
+                factor: form.factors.each_ref().map(|row| row.each_ref().map(|entry| entry.0[lane])),
+            })),
+        }
+    }
+
+    /// Memory of one (bytes).
+    pub(crate) const fn memory() -> usize {
+        size_of::<KeptTriangle>()
+    }
+}
+
+impl FluctuationForm for KeptForm {
+    #[inline(always)]
+    fn fluctuation<T: Value, const D: usize, const N: usize>(
+        &self,
+        loading: &Loading<D, N, T>,
+    ) -> Fluctuation<D, N, T> {
+        match self {
+            Self::Bar(map) => map.fluctuation(loading),
+            Self::Triangle(form) => {
+                let loads = form.map.pull_back(loading);
+                coordinates(form.columns::<0, T>(&loads), form.columns::<COLUMNS, T>(&loads))
+            }
+        }
+    }
+}
+
+impl KeptTriangle {
+    /// The products of some columns of L with loads, as those of a form in a lane.
+    #[inline(always)]
+    fn columns<const FIRST: usize, T: Value>(&self, loads: &[T; LOADS]) -> [T; COLUMNS] {
+        let mut sums = [loads[0].zero(); COLUMNS];
+        for i in FIRST..LOADS {
+            for j in 0..COLUMNS {
+                sums[j] += loads[i] * self.factor[i][FIRST + j];
+            }
+        }
+        sums
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_core::material::Elastic;
+    use percute_core::problem::TriangleProblem;
+    use percute_testkit::{Random, random_rectangle};
+
+    /// The form that is kept gives the bits of the form that is made anew, among others.
+    #[test]
+    fn a_form_that_is_kept_is_that_of_the_element() {
+        let mesh = random_rectangle(1.0, 1.0, 4, 7).unwrap();
+        let law = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
+        let problem = TriangleProblem::builder(mesh).material(law).build().unwrap();
+        let mut random = Random::new(3);
+        let ids: Vec<ElementId> = (0..8).map(ElementId::new).collect();
+        let points = |id: &ElementId| problem.mesh().cell_points(*id);
+        let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
+        let lanes = forms.prepare(&problem, ids.iter().map(|id| (*id, points(id))));
+        for (id, lane) in ids.iter().zip(lanes) {
+            let mut vector = || [(); 2].map(|()| random.between(-1.0, 1.0));
+            let loading =
+                Loading { traction: [(); 3].map(|()| [vector(), vector()]), volume: [(); 3].map(|()| vector()) };
+            let made = forms.of(&problem, *id, &points(id), lane).fluctuation(&loading);
+            let kept = KeptForm::new(&problem, *id).fluctuation(&loading);
+            assert!(made.energy() > 0.0);
+            assert_eq!((made.edges, made.nodes), (kept.edges, kept.nodes), "{id:?}");
+        }
+    }
+}
