@@ -24,8 +24,8 @@ fn corner(speed: f64) -> CaseOf<2, 3> {
     let [sin, cos] = [0.173_648_177_666_930_33, 0.984_807_753_012_208];
     let gap = 2.5e-7 * speed;
     let tables = format!(
-        "[initial]\nvelocity = [{}, {}]\n[[obstacle]]\npoint = [{}, {}]\nnormal = [{sin}, {cos}]\nfriction = 0.2\n[time]\n\
-         end = 40e-6",
+        "[initial]\nvelocity = [{}, {}]\n[[obstacle]]\npoint = [{}, {}]\nnormal = [{sin}, {cos}]\nfriction = 0.2\n\
+         [time]\nend = 40e-6",
         -speed * sin,
         -speed * cos,
         -gap * sin,
@@ -126,8 +126,9 @@ fn fronts_get_uniform_meshes() {
 /// A bar has exponents and bisections of its own.
 #[test]
 fn bars_are_adapted() {
-    let text = "[mesh]\nbar = { length = 0.1, elements = 16 }\n[material]\nyoung = 70e9\ndensity = 2700.0\nsection = 0.02\n\
-                [initial]\nvelocity = -4.0\n[[obstacle]]\npoint = -1e-5\nnormal = 1.0\n[time]\nend = 60e-6\ncourant = 0.9\n";
+    let text = "[mesh]\nbar = { length = 0.1, elements = 16 }\n[material]\nyoung = 70e9\ndensity = 2700.0\n\
+                section = 0.02\n[initial]\nvelocity = -4.0\n[[obstacle]]\npoint = -1e-5\nnormal = 1.0\n[time]\n\
+                end = 60e-6\ncourant = 0.9\n";
     let ByDimension::Bar(case) = parse(Source::new("case", text.to_string())).unwrap() else { panic!("a plane body") };
     let wish = (Wish::new(0.08), Mesher::Bisection);
     let found = adapt(&case.problem, &case.times, case.options, wish, &mut Unobserved, &mut |_| ()).unwrap();
@@ -140,13 +141,13 @@ fn bars_are_adapted() {
 fn surfaces_in_pairs_stay_so() {
     let body = |name: &str, place: &str| {
         format!(
-            "[[body]]\nname = \"{name}\"\nrectangle = {{ width = 0.04, height = 0.02, nx = 4, ny = 2 }}\nmaterial = {{ young = \
-             70e9, poisson = 0.3, density = 2700.0, plane = \"stress\" }}\n{place}\n"
+            "[[body]]\nname = \"{name}\"\nrectangle = {{ width = 0.04, height = 0.02, nx = 4, ny = 2 }}\nmaterial = \
+             {{ young = 70e9, poisson = 0.3, density = 2700.0, plane = \"stress\" }}\n{place}\n"
         )
     };
     let bodies = body("lower", "") + &body("upper", "origin = [0.0, 0.02001]\nvelocity = [0.0, -2.0]");
-    let rest = "[[contact]]\nfriction = 0.2\n[[support]]\ngroup = \"lower.left\"\ncomponents = [\"x\", \"y\"]\n[time]\nend = \
-                30e-6\ncourant = 0.9\n";
+    let rest = "[[contact]]\nfriction = 0.2\n[[support]]\ngroup = \"lower.left\"\ncomponents = [\"x\", \"y\"]\n\
+                [time]\nend = 30e-6\ncourant = 0.9\n";
     let text = bodies + rest;
     let ByDimension::Plane(case) = parse(Source::new("case", text)).unwrap() else { panic!("a bar") };
     let pairs =
@@ -191,8 +192,8 @@ fn the_best_run_stays() {
     assert_eq!(best.report.error.relative_mean, limited.iterations[1].error);
 }
 
-/// The impulse of a slow corner and the largest displacement of its far side come near to their limits; the force of one
-/// node does not, which is said with its reason.
+/// The impulse of a slow corner and the largest displacement of its far side come near to their limits; the force of
+/// one node does not, which is said with its reason.
 #[test]
 fn quantities_come_near_to_their_limits() {
     let case = corner(40.0);

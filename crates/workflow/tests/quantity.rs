@@ -31,7 +31,8 @@ fn largest<const D: usize, const N: usize>(
 }
 
 /// At the critical step, central differences on a uniform bar carry a front without dispersion. The bar strikes in the
-/// middle of its run of 100 steps, and the front reaches all probes: the stress is ρcv, to the rounding of so many steps.
+/// middle of its run of 100 steps, and the front reaches all probes: the stress is ρcv, to the rounding of so many
+/// steps.
 #[test]
 fn the_stress_of_a_bar_is_that_of_the_exact_impact() {
     let mesh = BarMesh::uniform_bar(BAR.length, 50).unwrap();

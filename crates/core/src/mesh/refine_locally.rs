@@ -59,8 +59,8 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         Self::checked(self.simplex, points, &cells, (&facets, &elements), Parts::MayTouch)
     }
 
-    /// All edges of the chosen elements, the longest edge of each element that has an edge that is cut, and the twins of
-    /// all these.
+    /// All edges of the chosen elements, the longest edge of each element that has an edge that is cut, and the twins
+    /// of all these.
     pub(super) fn cuts(&self, chosen: impl Fn(ElementId) -> bool, twins: &[Twins]) -> Cuts {
         let edges = self.edges();
         let square =

@@ -48,9 +48,9 @@ const CONTACT: [Quantity; 3] = [
 /// The meaning of the shaded range.
 const EXPECTED: &str = "expected by the verdict on the first mesh";
 
-/// Estimate and true error, effectivity index, and peak force, impulse, rebound velocity and probes over their values on
-/// the finest mesh, all over the size of the elements, as an SVG document. The range of the index that the verdict expects
-/// on the first mesh is shaded. None with fewer than two meshes or without an error.
+/// Estimate and true error, effectivity index, and peak force, impulse, rebound velocity and probes over their values
+/// on the finest mesh, all over the size of the elements, as an SVG document. The range of the index that the verdict
+/// expects on the first mesh is shaded. None with fewer than two meshes or without an error.
 #[must_use]
 pub fn convergence(verification: &Verification) -> Option<String> {
     let levels = &verification.levels;

@@ -56,7 +56,8 @@ where
     /// Begins with a problem on its mesh.
     ///
     /// # Errors
-    /// A wish out of range, a reconstruction without sources, a problem that cannot be written down, a mesher that cannot mesh it.
+    /// A wish out of range, a reconstruction without sources, a problem that cannot be written down, a mesher that
+    /// cannot mesh it.
     pub fn new(
         problem: &Problem<D, N>,
         times: &TimeGrid,

@@ -55,8 +55,8 @@ where
         !matches!(self.mesher, Mesher::Gmsh(Geometry::File(..)))
     }
 
-    /// The mesh of a plan for the mesh of a run, and the mean error that is expected on it, over that of the run. It has
-    /// about `most` elements at most.
+    /// The mesh of a plan for the mesh of a run, and the mean error that is expected on it, over that of the run. It
+    /// has about `most` elements at most.
     pub(super) fn next(
         &self,
         run: &Mesh<D, N>,

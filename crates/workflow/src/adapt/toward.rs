@@ -5,8 +5,8 @@ use super::{Reason, Wish};
 use crate::plan::{Basis, Branch, Plan};
 use crate::quantity::{Judgement, Obstruction, Quantity, judge};
 
-/// The mean error over that of the run that is aimed at on the way to the limit of a quantity: of graded meshes and maps,
-/// about half the size where it matters.
+/// The mean error over that of the run that is aimed at on the way to the limit of a quantity: of graded meshes and
+/// maps, about half the size where it matters.
 const STEP: f64 = 0.6;
 /// A uniform mesh becomes finer by this factor on this way.
 const FINER: f64 = 2.0;

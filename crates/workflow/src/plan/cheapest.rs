@@ -3,7 +3,8 @@
 //! The cost is the number of elements times that of steps, Σ r^−d over min(r h), with r = h_new/h. The squared error is
 //! Σ e_E² r^2q (1 + ⁴⁄₃ a (1 − x^−2)), where x is the growth of the size over the smallest one: elements that are
 //! larger than the smallest one by another factor x than before have shorter steps for their size, which adds a part
-//! of `a` for a factor of 2. For each smallest size the optimum without the last factor is r = (λ q e_E²)^(−1/(2q + d)).
+//! of `a` for a factor of 2. For each smallest size the optimum without the last factor is r = (λ q e_E²)^(−1/(2q +
+//! d)).
 
 use super::{Basis, PART, SMALLEST};
 

@@ -16,8 +16,8 @@ pub struct Exponents {
     pub near: f64,
     /// Of the others.
     pub far: f64,
-    /// With steps half as long on the same mesh, η grows by this part: elements that stay as large lose the cancellation
-    /// of the errors of mass and step.
+    /// With steps half as long on the same mesh, η grows by this part: elements that stay as large lose the
+    /// cancellation of the errors of mass and step.
     pub step: f64,
 }
 

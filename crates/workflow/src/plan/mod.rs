@@ -75,8 +75,8 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// The plan for a mean error that is `wanted` times that of the run, or the next step towards it. No element becomes
-    /// larger than `largest` times its size.
+    /// The plan for a mean error that is `wanted` times that of the run, or the next step towards it. No element
+    /// becomes larger than `largest` times its size.
     #[must_use]
     pub fn new(basis: &Basis, wanted: f64, largest: &[f64]) -> Self {
         let (branch, exponents) = (basis.branch(), Exponents::of(&basis.sources));

@@ -31,8 +31,8 @@ pub struct NextMesh {
     pub element_steps: f64,
     /// The same on the next mesh.
     pub planned_element_steps: f64,
-    /// Elements times steps of a run with the wanted error, and about how long it takes with its estimate (s); none of a
-    /// mesh to be graded, whose error falls faster than that of one run tells.
+    /// Elements times steps of a run with the wanted error, and about how long it takes with its estimate (s); none of
+    /// a mesh to be graded, whose error falls faster than that of one run tells.
     pub needed: Option<[f64; 2]>,
     /// The plan.
     #[serde(skip)]

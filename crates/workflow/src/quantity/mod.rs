@@ -105,8 +105,8 @@ impl Quantity {
         }
     }
 
-    /// A sentence about a quantity that does not converge or does so slowly, with the reason and the way out if they are
-    /// known. None of one that changes by less than 1 %.
+    /// A sentence about a quantity that does not converge or does so slowly, with the reason and the way out if they
+    /// are known. None of one that changes by less than 1 %.
     #[must_use]
     pub fn warning(&self, judgement: &Judgement, obstruction: Option<&Obstruction>) -> Option<String> {
         let change = judgement.change.filter(|change| change.abs() > SMALL)?;

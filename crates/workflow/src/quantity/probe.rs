@@ -91,7 +91,10 @@ impl FromStr for Probe {
             let text = text.trim();
             let number = text.parse::<f64>().ok().filter(|x| x.is_finite());
             number.ok_or_else(|| {
-                format!("the coordinate {text:?} of {given:?} is no number; give numbers in m without a unit, as in {EXAMPLE}")
+                format!(
+                    "the coordinate {text:?} of {given:?} is no number; give numbers in m without a unit, as in \
+                     {EXAMPLE}"
+                )
             })
         };
         let point = point.split(',').map(coordinate).collect::<Result<_, _>>()?;

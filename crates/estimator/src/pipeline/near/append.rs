@@ -111,8 +111,8 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         (self.checks - 1 + self.element.index()).is_multiple_of(CHECK)
     }
 
-    /// An interval, whose beginning is sampled if it `begins` anew; `stress` gives the stress there, with its loading or
-    /// without.
+    /// An interval, whose beginning is sampled if it `begins` anew; `stress` gives the stress there, with its loading
+    /// or without.
     fn interval(
         &self,
         sampler: &ElementSampler<'_, '_, D, N>,

@@ -185,7 +185,8 @@ fn way(expected: &Expected, error: f64) -> String {
                 false => "waves of the length of an element have a wrong speed on any mesh",
             };
             format!(
-                "A mean of {half} is out of reach: elements {finer} times smaller, {cost} times the cost, because {cause}"
+                "A mean of {half} is out of reach: elements {finer} times smaller, {cost} times the cost, because \
+                 {cause}"
             )
         }
         Branch::Uniform => {
