@@ -24,7 +24,7 @@ use std::ops::Range;
 /// Away from contact the pointwise equilibrium of σ_DA is checked in so many elements at each level, each element in
 /// its turn, at most every [`TURNS`] levels: a check costs more than the measure itself.
 const CHECKS: usize = 64;
-const TURNS: usize = 256;
+const TURNS: usize = 64;
 
 /// Sums over far elements at the levels and in the middles between them.
 #[derive(Clone, Debug, Default)]

@@ -13,7 +13,7 @@ use crate::traction::EquilibratedLevel;
 
 /// The pointwise equilibrium of σ_DA is checked in one interval of so many: a check costs as much as the stress of four
 /// intervals.
-const CHECK: usize = 256;
+const CHECK: usize = 64;
 
 /// An instant of an interval.
 #[derive(Clone, Copy, Debug)]
