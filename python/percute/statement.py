@@ -14,8 +14,12 @@ from numpy.typing import ArrayLike
 
 from percute.checks import number, numbers, text, wrong
 from percute.errors import InputError
+from percute.words import counted
 
 __all__ = ["BodyForce", "Elastic", "Plane", "Support", "Traction"]
+
+AXES = """"x", "y" or, for both, ("x", "y")"""
+"""The components that a support may have."""
 
 Vector = tuple[float, ...]
 Rows = tuple[Vector, ...]
@@ -36,18 +40,23 @@ def vector_of(name: str, value: object, dimension: int, unit: str) -> Vector:
     return made
 
 
-def _table(name: str, value: object, time: object, columns: int | None) -> tuple[Vector | Rows, Vector | None]:
-    """Check a value that is constant or has a row for each instant."""
+def _table(name: str, value: object, time: object, columns: tuple[str, ...] | None) -> tuple[Vector | Rows, Vector | None]:
+    """Check a value that is constant or has a row for each instant; ``columns`` names the components it must have."""
+    needed = "" if columns is None else f"{counted(len(columns), 'number')}, one for each of `components`, {', '.join(columns)}"
     if time is None:
+        if columns is not None and np.ndim(numbers(name, value, most=2)) == 2:
+            raise InputError(f"`{name}` has rows, but `time` is missing: give the instant of each row (s), or {needed}")
         constant = vector(name, value)
-        if columns is not None and len(constant) != columns:
-            raise InputError(f"`{name}` has {len(constant)} numbers; it must have {columns}, or give `time`")
+        if columns is not None and len(constant) != len(columns):
+            more = "; for a velocity that varies give `time`, too" if len(constant) > len(columns) else ""
+            raise InputError(f"`{name}` has {counted(len(constant), 'number')}; it must have {needed}{more}")
         return constant, None
     array = numbers(name, value, most=2)
-    if array.ndim == 1 and columns in (None, 1):
+    if array.ndim == 1 and (columns is None or len(columns) == 1):
         array = array[:, None]
-    if array.ndim != 2 or (columns is not None and array.shape[1] != columns):
-        raise InputError(f"`{name}` has the shape {array.shape}; with `time` it must have a row for each instant")
+    if array.ndim != 2 or (columns is not None and array.shape[1] != len(columns)):
+        row = "a row" if columns is None else f"a row of {needed},"
+        raise InputError(f"`{name}` has the shape {array.shape}; with `time` it must have {row} for each instant")
     return tuple(tuple(row) for row in array.tolist()), vector("time", time)
 
 
@@ -162,8 +171,10 @@ class Support:
         text("group", self.group)
         given = (self.components,) if isinstance(self.components, str) else self.components
         if not isinstance(given, Iterable):
-            raise wrong("components", given, "'x', 'y' or both")
+            raise wrong("components", given, AXES)
         components = tuple(text("components", name) for name in given)
+        if not components or not set(components) <= {"x", "y"}:
+            raise wrong("components", self.components, AXES)
         if len(set(components)) < len(components):
             raise InputError(f"`components` is {components!r}; it must not name an axis twice")
         object.__setattr__(self, "components", components)
@@ -171,7 +182,7 @@ class Support:
             if self.time is not None:
                 raise InputError("`time` goes with `velocity`, which is missing")
             return
-        velocity, time = _table("velocity", self.velocity, self.time, len(components))
+        velocity, time = _table("velocity", self.velocity, self.time, components)
         object.__setattr__(self, "velocity", velocity)
         object.__setattr__(self, "time", time)
 

@@ -127,8 +127,6 @@ def test_mistakes_in_a_mesh(changes: dict[str, Any], message: str) -> None:
         ({"obstacles": [pc.Plane(point=(0, 0.01), normal=(0, 1), friction=0)]}, "`obstacles[0].point`: the plane cuts through the body"),
         ({"obstacles": [pc.Plane(point=(0, 0), normal=(0, 0), friction=0)]}, "`obstacles[0]`: `normal` is [0.0, 0.0]"),
         ({"obstacles": [pc.Plane(point=(0, -1), normal=(0, 1), friction=0, group="floor")]}, "`obstacles[0].group`"),
-        ({"supports": [pc.Support(group="left", components="z")]}, "`supports[0].components` names \"z\""),
-        ({"supports": [pc.Support(group="left", components=())]}, "`supports[0].components`: no component"),
         (
             {"tractions": [pc.Traction(group="top", value=[[0, 0]], time=[0, 1])]},
             "`tractions[0].value` has 1 entries and `time` has 2",
@@ -148,6 +146,39 @@ def test_mistakes_in_a_problem(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(pc.InputError, match=re.escape(message)) as raised:
         pc.Problem(pc.Mesh.rectangle(1.0, 1.0, nx=2, ny=2), **arguments)
     assert isinstance(raised.value, ValueError) and isinstance(raised.value, pc.PercuteError)
+
+
+AXES = """it must be "x", "y" or, for both, ("x", "y")"""
+BOTH: dict[str, Any] = {"components": ("x", "y")}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        # The axes are at fault, not the number of velocities that goes with them.
+        ({"components": "xy"}, f"`components` is 'xy'; {AXES}"),
+        ({"components": "xy", "velocity": (0.0, 1.0)}, f"`components` is 'xy'; {AXES}"),
+        ({"components": ["x,y"], "velocity": (0.0, 1.0)}, f"`components` is ['x,y']; {AXES}"),
+        ({"components": "z"}, f"`components` is 'z'; {AXES}"),
+        ({"components": ("X",)}, f"`components` is ('X',); {AXES}"),
+        ({"components": ()}, f"`components` is (); {AXES}"),
+        ({**BOTH, "velocity": 1.0}, "`velocity` has 1 number; it must have 2 numbers, one for each of `components`, x, y"),
+        ({"components": "y", "velocity": (0.0, 1.0)}, "`velocity` has 2 numbers; it must have 1 number, one for each of `components`, y; for a velocity that"),
+        ({**BOTH, "velocity": [[0.0, 1.0], [0.0, 0.0]]}, "`velocity` has rows, but `time` is missing: give the instant of each row (s)"),
+        ({**BOTH, "velocity": (0.0, 1.0), "time": (0.0, 1.0)}, "with `time` it must have a row of 2 numbers, one for each of `components`, x, y, for"),
+        ({"components": "x", "velocity": [[0.0, 1.0]] * 3, "time": (0.0, 1.0, 2.0)}, "has the shape (3, 2); with `time` it must have a row of 1 number"),
+    ],
+)
+def test_mistakes_in_a_support(arguments: dict[str, Any], message: str) -> None:
+    with pytest.raises(pc.InputError, match=re.escape(message)):
+        pc.Support(group="left", **arguments)
+
+
+@given(st.text(max_size=3).filter(lambda name: name not in ("x", "y")), st.lists(st.floats(-1, 1), max_size=4))
+def test_unknown_axes_are_named_whatever_the_velocity(name: str, velocity: list[float]) -> None:
+    for components in (name, [name], ("x", name)):
+        with pytest.raises(pc.InputError, match=r"`components"):
+            pc.Support(group="left", components=components, velocity=velocity)
 
 
 @pytest.mark.parametrize(
