@@ -329,6 +329,28 @@ class Mesh(Immutable):
         """Number of the body of each element, from 0 in the order of their first nodes, shape (elements,)."""
         return self._data.bodies
 
+    @cached_property
+    def areas(self) -> NDArray[np.float64]:
+        """Area of each triangle (m²), of a bar the length of each element (m), shape (elements,)."""
+        return self._data.areas()
+
+    @cached_property
+    def sizes(self) -> NDArray[np.float64]:
+        """Size of each element (m), shape (elements,): the root of the area of a triangle, the length of a bar."""
+        if self.dimension == 1:
+            return self.areas
+        sizes = np.sqrt(self.areas)
+        sizes.flags.writeable = False
+        return sizes
+
+    @cached_property
+    def outline(self) -> tuple[NDArray[np.int64], ...]:
+        """The closed lines around the bodies and their holes, each by its nodes in order: arrays (n,); none of a bar.
+
+        They go counterclockwise around a body and clockwise around a hole, each from its smallest number on.
+        """
+        return tuple(self._data.outline())
+
     @property
     def size(self) -> float:
         """Diagonal of the bounding box of the mesh (m)."""

@@ -1,10 +1,13 @@
 """Meshes compare by their contents, and the package names what is public."""
 
 import pickle
+from typing import Any
 
 import numpy as np
 import percute as pc
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 
 def triangle(**changed: object) -> pc.Mesh:
@@ -19,6 +22,50 @@ def test_meshes_with_the_same_contents_are_equal() -> None:
     # Another number, sign of zero apart, is another mesh.
     assert mesh == triangle(points=[[0, 0], [1, -0.0], [0, 1]]) and hash(mesh) == hash(triangle(points=[[0, 0], [1, -0.0], [0, 1]]))
     assert len({mesh, triangle(), mesh.refine(0), mesh.refine()}) == 2
+
+
+def enclosed(mesh: pc.Mesh, line: Any) -> float:
+    """Give the area that a closed line of nodes encloses (m²), positive if it goes counterclockwise."""
+    x, y = mesh.points[line].T
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def test_sizes_and_areas_of_elements() -> None:
+    mesh = pc.Mesh.rectangle(3.0, 2.0, nx=6, ny=2, diagonals="alternating").refine(where=np.arange(24) < 5)
+    corners = mesh.points[mesh.cells]
+    areas = 0.5 * np.linalg.det(corners[:, 1:] - corners[:, :1])
+    assert mesh.areas.shape == mesh.sizes.shape == (len(mesh.cells),) and len(mesh.cells) > 24
+    # Rounding of one determinant.
+    assert np.allclose(mesh.areas, areas, rtol=1e-14) and np.array_equal(mesh.sizes, np.sqrt(mesh.areas))
+    bar = pc.Mesh([0.0, 0.25, 1.0], [[0, 1], [1, 2]])
+    assert bar.sizes.tolist() == bar.areas.tolist() == [0.25, 0.75] and bar.outline == ()
+    for array in (mesh.areas, mesh.sizes, *mesh.outline):
+        assert not array.flags.writeable
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10**6), st.integers(2, 5), st.floats(0.0, 360.0))
+def test_outlines_enclose_the_body_without_its_holes(seed: int, cells: int, degrees: float) -> None:
+    """The lines consist of the edges that one element has, and enclose the sum of the areas."""
+    whole = pc.Mesh.rectangle(3.0, 2.0, nx=3 * cells, ny=2 * cells)
+    # Two rectangular holes, at least a row or column of cells apart from each other and from the sides.
+    column, row = (np.floor(whole.points[whole.cells].mean(axis=1) * cells)).astype(int).T
+    random, most = np.random.default_rng(seed), (3 * cells - 3) // 2
+    widths, heights = random.integers(1, most + 1, 2), random.integers(1, 2 * cells - 1, 2)
+    starts = 1, 3 * cells - 1 - widths[1]
+    holes = [(column >= x) & (column < x + w) & (row >= 1) & (row < 1 + h) for x, w, h in zip(starts, widths, heights, strict=True)]
+    cells_left = whole.cells[~(holes[0] | holes[1])]
+    nodes, numbers = np.unique(cells_left, return_inverse=True)
+    mesh = pc.Mesh(whole.points[nodes], numbers.reshape(-1, 3)).rotated(degrees)
+    areas = [enclosed(mesh, line) for line in mesh.outline]
+    # The outline of the rectangle counterclockwise, holes clockwise; rounding of sums of some 100 terms.
+    assert sum(areas) == pytest.approx(mesh.areas.sum(), rel=1e-12)
+    assert len(areas) == 3 and sum(area > 0 for area in areas) == 1
+    sides = np.sort(mesh.cells.astype(int)[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, count = np.unique(sides, axis=0, return_counts=True)
+    lines = np.vstack([np.column_stack([line, np.roll(line, -1)]) for line in mesh.outline])
+    assert np.array_equal(np.unique(np.sort(lines, axis=1), axis=0), edges[count == 1])
+    assert all(line[0] == line.min() for line in mesh.outline)
 
 
 def elements(mesh: pc.Mesh, mirrored: bool = False) -> set[frozenset[tuple[float, float]]]:

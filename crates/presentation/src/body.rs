@@ -60,8 +60,10 @@ impl Body {
         [extreme(f64::min), extreme(f64::max)]
     }
 
-    /// The lines around the body and its holes, each with its first node at the end again; none of a bar.
-    pub(crate) fn outline(&self) -> Vec<Vec<usize>> {
+    /// The lines around the body and its holes, counterclockwise and clockwise, each with its first node at the end
+    /// again; none of a bar.
+    #[must_use]
+    pub fn outline(&self) -> Vec<Vec<usize>> {
         if self.dimension == 1 {
             return Vec::new();
         }

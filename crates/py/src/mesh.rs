@@ -3,11 +3,13 @@
 use crate::any::AnyMesh;
 use crate::{bridge, errors, view};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use percute_core::ids::ElementId;
 use percute_core::mesh::{BarMesh, Diagonals, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
 use percute_core::simplex::{ByDimension, Element, Simplex};
 use percute_core::{each_dimension, map_dimension};
 use percute_io::Overwrite;
 use percute_io::gmsh::{self, Format, Version};
+use percute_presentation::Body;
 use percute_workflow::case::far_origin;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -146,6 +148,20 @@ impl MeshData {
     fn import_warnings(&self) -> Vec<String> {
         let warnings = each_dimension!(&self.mesh, mesh => mesh.import_warnings());
         warnings.iter().map(|warning| warning.message.clone()).collect()
+    }
+
+    /// The closed lines around bodies and holes, by their nodes.
+    fn outline<'py>(&self, py: Python<'py>) -> Vec<Bound<'py, PyArray1<i64>>> {
+        let lines = each_dimension!(&self.mesh, mesh => Body::new(mesh).outline());
+        lines.iter().map(|line| view::column(py, &line[..line.len() - 1], |&node| node as i64)).collect()
+    }
+
+    /// Area (m²) or length (m) of each element.
+    fn areas<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let areas: Vec<f64> = each_dimension!(&self.mesh, mesh => {
+            (0..mesh.element_count()).map(|e| mesh.cell_geometry(ElementId::new(e)).volume).collect()
+        });
+        view::column(py, &areas, |&area| area)
     }
 
     #[getter]
