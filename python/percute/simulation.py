@@ -181,6 +181,7 @@ def true_errors(
     courant: float | None = None,
     step: float | None = None,
     steps: ArrayLike | None = None,
+    nested: bool = True,
     progress: ProgressOption = None,
 ) -> list[TrueError]:
     """Simulate a problem on a fine mesh and give the true errors of histories of coarser ones against it.
@@ -195,6 +196,8 @@ def true_errors(
         The reference.
     end, courant, step, steps, progress
         As for `simulate`.
+    nested : bool, default: True
+        Whether the meshes must be nested, as for `History.error`.
 
     Returns
     -------
@@ -208,19 +211,20 @@ def true_errors(
     Raises
     ------
     InputError
-        An argument is wrong, ``problem`` is another one than that of a history, the meshes are not nested, or the reference ends
-        too early.
+        An argument is wrong, ``problem`` is another one than that of a history, the meshes are not nested or, with
+        ``nested=False``, not of the same bodies, or the reference ends too early.
     SimulationError
         The reference is unstable.
     """
     coarse = [history._data for history in items("histories", histories, History)]
     times, reference = times_of(end, courant, step, steps), instance("problem", problem, Problem)._data
+    within = flag("nested", nested)
     _percute.check_run(reference, times, True)
     warn(_percute.plausibility_warnings(reference, times, False))
     with shown(progress) as tell:
-        found, drift = _percute.errors_against_simulation(coarse, reference, times, tell)
+        found, drift = _percute.errors_against_simulation(coarse, reference, times, within, tell)
     warn([] if drift is None else [drift], SimulationWarning)
-    return true_errors_of(found)
+    return true_errors_of(found, within)
 
 
 def absolute(file: str | os.PathLike[str] | None) -> str | None:

@@ -36,6 +36,8 @@ class TrueError:
     """Elastic part of e² (J), shape (instants,)."""
     total: NDArray[np.float64]
     """e² (J), shape (instants,)."""
+    nested: bool = True
+    """Whether it is exact in space; False if it was found by location, on meshes that need not be nested."""
 
     @classmethod
     def over(cls, time: NDArray[np.float64], kinetic: NDArray[np.float64], elastic: NDArray[np.float64]) -> TrueError:
@@ -45,7 +47,7 @@ class TrueError:
         return cls(sup=float(np.sqrt(total.max())), mean=float(np.sqrt(mean)), time=time, kinetic=kinetic, elastic=elastic, total=total)
 
     def __repr__(self) -> str:
-        return f"<percute.TrueError: sup {self.sup:.4g} J^½, mean {self.mean:.4g} J^½, {counted(len(self.time), 'instant')}>"
+        return f"<percute.TrueError: sup {self.sup:.4g} J^½, mean {self.mean:.4g} J^½, {counted(len(self.time), 'instant')}{'' if self.nested else ', by location'}>"
 
 
 @dataclass(frozen=True)

@@ -188,6 +188,23 @@ def test_errors_against_finer_histories(block_history: pc.History) -> None:
     assert block_history.error(block_history).sup < 1e-6 * error.sup
 
 
+def test_true_errors_by_location(block_history: pc.History) -> None:
+    """On nested meshes they are the exact ones, on others they are near; the elements are a quarter as large."""
+    fine, other = block(32, 24), block(33, 25)
+    exact, nested = (pc.true_errors([block_history], fine, end=14e-6, courant=0.9, nested=within)[0] for within in (True, False))
+    assert (exact.nested, nested.nested) == (True, False) and repr(nested).endswith("instants, by location>")
+    # Rounding of sums over some thousand elements.
+    assert np.allclose(nested.total, exact.total, rtol=1e-10, atol=1e-10 * exact.sup**2)
+    reference = pc.simulate(other, end=14e-6, courant=0.9)
+    located = block_history.error(reference, nested=False)
+    # 4 % of location at this ratio of sizes, as documented.
+    assert located.sup == pytest.approx(exact.sup, rel=0.04) and located.mean == pytest.approx(exact.mean, rel=0.04)
+    (streamed,) = pc.true_errors([block_history], other, end=14e-6, courant=0.9, nested=False)
+    assert (streamed.sup, streamed.mean) == (located.sup, located.mean)
+    with pytest.raises(pc.InputError, match=r"does not lie in one element.*or give nested=False"):
+        block_history.error(reference)
+
+
 def test_an_unstable_reference_is_an_error_of_the_simulation() -> None:
     smooth, rough = np.linspace(0.0, 1.0, 41)[:, None], np.random.default_rng(1).normal(size=(81, 1))
     coarse, problem = (
@@ -214,6 +231,8 @@ def test_references_that_do_not_fit_are_refused(block_history: pc.History, bar_h
         block_history.error(pc.simulate(block(9, 7), end=13e-6, courant=0.9))
     with pytest.raises(pc.InputError, match="of a bar"):
         block_history.error(bar_history)
+    with pytest.raises(pc.InputError, match="`nested` is 1; it must be True or False"):
+        block_history.error(block_history, nested=1)  # type: ignore[arg-type]
     wrong: dict[str, Any]
     for wrong, words in (
         ({"young": 210e9}, r"\[\[material\]\] 1, young is 70000000000\.0 in the history and 210000000000\.0 in the reference"),

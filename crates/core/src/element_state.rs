@@ -2,6 +2,7 @@
 
 use crate::ids::ElementId;
 use crate::material::{Law, Tensor};
+use crate::mesh::Mesh;
 use crate::problem::Problem;
 
 /// The state of a P1 element at an instant: strain and stress are constant in it.
@@ -21,23 +22,14 @@ impl<const D: usize> ElementState<D> {
     /// The state of an element for these displacements of all nodes (m).
     #[must_use]
     pub fn new<const N: usize>(problem: &Problem<D, N>, element: ElementId, displacement: &[[f64; D]]) -> Self {
-        let (mesh, law) = (problem.mesh(), problem.material(element));
-        let (nodes, geometry) = (mesh.cells()[element.index()], mesh.cell_geometry(element));
-        let mut gradient = [[0.0; D]; D];
-        // Against the first node: a translation of the body leaves no rounding.
-        for k in 1..N {
-            for a in 0..D {
-                let motion = displacement[nodes[k].index()][a] - displacement[nodes[0].index()][a];
-                (0..D).for_each(|b| gradient[a][b] += motion * geometry.gradients[k][b]);
-            }
-        }
+        let law = problem.material(element);
+        let gradient = displacement_gradient(problem.mesh(), element, displacement);
         let strain = std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * (gradient[a][b] + gradient[b][a])));
-        let volume = geometry.volume * law.extent();
         Self {
             strain,
             stress: law.stress(&gradient),
             stress_across: law.stress_across(&gradient),
-            strain_energy: volume * law.strain_energy(&gradient),
+            strain_energy: problem.volume(element) * law.strain_energy(&gradient),
         }
     }
 
@@ -76,6 +68,25 @@ impl<const D: usize> ElementState<D> {
             _ => 0.0,
         })
     }
+}
+
+/// ∂u_a/∂x_b of an element for these displacements of all nodes (m).
+#[must_use]
+pub fn displacement_gradient<const D: usize, const N: usize>(
+    mesh: &Mesh<D, N>,
+    element: ElementId,
+    displacement: &[[f64; D]],
+) -> Tensor<D> {
+    let (nodes, geometry) = (mesh.cells()[element.index()], mesh.cell_geometry(element));
+    let mut gradient = [[0.0; D]; D];
+    // Against the first node: a translation of the body leaves no rounding.
+    for k in 1..N {
+        for a in 0..D {
+            let motion = displacement[nodes[k].index()][a] - displacement[nodes[0].index()][a];
+            (0..D).for_each(|b| gradient[a][b] += motion * geometry.gradients[k][b]);
+        }
+    }
+    gradient
 }
 
 /// Kinetic energy of an element (J) for these velocities of all nodes (m/s), with its share of their lumped masses, eq.

@@ -9,10 +9,10 @@ use crate::{bridge, errors, time, view};
 use percute_core::problem::Problem;
 use percute_core::simplex::ByDimension;
 use percute_core::time::TimeGrid;
-use percute_estimator::reference::{TrueError, TrueErrorSample};
+use percute_estimator::reference::{ReferenceError, TrueError, TrueErrorSample};
 use percute_workflow::Failure;
 use percute_workflow::report::{Named, drifted};
-use percute_workflow::run::true_errors;
+use percute_workflow::run::{Meshes, true_errors};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -20,20 +20,32 @@ use std::sync::Arc;
 /// Sup, mean, and time, kinetic and elastic part and their sum at each instant.
 pub(crate) type TrueErrorColumns<'py> = (f64, f64, Bound<'py, PyDict>);
 
-/// The true errors of histories against one history on a mesh in which theirs are nested.
+/// The true errors of histories against one history, with `nested` on a mesh in which theirs are nested.
 #[pyfunction]
 pub(crate) fn errors_against_history<'py>(
     py: Python<'py>,
     histories: Vec<PyRef<'_, HistoryData>>,
     reference: &HistoryData,
+    nested: bool,
 ) -> PyResult<Vec<TrueErrorColumns<'py>>> {
+    let meshes = if nested { Meshes::Nested } else { Meshes::Any };
     match &reference.run {
-        ByDimension::Bar(run) => {
-            compared(py, bars(py, &histories)?, (run.problem.clone(), run.times().clone()), Some(run.clone()), None)
-        }
-        ByDimension::Plane(run) => {
-            compared(py, planes(py, &histories)?, (run.problem.clone(), run.times().clone()), Some(run.clone()), None)
-        }
+        ByDimension::Bar(run) => compared(
+            py,
+            bars(py, &histories)?,
+            (run.problem.clone(), run.times().clone()),
+            Some(run.clone()),
+            meshes,
+            None,
+        ),
+        ByDimension::Plane(run) => compared(
+            py,
+            planes(py, &histories)?,
+            (run.problem.clone(), run.times().clone()),
+            Some(run.clone()),
+            meshes,
+            None,
+        ),
     }
     .map(|(errors, _)| errors)
 }
@@ -45,13 +57,15 @@ pub(crate) fn errors_against_simulation<'py>(
     histories: Vec<PyRef<'_, HistoryData>>,
     problem: &ProblemData,
     times: Times,
+    nested: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Vec<TrueErrorColumns<'py>>, Option<String>)> {
+    let meshes = if nested { Meshes::Nested } else { Meshes::Any };
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
     match &problem.problem {
-        AnyProblem::Bar(fine) => compared(py, bars(py, &histories)?, (fine.clone(), times), None, progress),
-        AnyProblem::Plane(fine) => compared(py, planes(py, &histories)?, (fine.clone(), times), None, progress),
+        AnyProblem::Bar(fine) => compared(py, bars(py, &histories)?, (fine.clone(), times), None, meshes, progress),
+        AnyProblem::Plane(fine) => compared(py, planes(py, &histories)?, (fine.clone(), times), None, meshes, progress),
     }
 }
 
@@ -77,6 +91,7 @@ fn compared<'py, const D: usize, const N: usize>(
     runs: Vec<Arc<Run<D, N>>>,
     (fine, times): (Arc<Problem<D, N>>, TimeGrid),
     kept: Option<Arc<Run<D, N>>>,
+    meshes: Meshes,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Vec<TrueErrorColumns<'py>>, Option<String>)> {
     let varies = times.varies();
@@ -84,9 +99,13 @@ fn compared<'py, const D: usize, const N: usize>(
         let sources: Vec<_> = runs.iter().map(|run| run.stoppable(watch.clone())).collect();
         let runs: Vec<_> = runs.iter().zip(&sources).map(|(run, source)| (&*run.problem, source as _)).collect();
         let steps = kept.as_ref().map(|kept| kept.stoppable(watch.clone()));
-        true_errors(&runs, (&fine, &times), steps.as_ref().map(|steps| steps as _), &mut watch)
+        true_errors(&runs, (&fine, &times), steps.as_ref().map(|steps| steps as _), meshes, &mut watch)
     })?;
     let (found, simulation) = found.map_err(|failure| match failure {
+        Failure::Reference(error @ ReferenceError::NotNested { .. }) => errors::input(
+            py,
+            format!("`reference`: {error}; or give nested=False, which evaluates the fields by location"),
+        ),
         Failure::Reference(error) => errors::input(py, format!("`reference`: {error}")),
         failure => errors::run(py, &failure),
     })?;

@@ -119,6 +119,9 @@ impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
                 let fine = self.numbering().map_or(fine, |numbering| numbering.elements()[fine].index());
                 Failure::Reference(ReferenceError::NotNested { fine })
             }
+            Failure::Reference(ReferenceError::Outside { node }) => {
+                Failure::Reference(ReferenceError::Outside { node: self.node(node) })
+            }
             other => other,
         }
     }

@@ -235,6 +235,15 @@ fn results<const D: usize, const N: usize>(
     Results { simulation, estimate, contact, deformation, outline }
 }
 
+/// Whether the mesh of a run must be nested in that of its reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Meshes {
+    /// Each element of the reference is a part of one of the run: the true error is exact in space.
+    Nested,
+    /// Any meshes of the same bodies: the fields of the run are evaluated at nodes and centroids of the reference.
+    Any,
+}
+
 /// The true errors of runs, each a problem and its steps, against a reference, its problem and instants. Without the
 /// steps of the reference it is simulated, and the simulation is returned too.
 ///
@@ -245,6 +254,7 @@ pub fn true_errors<'p, const D: usize, const N: usize>(
     runs: &[(&'p Problem<D, N>, &'p dyn StepSource<D>)],
     (fine, times): (&'p Problem<D, N>, &'p TimeGrid),
     steps: Option<&dyn StepSource<D>>,
+    meshes: Meshes,
     observer: &mut dyn Observer,
 ) -> Result<(Vec<TrueError>, Option<Simulation>), Failure> {
     for (problem, _) in runs {
@@ -267,7 +277,11 @@ pub fn true_errors<'p, const D: usize, const N: usize>(
     let fine = Ordered::new(fine);
     let mut comparison = Comparison::new(fine.problem());
     for (run, motion) in ordered.iter().zip(&motions) {
-        comparison.add(run.problem(), motion).map_err(|error| fine.failure(error.into()))?;
+        let added = match meshes {
+            Meshes::Nested => comparison.add(run.problem(), motion),
+            Meshes::Any => comparison.add_located(run.problem(), motion),
+        };
+        added.map_err(|error| fine.failure(error.into()))?;
     }
     let done = match steps {
         Some(steps) => replay(fine.problem(), &fine.source(steps), &mut comparison).map(|()| None).map_err(unread),

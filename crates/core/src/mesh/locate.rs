@@ -24,13 +24,19 @@ impl<'m, const D: usize, const N: usize> Locator<'m, D, N> {
     /// Sorts the elements of a mesh.
     #[must_use]
     pub fn new(mesh: &'m Mesh<D, N>) -> Self {
-        let (low, high) = bounds(mesh.points());
-        let per_side = (mesh.element_count() as f64).powf(1.0 / D as f64).ceil().max(1.0);
+        Self::of(mesh, &(0..mesh.element_count()).map(ElementId::new).collect::<Vec<_>>())
+    }
+
+    /// Sorts some elements of a mesh, such as those of one body; it finds no others.
+    #[must_use]
+    pub fn of(mesh: &'m Mesh<D, N>, elements: &[ElementId]) -> Self {
+        let (low, high) = bounds(elements.iter().flat_map(|&e| mesh.cell_points(e)));
+        let per_side = (elements.len() as f64).powf(1.0 / D as f64).ceil().max(1.0);
         let scale = std::array::from_fn(|c| per_side / (high[c] - low[c]));
         let counts = [per_side as usize; D];
         let mut locator = Self { mesh, low, scale, counts, bins: vec![Vec::new(); counts.iter().product()] };
-        for e in (0..mesh.element_count()).map(ElementId::new) {
-            let (low, high) = bounds(&mesh.cell_points(e));
+        for &e in elements {
+            let (low, high) = bounds(mesh.cell_points(e));
             let (first, last) = (locator.bin_at(&low), locator.bin_at(&high));
             for at in boxed(first, last) {
                 let bin = locator.bin(&at);
@@ -125,9 +131,9 @@ fn boxed<const D: usize>(first: [usize; D], last: [usize; D]) -> impl Iterator<I
 }
 
 /// The box that encloses points.
-fn bounds<const D: usize>(points: &[[f64; D]]) -> ([f64; D], [f64; D]) {
+fn bounds<const D: usize>(points: impl IntoIterator<Item = [f64; D]>) -> ([f64; D], [f64; D]) {
     let start = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
-    points.iter().fold(start, |(low, high), p| {
+    points.into_iter().fold(start, |(low, high), p| {
         (std::array::from_fn(|c| low[c].min(p[c])), std::array::from_fn(|c| high[c].max(p[c])))
     })
 }

@@ -4,10 +4,11 @@ use super::locate::Transfer;
 use super::motion::Motion;
 use super::{ReferenceError, TrueError, TrueErrorSample};
 use crate::inertia::mass_product;
-use percute_core::dynamics::Stiffness;
+use percute_core::element_state::displacement_gradient;
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::ids::ElementId;
-use percute_core::material::Law;
+use percute_core::material::{Law, Tensor};
+use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
 
 /// Instants that agree to this, relative, are the same: rounding of N·Δt against T.
@@ -15,13 +16,13 @@ const SAME_INSTANT: f64 = 1e-12;
 
 /// Takes the steps of a reference simulation and compares any number of coarser ones with it.
 ///
-/// At each t_n of a coarse simulation, the difference of both P1 fields is a P1 field on the
-/// reference mesh, in which the coarse mesh must be nested; the reference is interpolated linearly
-/// in time between its own instants. The energies are exact in space, with the consistent mass.
+/// At each t_n of a coarse simulation, the velocities differ by a P1 field with the values at the nodes of the reference,
+/// the strains by a constant in each of its elements, that at the centroid. On a reference mesh in which the coarse one is
+/// nested, both are exact; the mass is the consistent one. In time the reference is interpolated linearly between its own
+/// instants.
 #[derive(Debug)]
 pub struct Comparison<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
-    stiffness: Stiffness<D, N>,
     coarse: Vec<Coarse<'p, D, N>>,
     /// The last state of the reference.
     before: Option<Instant<D>>,
@@ -32,7 +33,7 @@ pub struct Comparison<'p, const D: usize, const N: usize> {
 struct Coarse<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     motion: &'p Motion<D>,
-    transfer: Transfer<D, N>,
+    transfer: Transfer<N>,
     samples: Vec<TrueErrorSample>,
 }
 
@@ -48,7 +49,7 @@ impl<'p, const D: usize, const N: usize> Comparison<'p, D, N> {
     /// A comparison with the simulation of `problem`, whose states it must take.
     #[must_use]
     pub fn new(problem: &'p Problem<D, N>) -> Self {
-        Self { problem, stiffness: Stiffness::new(problem), coarse: Vec::new(), before: None }
+        Self { problem, coarse: Vec::new(), before: None }
     }
 
     /// Adds a simulation to compare, before it takes the first state. The results come in the
@@ -57,13 +58,31 @@ impl<'p, const D: usize, const N: usize> Comparison<'p, D, N> {
     /// # Errors
     /// Meshes that are not nested or cover different bodies, a motion of another problem.
     pub fn add(&mut self, problem: &'p Problem<D, N>, motion: &'p Motion<D>) -> Result<(), ReferenceError> {
+        let transfer = Transfer::nested(problem.mesh(), self.problem.mesh())?;
+        self.add_with(transfer, problem, motion)
+    }
+
+    /// As [`Comparison::add`], on a mesh that need not be nested: nodes and centroids are looked for in it.
+    ///
+    /// # Errors
+    /// Meshes of different bodies, a motion of another problem.
+    pub fn add_located(&mut self, problem: &'p Problem<D, N>, motion: &'p Motion<D>) -> Result<(), ReferenceError> {
+        let transfer = Transfer::located(problem.mesh(), self.problem.mesh())?;
+        self.add_with(transfer, problem, motion)
+    }
+
+    fn add_with(
+        &mut self,
+        transfer: Transfer<N>,
+        problem: &'p Problem<D, N>,
+        motion: &'p Motion<D>,
+    ) -> Result<(), ReferenceError> {
         let needed = problem.mesh().node_count();
         for (field, values) in [("displacement", &motion.displacement), ("velocity", &motion.velocity)] {
             if let Some(values) = values.iter().find(|v| v.len() != needed) {
                 return Err(ReferenceError::Length { field, given: values.len(), needed });
             }
         }
-        let transfer = Transfer::new(problem.mesh(), self.problem.mesh())?;
         self.coarse.push(Coarse { problem, motion, transfer, samples: Vec::new() });
         Ok(())
     }
@@ -98,7 +117,7 @@ impl<const D: usize, const N: usize> StateSink<D> for Comparison<'_, D, N> {
                 }
                 let length = now.time - before.time;
                 let weight = if length > 0.0 { ((time - before.time) / length).min(1.0) } else { 1.0 };
-                let sample = coarse.sample(self.problem, &self.stiffness, before, &now, weight);
+                let sample = coarse.sample(self.problem, before, &now, weight);
                 coarse.samples.push(sample);
             }
         }
@@ -109,40 +128,36 @@ impl<const D: usize, const N: usize> StateSink<D> for Comparison<'_, D, N> {
 impl<const D: usize, const N: usize> Coarse<'_, D, N> {
     /// The energies of the difference at the next instant; `weight` is that of `now` in the
     /// reference.
-    fn sample(
-        &self,
-        fine: &Problem<D, N>,
-        stiffness: &Stiffness<D, N>,
-        before: &Instant<D>,
-        now: &Instant<D>,
-        weight: f64,
-    ) -> TrueErrorSample {
-        let n = self.samples.len();
-        let difference = |own: &[[f64; D]], a: &[[f64; D]], b: &[[f64; D]]| {
-            let mut difference = self.transfer.apply(self.problem.mesh(), own);
-            for ((d, a), b) in difference.iter_mut().zip(a).zip(b) {
-                (0..D).for_each(|c| d[c] -= (1.0 - weight) * a[c] + weight * b[c]);
-            }
-            difference
-        };
-        let displacement = difference(&self.motion.displacement[n], &before.displacement, &now.displacement);
-        let velocity = difference(&self.motion.velocity[n], &before.velocity, &now.velocity);
-        let mut unused = vec![[0.0; D]; displacement.len()];
-        TrueErrorSample {
-            time: self.motion.times[n],
-            kinetic: kinetic_energy(fine, &velocity),
-            elastic: stiffness.subtract_internal_forces(&displacement, &mut unused),
+    fn sample(&self, fine: &Problem<D, N>, before: &Instant<D>, now: &Instant<D>, weight: f64) -> TrueErrorSample {
+        let (n, mesh) = (self.samples.len(), self.problem.mesh());
+        let between = |a: &[f64; D], b: &[f64; D]| std::array::from_fn(|c| (1.0 - weight) * a[c] + weight * b[c]);
+        let mut velocity = self.transfer.at_nodes(mesh, &self.motion.velocity[n]);
+        for (v, (a, b)) in velocity.iter_mut().zip(before.velocity.iter().zip(&now.velocity)) {
+            let reference: [f64; D] = between(a, b);
+            (0..D).for_each(|c| v[c] -= reference[c]);
         }
+        let reference =
+            before.displacement.iter().zip(&now.displacement).map(|(a, b)| between(a, b)).collect::<Vec<_>>();
+        let own = gradients(mesh, &self.motion.displacement[n]);
+        let mut sample = TrueErrorSample { time: self.motion.times[n], ..Default::default() };
+        for (e, coarse) in self.transfer.elements().iter().enumerate() {
+            let (id, law) = (ElementId::new(e), fine.material(ElementId::new(e)));
+            let mut gradient = displacement_gradient(fine.mesh(), id, &reference);
+            let own = &own[coarse.index()];
+            (0..D).for_each(|a| (0..D).for_each(|b| gradient[a][b] -= own[a][b]));
+            let nodal = fine.mesh().cells()[e].map(|node| velocity[node.index()]);
+            let volume = fine.volume(id);
+            sample.kinetic += 0.5 * mass_product(law.density() * volume, &nodal, &nodal);
+            sample.elastic += volume * law.strain_energy(&gradient);
+        }
+        sample
     }
 }
 
-/// ½∫ρ|v|² of a P1 velocity, exactly.
-fn kinetic_energy<const D: usize, const N: usize>(problem: &Problem<D, N>, velocity: &[[f64; D]]) -> f64 {
-    let mut energy = 0.0;
-    for (e, nodes) in problem.mesh().cells().iter().enumerate() {
-        let id = ElementId::new(e);
-        let nodal = nodes.map(|node| velocity[node.index()]);
-        energy += 0.5 * mass_product(problem.material(id).density() * problem.volume(id), &nodal, &nodal);
-    }
-    energy
+/// ∂u/∂x of each element.
+fn gradients<const D: usize, const N: usize>(mesh: &Mesh<D, N>, displacement: &[[f64; D]]) -> Vec<Tensor<D>> {
+    (0..mesh.element_count()).map(|e| displacement_gradient(mesh, ElementId::new(e), displacement)).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -19,7 +19,19 @@ pub enum ReferenceError {
          the reference must be made by cutting each element into smaller ones"
     )]
     NotNested { fine: usize },
-    /// Nested, but another body.
+    /// Meshes of which one has other bodies than the other.
+    #[error(
+        "the reference mesh has {fine} bodies and the mesh that is compared {coarse}, or they lie elsewhere; both must be \
+         meshes of the same bodies"
+    )]
+    OtherBodies { fine: usize, coarse: usize },
+    /// Outlines that are far from each other.
+    #[error(
+        "node {node} of the reference mesh lies outside the mesh that is compared, by more than the height of the nearest \
+         element; both must be meshes of the same bodies"
+    )]
+    Outside { node: usize },
+    /// Another body.
     #[error("the reference mesh covers {fine:.6e}, the mesh that is compared {coarse:.6e} (m in 1D, m² in 2D)")]
     DifferentBodies { fine: f64, coarse: f64 },
     /// A reference that stops too early.
