@@ -21,14 +21,14 @@ pub enum ReferenceError {
     NotNested { fine: usize },
     /// Meshes of which one has other bodies than the other.
     #[error(
-        "the reference mesh has {fine} bodies and the mesh that is compared {coarse}, or they lie elsewhere; both must be \
-         meshes of the same bodies"
+        "the reference mesh has {fine} bodies and the mesh that is compared {coarse}, or they lie elsewhere; both must \
+         be meshes of the same bodies"
     )]
     OtherBodies { fine: usize, coarse: usize },
     /// Outlines that are far from each other.
     #[error(
-        "node {node} of the reference mesh lies outside the mesh that is compared, by more than the height of the nearest \
-         element; both must be meshes of the same bodies"
+        "node {node} of the reference mesh lies outside the mesh that is compared, by more than the height of the \
+         nearest element; both must be meshes of the same bodies"
     )]
     Outside { node: usize },
     /// Another body.

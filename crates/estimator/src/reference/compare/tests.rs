@@ -48,7 +48,11 @@ proptest! {
 
     /// On nested meshes both are exact: they differ by rounding of sums over some thousand elements.
     #[test]
-    fn located_fields_on_nested_meshes_are_exact(coarse in rectangle(6), locally in any::<bool>(), seed in 0..1_000_u64) {
+    fn located_fields_on_nested_meshes_are_exact(
+        coarse in rectangle(6),
+        locally in any::<bool>(),
+        seed in 0..1_000_u64,
+    ) {
         let cut = if locally { coarse.refined_where(|e| e.index() % 3 == 0) } else { coarse.refined() };
         let fine = cut.unwrap().refined().unwrap();
         let (own, reference) = (random_fields(&coarse, seed), random_fields(&fine, seed + 1));
@@ -61,8 +65,8 @@ proptest! {
 /// On random meshes that are not nested, the error by location against the one that is exact in space: that on parts of
 /// the reference so small that edges of the coarse mesh cut few of them.
 ///
-/// The error of location falls with the size of the elements of the reference: over 24 pairs of such meshes and four kinds
-/// of fields it was at most 26, 10, 4 and 1 % where they were 1, 2, 4 and 8 times smaller.
+/// The error of location falls with the size of the elements of the reference: over 24 pairs of such meshes and four
+/// kinds of fields it was at most 26, 10, 4 and 1 % where they were 1, 2, 4 and 8 times smaller.
 #[test]
 fn errors_by_location_converge() {
     let wave = |p: [f64; 2]| [(2.7 * p[0] - 1.6 * p[1]).sin(), (1.9 * p[0] + 2.2 * p[1] + 0.5).sin()];
