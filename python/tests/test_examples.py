@@ -59,3 +59,14 @@ def test_the_three_wave_formula_is_exact_on_exact_pulses() -> None:
     until = time < 278e-6
     # 2e-7 m of both gaps over 10 mm, and fronts within a step of 19 ns at 10 m/s over 10 mm.
     assert np.abs(waves - strain)[until].max() < 2e-5 + 10 * 10 * 19e-9 / 0.01
+
+
+def test_how_fine() -> None:
+    """Three kinds of meshes reach their targets; a front does not reach 1 %, and no second run is tried."""
+    done = subprocess.run([sys.executable, EXAMPLES / "how_fine.py"], capture_output=True, text=True, check=True)
+    front, corner, bracket, disc, too_much = done.stdout.strip().split("\n\n")
+    for told, branch in ((front, "uniform"), (corner, "graded"), (bracket, "map"), (disc, "graded")):
+        runs = [line.split() for line in told.splitlines() if line[:3].strip().isdigit()]
+        assert 2 <= len(runs) <= 4 and all(run[1] == branch for run in runs[1:]), told
+        assert " reached: " in told, told
+    assert "not reached within the limit" in too_much and "run 0 has" in too_much

@@ -26,6 +26,9 @@ def plot(adaptation: Adaptation, axes: Sequence[Axes] | None, save: object, over
     upper, lower = plots = _axes(axes)
     adaptation.estimate.plot_map(axes=upper)
     runs = adaptation.iterations
+    # The map is titled with the largest error; the picture is about that of the target.
+    error = f"{len(adaptation.estimate.by_element)} elements: relative error ({adaptation.measure}) {100 * runs.error[adaptation.best]:.3g} %"
+    upper.set_title("\n".join([f"{error}, target {100 * adaptation.target:.3g} %", *upper.get_title().split("\n")[1:]]), fontsize="medium")
     cost = np.cumsum(runs.element_steps)
     lower.plot(cost, 100 * runs.error, marker="o", color=_percute.SERIES[0], label=f"relative error, {adaptation.measure}")
     known = np.isfinite(runs.predicted)

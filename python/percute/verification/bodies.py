@@ -42,7 +42,7 @@ def _cells(x: Sequence[float] | NDArray[Any], y: Sequence[float] | NDArray[Any],
     return points, np.array(cells)
 
 
-def _without(points: NDArray[Any], cells: NDArray[Any], gone: NDArray[np.bool_]) -> pc.Mesh:
+def without(points: NDArray[Any], cells: NDArray[Any], gone: NDArray[np.bool_]) -> pc.Mesh:
     """Leave elements out, and nodes without elements."""
     used, numbers = np.unique(cells[~gone], return_inverse=True)
     return pc.Mesh(points[used], numbers.reshape(-1, 3))
@@ -67,7 +67,7 @@ def _bent() -> pc.Mesh:
     """Make an L of 50 × 50 mm with legs of 20 mm."""
     points, cells = _cells(np.linspace(0.0, 0.05, 6), np.linspace(0.0, 0.05, 6))
     x, y = points[cells].mean(axis=1).T
-    return _without(points, cells, (x > 0.02) & (y > 0.02))
+    return without(points, cells, (x > 0.02) & (y > 0.02))
 
 
 def _frame() -> pc.Mesh:
@@ -75,7 +75,7 @@ def _frame() -> pc.Mesh:
     points, cells = _cells(np.linspace(0.0, 0.06, 7), np.linspace(0.0, 0.05, 6))
     x, y = points[cells].mean(axis=1).T
     (left, right), (low, high) = HOLE
-    return _without(points, cells, (x > left) & (x < right) & (y > low) & (y < high))
+    return without(points, cells, (x > left) & (x < right) & (y > low) & (y < high))
 
 
 def _layers() -> pc.Mesh:

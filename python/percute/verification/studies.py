@@ -41,6 +41,7 @@ STUDIES: tuple[Study, ...] = (
     Study("effectivity", "How close the estimate is to the true error in 2D", "effectivity"),
     Study("speeds", "Corners, curves and inclined sides at practical speeds", "speeds"),
     Study("sources", "The sources of the error, and what a finer mesh or shorter steps change", "sources"),
+    Study("adaptation", "Meshes for a wanted accuracy", "adaptation"),
     Study("ablation", "The purpose of each part of the default, and alternatives that failed", "ablation"),
     Study("bar-maps", "The paper's figures 5 and 6: the impact of a bar", "bar_maps"),
     Study("table1", "The paper's table 1: a block with friction", "table1"),
