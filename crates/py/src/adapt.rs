@@ -52,7 +52,7 @@ impl AdaptingData {
         let geometry = |(file, scale): (Option<PathBuf>, f64)| {
             Mesher::Gmsh(file.map_or(Geometry::Outline, |file| Geometry::File(file, scale)))
         };
-        let wish = (Wish { target, measure, on, limit, runs }, gmsh.map_or(Mesher::Bisection, geometry));
+        let wish = (Wish { target, measure, on, courant, limit, runs }, gmsh.map_or(Mesher::Bisection, geometry));
         let adapting = match &problem.problem {
             ByDimension::Bar(problem) => {
                 Adapting::new(problem, &times, options, wish).map(shared).map(ByDimension::Bar)

@@ -35,7 +35,7 @@ where
     let picture = arguments.picture.as_deref().map(|file| OutputFile { what: "--picture", file });
     outputs::check(&case.inputs(Some(&arguments.case)), &[save, picture], force)?;
     picture.as_ref().map_or(Ok(()), |picture| file::picture(picture).map(drop))?;
-    let wish = Wish { target, measure, on: arguments.target_on.clone(), limit, runs };
+    let wish = Wish { target, measure, on: arguments.target_on.clone(), courant: case.courant, limit, runs };
     wish.check()?;
     case.check_run(true, Long::Allowed)?;
     console.warn_about(case, quiet);

@@ -46,6 +46,16 @@ impl<'m, const D: usize, const N: usize> Locator<'m, D, N> {
         locator
     }
 
+    /// One for each body of a mesh, in their order.
+    #[must_use]
+    pub fn of_bodies(mesh: &'m Mesh<D, N>) -> Vec<Self> {
+        let mut elements = vec![Vec::new(); mesh.parts()];
+        for (e, body) in mesh.part_of_elements().into_iter().enumerate() {
+            elements[body].push(ElementId::new(e));
+        }
+        elements.iter().map(|elements| Self::of(mesh, elements)).collect()
+    }
+
     /// The mesh.
     #[must_use]
     pub fn mesh(&self) -> &'m Mesh<D, N> {

@@ -45,6 +45,8 @@ pub struct Adapting<const D: usize, const N: usize> {
     last: Option<(Best<D, N>, Option<Basis>)>,
     best: Option<Best<D, N>>,
     needed: Option<Needed>,
+    /// The work of a run above the limit.
+    refused: Option<Needed>,
     warnings: Vec<String>,
     reason: Option<Reason>,
 }
@@ -71,11 +73,12 @@ where
                 options.reconstruction
             )));
         }
+        let courant = wish.courant.unwrap_or_else(|| times.longest_step() / critical_time_step(problem));
         Ok(Self {
             wish,
             options,
             end: times.end(),
-            courant: times.longest_step() / critical_time_step(problem),
+            courant,
             restated: Restated::new(problem)?,
             meshing: Meshing::new(problem, mesher)?,
             iterations: Vec::new(),
@@ -83,6 +86,7 @@ where
             last: None,
             best: None,
             needed: None,
+            refused: None,
             warnings: Vec::new(),
             reason: None,
         })
@@ -126,8 +130,8 @@ where
         self.needed = self.needed_after();
         let (problem, made) = match &self.last {
             None => (self.restated.problem().clone(), Made::default()),
-            Some((last, basis)) => match self.mesh_after(last, basis.as_ref())? {
-                Ok((mesh, made)) => (self.restated.on(mesh)?, made),
+            Some((last, basis)) => match self.problem_after(last, basis.as_ref())? {
+                Ok(found) => found,
                 Err(reason) => {
                     self.reason = Some(reason);
                     return Ok(());
@@ -139,8 +143,7 @@ where
         let times = times.map_err(|error| Failure::Argument(error.to_string()))?;
         let work = Needed::of(&Effort::of(&problem, &times, self.options.every));
         if work.element_steps > self.wish.limit {
-            // A bisection may overshoot the sizes of the plan.
-            self.needed = Some(self.needed.filter(|needed| needed.element_steps > work.element_steps).unwrap_or(work));
+            self.refused = Some(work);
             self.reason = Some(Reason::Limit);
             return Ok(());
         }
@@ -227,12 +230,12 @@ where
         Some(Needed::of(&effort).times(Plan::whole(basis, wanted)?.cost))
     }
 
-    /// The mesh that follows from the last run, or the reason why there is none.
-    fn mesh_after(
+    /// The problem on the mesh that follows from the last run, or the reason why there is none.
+    fn problem_after(
         &self,
         last: &Best<D, N>,
         basis: Option<&Basis>,
-    ) -> Result<Result<(Mesh<D, N>, Made), Reason>, Failure> {
+    ) -> Result<Result<(Problem<D, N>, Made), Reason>, Failure> {
         let Some(basis) = basis else { return Ok(Err(Reason::NoSources)) };
         let (mesh, error) = (last.problem.mesh(), self.iterations[last.run].error);
         let wanted = self.wish.wanted(&self.iterations[last.run], basis);
@@ -242,12 +245,20 @@ where
         if needed.is_some_and(|needed| needed.element_steps > self.wish.limit) {
             return Ok(Err(Reason::Limit));
         }
+        let made = |predicted: f64| Made { branch: Some(plan.branch), predicted: Some(predicted * error) };
+        // The outline of a finer disc may cut a plane that touches the first one.
+        if let Some((next, predicted)) = self.meshing.generated(mesh, &plan)
+            && next.element_count() != mesh.element_count()
+            && let Ok(problem) = self.restated.on(next)
+        {
+            return Ok(Ok((problem, made(predicted))));
+        }
         let most = (self.wish.limit / last.times.step_count() as f64) as usize;
         let (next, predicted) = self.meshing.next(mesh, (basis, &plan), most.max(1))?;
         if next.points() == mesh.points() && next.cells() == mesh.cells() {
             return Ok(Err(Reason::SameMesh));
         }
-        Ok(Ok((next, Made { branch: Some(plan.branch), predicted: Some(predicted * error) })))
+        Ok(Ok((self.restated.on(next)?, made(predicted))))
     }
 }
 
@@ -255,13 +266,14 @@ impl<const D: usize, const N: usize> Adapting<D, N> {
     /// The adaptation as far as it is done.
     #[must_use]
     pub fn so_far(&self) -> Adaptation<D, N> {
-        let Self { wish, iterations, best, needed, warnings, reason, .. } = self;
+        let Self { wish, iterations, best, needed, refused, warnings, reason, .. } = self;
         let needed = needed.filter(|_| *reason != Some(Reason::Reached));
         Adaptation {
             wish: wish.clone(),
             iterations: iterations.clone(),
             reason: reason.clone(),
             needed,
+            refused: *refused,
             reachable: self.reachable().filter(|_| *reason == Some(Reason::Limit)),
             warnings: warnings.clone(),
             best: best.clone(),

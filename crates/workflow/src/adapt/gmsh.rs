@@ -1,12 +1,14 @@
 //! The mesh of a plan by the program Gmsh.
 
 use crate::failure::Failure;
-use crate::plan::{Basis, Plan, SizeField};
+use crate::message::{counted, short};
+use crate::plan::{Basis, Plan, SizeField, sizes};
 use percute_core::mesh::Mesh;
 use percute_core::simplex::ByDimension;
 use percute_io::{Overwrite, gmsh};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 /// The program.
 const PROGRAM: &str = "gmsh";
@@ -27,11 +29,26 @@ pub enum Geometry {
     File(PathBuf, f64),
 }
 
-/// Makes sure that Gmsh can be started.
+/// Bodies of a geometry and of the first mesh have areas that agree to this, relative: a disc in twelve sides lacks
+/// 4.5 % of its area.
+const SAME_BODY: f64 = 0.05;
+/// Gmsh is stopped after so long (s): meshes within the limit of an adaptation take seconds.
+const LONGEST: u64 = 120;
+
+/// Makes sure that Gmsh can be started, and that it has its geometry.
 ///
 /// # Errors
-/// It cannot.
-pub(super) fn check() -> Result<(), Failure> {
+/// It cannot, there is no such file, or a scale that is none.
+pub(super) fn check(geometry: &Geometry) -> Result<(), Failure> {
+    if let Geometry::File(file, scale) = geometry {
+        if !file.is_file() {
+            return Err(Failure::Argument(format!("`geometry`: there is no file {}", file.display())));
+        }
+        if !(*scale > 0.0 && scale.is_finite()) {
+            let told = format!("`scale` is {scale}; give metres per unit of length in the geometry, such as 1e-3");
+            return Err(Failure::Argument(told));
+        }
+    }
     let found = Command::new(PROGRAM).arg("-version").stdin(Stdio::null()).output();
     match found {
         Ok(output) if output.status.success() => Ok(()),
@@ -70,7 +87,20 @@ pub(super) fn meshed<const D: usize, const N: usize>(
     written.map_err(|error| failed(error.to_string()))?;
     run_gmsh(&file, &at("size.pos"), &at("mesh.msh"))?;
     let read = gmsh::read(&at("mesh.msh"), scale).map_err(|error| failed(error.to_string()))?;
-    of_dimension(read).ok_or_else(|| failed("the geometry is not that of a body of this dimension".into()))
+    let mesh: Mesh<D, N> =
+        of_dimension(read).ok_or_else(|| failed("the geometry is not that of a body of this dimension".into()))?;
+    let [made, stated] = [&mesh, first].map(|mesh| sizes(mesh).iter().map(|h| h.powi(D as i32)).sum::<f64>());
+    if (made - stated).abs() > SAME_BODY * stated || mesh.parts() != first.parts() {
+        return Err(failed(format!(
+            "the geometry has an area of {} m² and {}, the first mesh {} m² and {}: is it the same body, and `scale` \
+             its unit of length?",
+            short(made, 3),
+            counted(mesh.parts(), "body"),
+            short(stated, 3),
+            counted(first.parts(), "body")
+        )));
+    }
+    Ok(mesh)
 }
 
 fn run_gmsh(geometry: &Path, sizes: &Path, mesh: &Path) -> Result<(), Failure> {
@@ -78,7 +108,19 @@ fn run_gmsh(geometry: &Path, sizes: &Path, mesh: &Path) -> Result<(), Failure> {
     command.arg(geometry).args(["-2", "-nt", "1", "-v", "2", "-format", "msh41", "-bin"]);
     command.arg("-bgm").arg(sizes).arg("-o").arg(mesh).stdin(Stdio::null());
     OPTIONS.iter().for_each(|(name, value)| _ = command.args(["-setnumber", name, value]));
-    let output = command.output().map_err(|error| Failure::Argument(format!("gmsh cannot be started: {error}")))?;
+    let started = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let mut child = started.map_err(|error| Failure::Argument(format!("gmsh cannot be started: {error}")))?;
+    let begun = Instant::now();
+    while child.try_wait().is_ok_and(|ended| ended.is_none()) {
+        if begun.elapsed().as_secs() > LONGEST {
+            // One that has just ended needs no end.
+            let _ = child.kill();
+            let told = format!("gmsh took more than {LONGEST} s: is `scale` the unit of length of the geometry?");
+            return Err(Failure::Argument(told));
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let output = child.wait_with_output().map_err(|error| Failure::Argument(format!("gmsh: {error}")))?;
     if output.status.success() && mesh.exists() {
         return Ok(());
     }

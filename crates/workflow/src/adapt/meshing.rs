@@ -40,8 +40,8 @@ where
             Mesher::Gmsh(_) if !pairs.is_empty() => {
                 Some("nodes of bodies that face each other in pairs would not do so in a mesh of Gmsh")
             }
-            Mesher::Gmsh(_) => {
-                gmsh::check()?;
+            Mesher::Gmsh(geometry) => {
+                gmsh::check(geometry)?;
                 None
             }
         };
@@ -64,11 +64,16 @@ where
         most: usize,
     ) -> Result<(Mesh<D, N>, f64), Failure> {
         let Mesher::Gmsh(geometry) = &self.mesher else {
-            return generated(run, plan).map_or_else(|| bisected(&self.first, run, (basis, plan), most), Ok);
+            return bisected(&self.first, run, (basis, plan), most);
         };
         let next = gmsh::meshed(self.first.mesh(), geometry, run, (basis, plan), most)?;
         let expected = expected(&Wanted::new(run, basis, plan), &next, basis, plan);
         Ok((next, expected))
+    }
+
+    /// The same by the generator of the first mesh, if all elements become smaller alike.
+    pub(super) fn generated(&self, run: &Mesh<D, N>, plan: &Plan) -> Option<(Mesh<D, N>, f64)> {
+        generated(run, plan).filter(|_| self.mesher == Mesher::Bisection)
     }
 
     /// How much larger than in a run each of its elements may become: with bisection not larger than in the first mesh.
@@ -84,7 +89,7 @@ where
     }
 }
 
-/// Of a uniform plan for a mesh of a generator, its mesh with smaller elements.
+/// Of a uniform plan for a mesh of a generator, its mesh with smaller elements, and the mean error expected on it.
 fn generated<const D: usize, const N: usize>(run: &Mesh<D, N>, plan: &Plan) -> Option<(Mesh<D, N>, f64)>
 where
     Mesh<D, N>: Generated,

@@ -46,6 +46,8 @@ pub struct Wish {
     pub measure: Measure,
     /// The quantity that the target is about, if it is not the error of the fields.
     pub on: Option<Quantity>,
+    /// The Courant number of all runs; by default that of the steps of the first, which divide its end.
+    pub courant: Option<f64>,
     /// The most elements times steps of a run.
     pub limit: f64,
     /// The most runs.
@@ -56,7 +58,7 @@ impl Wish {
     /// For a target, with the other values as they are by default.
     #[must_use]
     pub fn new(target: f64) -> Self {
-        Self { target, measure: Measure::default(), on: None, limit: LIMIT, runs: RUNS }
+        Self { target, measure: Measure::default(), on: None, courant: None, limit: LIMIT, runs: RUNS }
     }
 
     /// # Errors
@@ -89,6 +91,8 @@ pub struct Adaptation<const D: usize, const N: usize> {
     pub reason: Option<Reason>,
     /// The work that the target needs, if it is not reached and can be told.
     pub needed: Option<Needed>,
+    /// The work of the next run, if that is above the limit.
+    pub refused: Option<Needed>,
     /// The relative error of a uniform mesh with as much work as the limit allows, if that ended the runs.
     pub reachable: Option<f64>,
     /// Warnings about the meshes.

@@ -5,6 +5,7 @@ use super::toward::judged;
 use super::{Adaptation, Next};
 use crate::message::{counted, percent, short, trimmed, whole_percent};
 use crate::quantity::{Judgement, Quantity};
+use crate::report::Report;
 use percute_core::units::Units;
 use serde::Serialize;
 
@@ -47,7 +48,10 @@ pub fn conclusion<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>)
     let on = wish.on.as_ref().map_or_else(|| measure(wish.measure).to_string(), Quantity::told);
     let target = format!("{} ({on})", percent(wish.target));
     let Some(best) = &adaptation.best else {
-        return "Interrupted before the first run was done.".to_string();
+        return match adaptation.refused {
+            Some(work) => format!("The first mesh has {}, above the limit of {}.", work.told(), short(wish.limit, 2)),
+            None => "Interrupted before the first run was done.".to_string(),
+        };
     };
     let Iteration { error, elements, .. } = adaptation.iterations[best.run];
     let found = match &wish.on {
@@ -56,9 +60,13 @@ pub fn conclusion<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>)
     };
     let reached = format!("run {} has {found} on {}", best.run, counted(elements, "element"));
     let needed = adaptation.needed.map(|needed| format!(" The target needs about {}.", needed.told()));
-    let needed = needed.unwrap_or_default();
+    let next = adaptation.refused.map(|work| format!(" The next mesh has {}.", work.told()));
+    let needed = needed.unwrap_or_default() + &next.unwrap_or_default();
     let Some(reason) = &adaptation.reason else { return format!("Target {target} not reached yet: {reached}.") };
     match reason {
+        Reason::Reached if untouched(&best.report) => {
+            format!("Target {target} reached: {reached}. But nothing touched: is the end late enough?")
+        }
         Reason::Reached => format!("Target {target} reached: {reached}."),
         Reason::Limit => format!(
             "Target {target} not reached within the limit of {} elements times steps: {reached}.{needed}{} A larger \
@@ -81,6 +89,11 @@ pub fn conclusion<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>)
         Reason::Failed(why) => format!("Target {target} not reached: {reached}. The next run failed: {why}"),
         Reason::Interrupted => format!("Interrupted; target {target} not reached: {reached}."),
     }
+}
+
+/// Whether nothing has touched although it may.
+fn untouched(report: &Report) -> bool {
+    report.contact.as_ref().is_some_and(|contact| contact.first_touch.is_none())
 }
 
 /// The value of the quantity of the target, its last change, and its order.
@@ -155,6 +168,7 @@ struct Document<'a> {
     reason: Option<&'a Reason>,
     conclusion: String,
     needed: Option<super::Needed>,
+    refused: Option<super::Needed>,
     reachable: Option<f64>,
     warnings: &'a [String],
     best: Option<usize>,
@@ -181,6 +195,7 @@ impl<const D: usize, const N: usize> Adaptation<D, N> {
             reason: self.reason.as_ref(),
             conclusion: conclusion(self),
             needed: self.needed,
+            refused: self.refused,
             reachable: self.reachable,
             warnings: &self.warnings,
             best: self.best.as_ref().map(|best| best.run),

@@ -27,19 +27,21 @@ impl Wish {
         let (doubtful, is_last) = (!last.doubts.is_empty(), iterations.len() == self.runs);
         let Some(quantity) = &self.on else {
             let reached = last.error <= self.target;
-            let trusted = iterations.iter().rev().skip(1).any(|earlier| earlier.doubts.is_empty());
+            let earlier = &iterations[..iterations.len() - 1];
+            let trusted = earlier.iter().any(|earlier| earlier.doubts.is_empty());
+            let grows = earlier.last().is_some_and(|before| before.error < last.error);
             return match () {
-                () if doubtful && (trusted || reached) => Some(Reason::Doubt),
+                () if doubtful && (trusted || reached || grows) => Some(Reason::Doubt),
                 () if reached => Some(Reason::Reached),
                 () if is_last => Some(Reason::Runs),
                 () => None,
             };
         };
-        let judgement = judged(iterations);
-        let has_no_limit = iterations.len() > 2 && obstruction.is_some_and(Obstruction::is_of_the_problem);
+        let (judgement, is_judged) = (judged(iterations), iterations.len() > 2);
+        let has_no_limit = is_judged && obstruction.is_some_and(Obstruction::is_of_the_problem);
         match () {
             () if has_no_limit => Some(Reason::NoLimit(quantity.warning(&judgement, obstruction)?)),
-            () if is_within(&judgement, self.target) => Some(Reason::Reached),
+            () if is_judged && is_within(&judgement, self.target) => Some(Reason::Reached),
             () if is_last => Some(Reason::Runs),
             () => None,
         }

@@ -116,6 +116,8 @@ pub struct CaseOf<const D: usize, const N: usize> {
     pub problem: Problem<D, N>,
     /// The instants; to the latest end, while a run that ends with the rebound has not been resolved.
     pub times: TimeGrid,
+    /// The Courant number that the case states, if it does.
+    pub courant: Option<f64>,
     /// The end with the rebound, if the run ends so and has not been resolved.
     pub until: Option<Until>,
     /// The warning of a run that was to end with the rebound, if contact does not end before its latest end.
@@ -226,9 +228,21 @@ fn read<const D: usize, const N: usize>(
     let problem = problem.with_planes_moved(wanted.first_step(critical_step)).unwrap_or(problem);
     let (times, until) = (wanted.grid(critical_step)?, wanted.until(&problem, critical_step)?);
     output::check(root, &output, times.end())?;
-    let (source, unended) = (source.clone(), None);
+    let (source, unended, courant) = (source.clone(), None, wanted.courant());
     let mesh_scale = root.single("mesh")?.map_or(1.0, |mesh| mesh::scale(&mesh));
-    Ok(CaseOf { source, problem, times, until, unended, critical_step, options, output, mesh_files, mesh_scale })
+    Ok(CaseOf {
+        source,
+        problem,
+        times,
+        courant,
+        until,
+        unended,
+        critical_step,
+        options,
+        output,
+        mesh_files,
+        mesh_scale,
+    })
 }
 
 /// The place and the cause of a start that the simulation refuses: a unit that is hardly right, beside which there is

@@ -102,6 +102,7 @@ pub fn problem_from<const D: usize, const N: usize>(
     root.only(&TABLES)?;
     let options = estimate::read(&root)?;
     let builder = problem::stated(&root, mesh)?
+        .planes_to_be_moved()
         .initial_displacement(Initial::Nodal(initial_displacement))
         .initial_velocity(Initial::Nodal(initial_velocity));
     Ok((problem::build(&root, builder)?, options))

@@ -105,6 +105,14 @@ impl Wanted<'_> {
         Ok(Some(Until::new(problem, *longest, *after, self.first_step(critical))))
     }
 
+    /// The Courant number, if that was stated.
+    pub(super) fn courant(&self) -> Option<f64> {
+        match self.steps {
+            Steps::Courant(courant, _) => Some(courant),
+            Steps::Step(..) | Steps::Each(..) => None,
+        }
+    }
+
     /// The first step as it was stated (s): before it is fitted to an end, which hardly makes it longer.
     pub(super) fn first_step(&self, critical: f64) -> f64 {
         match &self.steps {
