@@ -177,7 +177,7 @@ class BarImpact(_StruckBar):
         """
         values = [getattr(self, name) for name in self._arguments()]
         sup, mean, over_time = _percute.true_error_of_bar_impact(values, instance("history", history, History)._data)
-        return TrueError(sup=sup, mean=mean, **over_time)
+        return TrueError(sup=sup, mean=mean, nested=True, **over_time)
 
 
 @dataclass(frozen=True, kw_only=True)
