@@ -214,7 +214,7 @@ def test_a_run_without_contact_of_surfaces_that_slide_is_limited() -> None:
     estimate, found = verdict(problem, 8e-7)
     assert found["touches"] == "none" and estimate.trust == "limited"
     assert found["untested"] == ["surfaces that slide without contact"]
-    assert found["text"][-1].startswith("Refine the whole mesh")
+    assert found["text"][-1].startswith("Refine the mesh where the error is")
 
 
 def test_a_corner_that_strikes_two_bodies_has_low_trust() -> None:
