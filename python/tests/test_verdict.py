@@ -236,7 +236,8 @@ def test_shorter_steps_help_where_they_do() -> None:
     sources = estimate.sources
     assert sources is not None and sources.mean_with_half_step is not None
     change = round(100 * (sources.mean_with_half_step / estimate.mean - 1))
-    assert f": {change:+d} %." in str(estimate.verdict) and "Grade the mesh towards the nodes that touch" in str(estimate.verdict)
+    told = f"{change:+d}" if change else "0"
+    assert f": {told} %." in str(estimate.verdict) and "Grade the mesh towards the nodes that touch" in str(estimate.verdict)
     flat = str(struck(BODIES["block"]().refine()).verdict)
     assert "Refine the whole mesh" in flat or "is out of reach" in flat
 
