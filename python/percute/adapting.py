@@ -203,8 +203,8 @@ def adapt(
         The relative error to reach, above 0 and below 0.5.
     measure : str, default: "mean"
         The target is about ``relative_mean`` of the estimate; with "sup", about ``relative_sup``. With "peak_force", "impulse", "rebound" or a
-        probe such as "probe:0.01,0.02:von_mises", it is about this quantity: within this part of its limit, judged by the change from
-        the mesh before and, from three meshes on, by the order of its changes. No estimate is claimed of quantities.
+        probe such as "probe:0.01,0.02:von_mises", it is about this quantity: within this part of its limit, judged on at least three
+        meshes by the change from the mesh before and by the order of its changes. No estimate is claimed of quantities.
     end, courant, step, steps, longest, after
         As for `simulate`; the rebound is that of the first mesh.
     mesher : {"bisect", "gmsh"}, default: "bisect"
