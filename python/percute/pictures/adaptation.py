@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from percute import _percute
-from percute.checks import wrong
 from percute.errors import InputError
-from percute.pictures.canvas import pyplot, root, save_figure, writable
+from percute.pictures.canvas import axes_below, pyplot, root, save_figure, writable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +22,7 @@ def plot(adaptation: Adaptation, axes: Sequence[Axes] | None, save: object, over
     file = writable("save", save, overwrite)
     if adaptation.estimate is None:
         raise InputError("there is no picture: no run is done")
-    upper, lower = plots = _axes(axes)
+    upper, lower = plots = axes_below(axes, 2, "two")
     adaptation.estimate.plot_map(axes=upper)
     runs = adaptation.iterations
     # The map is titled with the largest error; the picture is about that of the target.
@@ -42,12 +41,3 @@ def plot(adaptation: Adaptation, axes: Sequence[Axes] | None, save: object, over
     lower.legend(frameon=False, fontsize="small")
     save_figure(root(lower), file)
     return plots
-
-
-def _axes(axes: Sequence[Axes] | None) -> list[Axes]:
-    """Give the axes of an argument, by default two new ones."""
-    plt = pyplot()
-    given = list(plt.subplots(2, 1, layout="constrained", figsize=(7.2, 8.4))[1]) if axes is None else list(np.ravel(axes))  # type: ignore[arg-type]
-    if len(given) != 2 or not all(isinstance(each, plt.Axes) for each in given):
-        raise wrong("axes", axes, "two axes of matplotlib, such as `plt.subplots(2)[1]`")
-    return given

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
@@ -64,6 +64,15 @@ def new_axes(axes: Axes | None, size: tuple[float, float] | None = None) -> Axes
         raise wrong("axes", axes, "axes of matplotlib, such as `plt.subplots()[1]`")
     made: Axes = axes if axes is not None else plt.subplots(layout="constrained", figsize=size)[1]
     return made
+
+
+def axes_below(axes: Sequence[Axes] | None, count: int, word: str) -> list[Axes]:
+    """Give the axes of an argument, by default so many new ones, one below the other."""
+    plt = pyplot()
+    given = list(plt.subplots(count, 1, layout="constrained", figsize=(7.2, 8.4))[1]) if axes is None else list(np.ravel(axes))  # type: ignore[arg-type]
+    if len(given) != count or not all(isinstance(each, plt.Axes) for each in given):
+        raise wrong("axes", axes, f"{word} axes of matplotlib, such as `plt.subplots({count})[1]`")
+    return given
 
 
 def prefixed(values: Floats) -> tuple[float, str]:

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from percute import _percute
-from percute.checks import wrong
 from percute.errors import InputError
-from percute.pictures.canvas import Floats, pyplot, root, save_figure, writable
+from percute.pictures.canvas import Floats, axes_below, pyplot, root, save_figure, writable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +38,7 @@ def plot(verification: Verification, axes: Sequence[Axes] | None, save: object, 
     sizes = verification.size
     if len(sizes) < 2 or not np.any(_values(verification, ERRORS) > 0.0):
         raise InputError("there is no picture without errors on two meshes")
-    plots = _axes(axes)
+    plots = axes_below(axes, 3, "three")
     errors, indices, contact = plots
     values = _values(verification, ERRORS)
     positive = values[values > 0.0]
@@ -103,12 +102,3 @@ def _legend(axes: Axes, columns: int) -> None:
     if order:
         entries = [handles[k] for k in order], [labels[k] for k in order]
         axes.legend(*entries, ncols=columns, loc="lower left", bbox_to_anchor=(0.0, 1.0), frameon=False, fontsize="small", borderpad=0.2)
-
-
-def _axes(axes: Sequence[Axes] | None) -> list[Axes]:
-    """Give the axes of an argument, by default three new ones."""
-    plt = pyplot()
-    given = list(plt.subplots(3, 1, layout="constrained", figsize=(7.2, 8.4))[1]) if axes is None else list(np.ravel(axes))  # type: ignore[arg-type]
-    if len(given) != 3 or not all(isinstance(each, plt.Axes) for each in given):
-        raise wrong("axes", axes, "three axes of matplotlib, such as `plt.subplots(3)[1]`")
-    return given
