@@ -174,7 +174,7 @@ impl Smoothing {
         facet: FacetId,
     ) -> ElementId {
         let (known, laws) = (&problem.mesh().facets()[facet.index()], problem.element_material());
-        let other = if known.owner == element { known.neighbour } else { Some(known.owner) };
+        let other = known.across(element);
         other.filter(|other| laws[other.index()] == laws[element.index()]).unwrap_or(element)
     }
 

@@ -9,7 +9,7 @@ use crate::{bridge, errors, time};
 use percute_core::each_dimension;
 use percute_core::simplex::ByDimension;
 use percute_estimator::Options;
-use percute_workflow::adapt::{Adapting, Geometry, Measure, Mesher, Wish, announced, table};
+use percute_workflow::adapt::{Adapting, Best, Geometry, Measure, Mesher, Wish, announced, table};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -114,7 +114,8 @@ type Told<const D: usize, const N: usize> = (Result<String, std::io::Error>, Str
 fn told<const D: usize, const N: usize>(adapting: &Shared<D, N>, options: Options) -> Told<D, N> {
     let adaptation = adapting.lock().unwrap_or_else(PoisonError::into_inner).so_far();
     let (document, table) = (adaptation.to_json(), table(&adaptation));
-    let made = |best: percute_workflow::adapt::Best<D, N>| {
+    let made = |best: Arc<Best<D, N>>| {
+        let best = Arc::unwrap_or_clone(best);
         Arc::new(Made::new(Arc::new(best.problem), best.times, options, best.results, None, 0.0))
     };
     (document, table, adaptation.best.map(made))

@@ -3,7 +3,6 @@
 use crate::any::AnyMesh;
 use crate::{bridge, errors, view};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
-use percute_core::ids::ElementId;
 use percute_core::mesh::{BarMesh, Diagonals, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
 use percute_core::simplex::{ByDimension, Element, Simplex};
 use percute_core::{each_dimension, map_dimension};
@@ -158,9 +157,7 @@ impl MeshData {
 
     /// Area (m²) or length (m) of each element.
     fn areas<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        let areas: Vec<f64> = each_dimension!(&self.mesh, mesh => {
-            (0..mesh.element_count()).map(|e| mesh.cell_geometry(ElementId::new(e)).volume).collect()
-        });
+        let areas = each_dimension!(&self.mesh, mesh => mesh.volumes());
         view::column(py, &areas, |&area| area)
     }
 

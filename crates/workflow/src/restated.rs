@@ -2,7 +2,6 @@
 
 use crate::case::{Source, problem_from, statement};
 use crate::failure::Failure;
-use percute_core::ids::ElementId;
 use percute_core::mesh::{Locator, Mesh};
 use percute_core::problem::Problem;
 
@@ -48,17 +47,7 @@ impl<const D: usize, const N: usize> Restated<D, N> {
     /// A nodal field at the nodes of a mesh, each in its own body: nodes of two bodies may be at one place.
     fn values_at_nodes(&self, field: &[[f64; D]], mesh: &Mesh<D, N>) -> Vec<[f64; D]> {
         let bodies = Locator::of_bodies(self.problem.mesh());
-        let of_element = mesh.part_of_elements();
-        // The body in which most elements of a body have their middles.
-        let mut within = vec![vec![0_usize; bodies.len()]; mesh.parts()];
-        for (e, &body) in of_element.iter().enumerate() {
-            let points = mesh.cell_points(ElementId::new(e));
-            let middle = std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / N as f64);
-            let found = bodies.iter().position(|body| body.element_at(&middle).is_some());
-            found.into_iter().for_each(|found| within[body][found] += 1);
-        }
-        let most = |counts: &Vec<usize>| (0..counts.len()).max_by_key(|&body| counts[body]).unwrap_or(0);
-        let body: Vec<usize> = within.iter().map(most).collect();
+        let body = Locator::matching(&bodies, mesh);
         let value = |(point, part): (&[f64; D], usize)| bodies[body[part]].values_at(field, &[*point])[0];
         mesh.points().iter().zip(mesh.part_numbers()).map(value).collect()
     }

@@ -136,11 +136,7 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
         let mut table = Table::new(self.units);
         let count = self.mesh.element_count();
         table.add("element", "", (0..count).map(|e| e as f64));
-        let centroid = |e: usize| {
-            let corners = self.mesh.cell_points(ElementId::new(e));
-            std::array::from_fn(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64)
-        };
-        let centroids: Vec<[f64; D]> = (0..count).map(centroid).collect();
+        let centroids: Vec<[f64; D]> = (0..count).map(|e| self.mesh.centroid(ElementId::new(e))).collect();
         table.vector("centroid", "m", &centroids);
         table.add("error", "J^(1/2)", self.by_element.iter().copied());
         table

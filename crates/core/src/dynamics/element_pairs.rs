@@ -216,7 +216,7 @@ fn pair<const D: usize, const N: usize>(
         let mut partner: Option<(usize, usize)> = None;
         for (apart, facet) in mesh.cell_facets()[e].iter().enumerate() {
             let facet = &mesh.facets()[facet.index()];
-            let other = if facet.owner == first { facet.neighbour } else { Some(facet.owner) };
+            let other = facet.across(first);
             let Some(other) = other.map(ElementId::index) else { continue };
             let free = strip.contains(&other) && !taken[other] && law(other) == law(e);
             if free && highest(other) <= reached + AHEAD && partner.is_none_or(|(known, _)| other < known) {

@@ -56,6 +56,20 @@ impl<'m, const D: usize, const N: usize> Locator<'m, D, N> {
         elements.iter().map(|elements| Self::of(mesh, elements)).collect()
     }
 
+    /// For each body of another mesh the one of these that has most of its elements: at a curved interface some lie in
+    /// the other body.
+    #[must_use]
+    pub fn matching(bodies: &[Self], other: &Mesh<D, N>) -> Vec<usize> {
+        let mut within = vec![vec![0_usize; bodies.len()]; other.parts()];
+        for (e, body) in other.part_of_elements().into_iter().enumerate() {
+            let centroid = other.centroid(ElementId::new(e));
+            let found = bodies.iter().position(|locator| locator.element_at(&centroid).is_some());
+            found.into_iter().for_each(|found| within[body][found] += 1);
+        }
+        let most = |counts: &Vec<usize>| (0..counts.len()).max_by_key(|&body| counts[body]).unwrap_or(0);
+        within.iter().map(most).collect()
+    }
+
     /// The mesh.
     #[must_use]
     pub fn mesh(&self) -> &'m Mesh<D, N> {
@@ -174,7 +188,7 @@ mod tests {
         let mesh = TriangleMesh::rectangle(2.0, 1.0, 7, 5).unwrap().refined_where(|e| e.index() % 9 == 0).unwrap();
         let locator = Locator::new(&mesh);
         for e in (0..mesh.element_count()).map(ElementId::new) {
-            let centroid = std::array::from_fn(|c| mesh.cell_points(e).iter().map(|p| p[c]).sum::<f64>() / 3.0);
+            let centroid = mesh.centroid(e);
             assert_eq!((locator.element_at(&centroid), locator.element_near(&centroid)), (Some(e), e));
         }
         assert_eq!(locator.element_at(&[2.1, 0.5]), None);

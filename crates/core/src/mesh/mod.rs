@@ -310,6 +310,19 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         self.cells[element.index()].map(|node| self.points[node.index()])
     }
 
+    /// The mean of the nodes of an element (m).
+    #[must_use]
+    pub fn centroid(&self, element: ElementId) -> [f64; D] {
+        let corners = self.cell_points(element);
+        std::array::from_fn(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64)
+    }
+
+    /// The volume of each element (length in 1D, area in 2D).
+    #[must_use]
+    pub fn volumes(&self) -> Vec<f64> {
+        (0..self.element_count()).map(|e| self.cell_geometry(ElementId::new(e)).volume).collect()
+    }
+
     /// Volume and shape-function gradients of an element (length in 1D, area in 2D).
     #[must_use]
     pub fn cell_geometry(&self, element: ElementId) -> CellGeometry<D, N> {

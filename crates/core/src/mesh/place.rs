@@ -82,14 +82,18 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         (a[0] * b[1 % D] - a[1 % D] * b[0]).abs().atan2((0..D).map(|c| a[c] * b[c]).sum())
     }
 
+    /// The angle inside the body between the two edges of its outline at a node (rad); none at a node inside the body.
+    #[must_use]
+    pub fn angle_of_outline(&self, node: NodeId) -> Option<f64> {
+        let star = self.stars().star(node);
+        (!star.is_closed()).then(|| star.elements.iter().map(|&element| self.angle(element, node)).sum())
+    }
+
     /// The nodes of the outline of a plane body with an angle inside the body above this (rad).
     #[must_use]
     pub fn corners_above(&self, angle: f64) -> Vec<NodeId> {
-        let inside = |node: NodeId| -> f64 {
-            self.stars().star(node).elements.iter().map(|&element| self.angle(element, node)).sum()
-        };
         let nodes = (0..self.node_count()).map(NodeId::new);
-        nodes.filter(|&node| !self.stars().star(node).is_closed() && inside(node) > angle).collect()
+        nodes.filter(|&node| self.angle_of_outline(node).is_some_and(|inside| inside > angle)).collect()
     }
 
     pub(super) fn ends(&self, facet: FacetId) -> [[f64; D]; D] {

@@ -22,6 +22,13 @@ impl<const D: usize> Facet<D> {
         if self.owner == element { 1.0 } else { -1.0 }
     }
 
+    /// The element on the other side of one of its elements; none on the boundary.
+    #[inline]
+    #[must_use]
+    pub fn across(&self, element: ElementId) -> Option<ElementId> {
+        if self.owner == element { self.neighbour } else { Some(self.owner) }
+    }
+
     /// Position of `node` among the facet's nodes.
     #[inline]
     #[must_use]

@@ -22,9 +22,8 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Away from contact the pointwise equilibrium of σ_DA is checked in so many elements at each level, each element in
-/// its turn, at most every [`TURNS`] levels: a check costs more than the measure itself.
+/// its turn, at most every so many levels: a check costs more than the measure itself.
 const CHECKS: usize = 64;
-const TURNS: usize = 64;
 
 /// Sums over far elements at the levels and in the middles between them.
 #[derive(Clone, Debug, Default)]
@@ -179,7 +178,7 @@ impl<'a, 's, 'p, const D: usize, const N: usize> FarLevels<'a, 's, 'p, D, N> {
             let before = (lane < forces.len()).then(|| levels.before(lane)).flatten();
             before.map_or(0.0, |before| instants[forces[lane].level.index] - instants[before.index()])
         };
-        let turns = (shared.problem.mesh().element_count() / CHECKS).max(TURNS);
+        let turns = (shared.problem.mesh().element_count() / CHECKS).max(CHECKS);
         let index = |lane: usize| forces.get(lane).map(|f| f.level.index);
         Self {
             shared,

@@ -40,7 +40,7 @@ impl<const N: usize> Transfer<N> {
         for e in (0..fine.element_count()).map(ElementId::new) {
             let points = fine.cell_points(e);
             let not_nested = || ReferenceError::NotNested { fine: e.index() };
-            let element = locator.element_at(&mean(&points)).ok_or_else(not_nested)?;
+            let element = locator.element_at(&fine.centroid(e)).ok_or_else(not_nested)?;
             for (node, point) in fine.cells()[e.index()].iter().zip(&points) {
                 let weight = locator.weights(element, point);
                 if weight.iter().any(|w| *w < -OUTSIDE) {
@@ -60,8 +60,8 @@ impl<const N: usize> Transfer<N> {
     pub(super) fn located<const D: usize>(coarse: &Mesh<D, N>, fine: &Mesh<D, N>) -> Result<Self, ReferenceError> {
         same_volume(coarse, fine, SIMILAR_BODY)?;
         let (locators, body_of) = (Locator::of_bodies(coarse), fine.part_of_elements());
-        let coarse_body = matching(&locators, fine, &body_of)?;
-        let centroid = |e: usize| mean(&fine.cell_points(ElementId::new(e)));
+        let coarse_body = matching(&locators, fine)?;
+        let centroid = |e: usize| fine.centroid(ElementId::new(e));
         let of_element = |e: usize| &locators[coarse_body[body_of[e]]];
         let elements = (0..fine.element_count()).map(|e| of_element(e).element_near(&centroid(e))).collect();
         let mut places = Vec::with_capacity(fine.node_count());
@@ -100,7 +100,7 @@ fn inner_points<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Vec<([f64;
     // Sum of the centroids, their number, the last element.
     let mut around = vec![([0.0; D], 0.0, 0); mesh.node_count()];
     for (e, cell) in mesh.cells().iter().enumerate() {
-        let centroid = mean(&mesh.cell_points(ElementId::new(e)));
+        let centroid = mesh.centroid(ElementId::new(e));
         for node in cell {
             let (sum, count, element) = &mut around[node.index()];
             (0..D).for_each(|c| sum[c] += centroid[c]);
@@ -113,27 +113,14 @@ fn inner_points<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Vec<([f64;
     mesh.points().iter().zip(around).map(moved).collect()
 }
 
-/// For each body of the fine mesh the coarse one that has most of its elements: at a curved interface some lie in the
-/// other body.
+/// For each body of the fine mesh the coarse one; each has one.
 fn matching<const D: usize, const N: usize>(
     locators: &[Locator<'_, D, N>],
     fine: &Mesh<D, N>,
-    body_of: &[usize],
 ) -> Result<Vec<usize>, ReferenceError> {
-    let mut within = vec![vec![0; locators.len()]; fine.parts()];
-    for (e, &body) in body_of.iter().enumerate() {
-        let centroid = mean(&fine.cell_points(ElementId::new(e)));
-        let found = locators.iter().position(|locator| locator.element_at(&centroid).is_some());
-        found.into_iter().for_each(|coarse| within[body][coarse] += 1);
-    }
-    let most = |counts: &Vec<usize>| (0..counts.len()).max_by_key(|&coarse| counts[coarse]).unwrap_or(0);
-    let matched: Vec<usize> = within.iter().map(most).collect();
+    let matched = Locator::matching(locators, fine);
     let once = (0..locators.len()).all(|coarse| matched.iter().filter(|&&found| found == coarse).count() == 1);
     if once { Ok(matched) } else { Err(ReferenceError::OtherBodies { fine: fine.parts(), coarse: locators.len() }) }
-}
-
-fn mean<const D: usize, const N: usize>(points: &[[f64; D]; N]) -> [f64; D] {
-    std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / N as f64)
 }
 
 fn same_volume<const D: usize, const N: usize>(
@@ -148,7 +135,7 @@ fn same_volume<const D: usize, const N: usize>(
 
 /// Length or area of a mesh.
 fn measure<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> f64 {
-    (0..mesh.element_count()).map(|e| mesh.cell_geometry(ElementId::new(e)).volume).sum()
+    mesh.volumes().iter().sum()
 }
 
 #[cfg(test)]

@@ -103,7 +103,7 @@ fn regions<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Option<(Vec<usi
         region[first] = found.len();
         while let Some(element) = waiting.pop() {
             for facet in mesh.cell_facets()[element] {
-                let other = across(mesh, facet, element);
+                let other = mesh.facets()[facet.index()].across(ElementId::new(element)).map(ElementId::index);
                 if let Some(other) =
                     other.filter(|&other| region[other] == usize::MAX && groups[other] == groups[first])
                 {
@@ -116,18 +116,13 @@ fn regions<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Option<(Vec<usi
     }
     for (element, cell) in mesh.cells().iter().enumerate() {
         for (k, facet) in mesh.cell_facets()[element].iter().enumerate() {
-            if across(mesh, *facet, element).is_none_or(|other| region[other] != region[element]) {
+            let other = mesh.facets()[facet.index()].across(ElementId::new(element));
+            if other.is_none_or(|other| region[other.index()] != region[element]) {
                 found[region[element]].edges.push([1, 2].map(|p| cell[(k + p) % N].index()));
             }
         }
     }
     Some((region, found))
-}
-
-/// The element on the other side of a facet.
-fn across<const D: usize, const N: usize>(mesh: &Mesh<D, N>, facet: FacetId, element: usize) -> Option<usize> {
-    let facet = &mesh.facets()[facet.index()];
-    if facet.owner.index() == element { facet.neighbour.map(ElementId::index) } else { Some(facet.owner.index()) }
 }
 
 /// The edges of the boundary and between regions.

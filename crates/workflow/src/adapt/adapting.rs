@@ -19,6 +19,8 @@ use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{Options, Reconstruction};
+use std::ops::ControlFlow::{self, Break, Continue};
+use std::sync::Arc;
 
 /// A run that is planned.
 #[derive(Clone, Debug)]
@@ -42,8 +44,8 @@ pub struct Adapting<const D: usize, const N: usize> {
     iterations: Vec<Iteration>,
     planned: Option<Planned<D, N>>,
     /// The last run, and the basis of the plan that follows from it.
-    last: Option<(Best<D, N>, Option<Basis>)>,
-    best: Option<Best<D, N>>,
+    last: Option<(Arc<Best<D, N>>, Option<Basis>)>,
+    best: Option<Arc<Best<D, N>>>,
     needed: Option<Needed>,
     /// The work of a run above the limit.
     refused: Option<Needed>,
@@ -131,8 +133,8 @@ where
         let (problem, made) = match &self.last {
             None => (self.restated.problem().clone(), Made::default()),
             Some((last, basis)) => match self.problem_after(last, basis.as_ref())? {
-                Ok(found) => found,
-                Err(reason) => {
+                Continue(found) => found,
+                Break(reason) => {
                     self.reason = Some(reason);
                     return Ok(());
                 }
@@ -176,7 +178,7 @@ where
             return Ok(());
         };
         let run = self.iterations.len();
-        self.take(Best { run, problem, times, critical_step, results, report }, made, value);
+        self.take(Arc::new(Best { run, problem, times, critical_step, results, report }), made, value);
         Ok(())
     }
 
@@ -200,7 +202,7 @@ where
     }
 
     /// Takes a run in, with the value of the quantity of the target.
-    fn take(&mut self, last: Best<D, N>, made: Made, quantity: Option<f64>) {
+    fn take(&mut self, last: Arc<Best<D, N>>, made: Made, quantity: Option<f64>) {
         let mesh = last.problem.mesh();
         let basis = Basis::new(mesh, &last.results.estimate, &last.results.contact);
         let iteration = Iteration::new(&last.report, basis.as_ref(), &sizes(mesh), self.wish.measure, made);
@@ -210,7 +212,8 @@ where
         }
         let worth = |run: &Iteration| (!run.doubts.is_empty(), run.error);
         // The limit of a quantity is nearer on each finer mesh.
-        let better = |best: &Best<D, N>| quantity.is_some() || worth(&iteration) < worth(&self.iterations[best.run]);
+        let better =
+            |best: &Arc<Best<D, N>>| quantity.is_some() || worth(&iteration) < worth(&self.iterations[best.run]);
         if self.best.as_ref().is_none_or(better) {
             self.best = Some(last.clone());
         }
@@ -235,15 +238,15 @@ where
         &self,
         last: &Best<D, N>,
         basis: Option<&Basis>,
-    ) -> Result<Result<(Problem<D, N>, Made), Reason>, Failure> {
-        let Some(basis) = basis else { return Ok(Err(Reason::NoSources)) };
+    ) -> Result<ControlFlow<Reason, (Problem<D, N>, Made)>, Failure> {
+        let Some(basis) = basis else { return Ok(Break(Reason::NoSources)) };
         let (mesh, error) = (last.problem.mesh(), self.iterations[last.run].error);
         let wanted = self.wish.wanted(&self.iterations[last.run], basis);
         let plan = Plan::new(basis, wanted, &self.meshing.largest(mesh));
         // The plan of a map holds for a step: its mesh may have all that is missing in a few places.
         let needed = self.needed.filter(|_| plan.branch == Branch::Uniform);
         if needed.is_some_and(|needed| needed.element_steps > self.wish.limit) {
-            return Ok(Err(Reason::Limit));
+            return Ok(Break(Reason::Limit));
         }
         let made = |predicted: f64| Made { branch: Some(plan.branch), predicted: Some(predicted * error) };
         // The outline of a finer disc may cut a plane that touches the first one.
@@ -251,14 +254,14 @@ where
             && next.element_count() != mesh.element_count()
             && let Ok(problem) = self.restated.on(next)
         {
-            return Ok(Ok((problem, made(predicted))));
+            return Ok(Continue((problem, made(predicted))));
         }
         let most = (self.wish.limit / last.times.step_count() as f64) as usize;
         let (next, predicted) = self.meshing.next(mesh, (basis, &plan), most.max(1))?;
         if next.points() == mesh.points() && next.cells() == mesh.cells() {
-            return Ok(Err(Reason::SameMesh));
+            return Ok(Break(Reason::SameMesh));
         }
-        Ok(Ok((self.restated.on(next)?, made(predicted))))
+        Ok(Continue((self.restated.on(next)?, made(predicted))))
     }
 }
 

@@ -1,7 +1,7 @@
 //! The mesh of a plan by bisection of the first mesh.
 
 use crate::failure::Failure;
-use crate::plan::{Basis, Branch, Plan, Wanted};
+use crate::plan::{Basis, Branch, Plan, Wanted, sizes};
 use percute_core::ids::ElementId;
 use percute_core::mesh::{Bisection, Mesh};
 
@@ -27,11 +27,7 @@ pub(super) fn bisected<const D: usize, const N: usize>(
     let mut predicted = f64::INFINITY;
     for tolerance in TOLERANCES {
         for _ in 0..ROUNDS {
-            let mesh = bisection.mesh();
-            let too_large = |(e, size): (usize, f64)| {
-                size > (1.0 + ROUNDING) * tolerance * wanted.within(&mesh.cell_points(ElementId::new(e)))
-            };
-            let chosen: Vec<bool> = crate::plan::sizes(mesh).into_iter().enumerate().map(too_large).collect();
+            let chosen = wanted.too_large(bisection.mesh(), (1.0 + ROUNDING) * tolerance);
             if !chosen.contains(&true) || chosen.len() > most {
                 break;
             }
@@ -55,9 +51,9 @@ pub(super) fn expected<const D: usize, const N: usize>(
 ) -> f64 {
     let count = basis.size().len();
     let (mut volume, mut parts, mut least) = (vec![0.0; count], vec![0.0; count], vec![f64::INFINITY; count]);
-    let size = crate::plan::sizes(mesh);
+    let size = sizes(mesh);
     for (e, h) in size.iter().enumerate() {
-        let old = wanted.element_of(&mesh.cell_points(ElementId::new(e))).index();
+        let old = wanted.element_of(mesh, ElementId::new(e)).index();
         volume[old] += h.powi(D as i32);
         parts[old] += 1.0;
         least[old] = least[old].min(*h);

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::message::{counted, short};
-use crate::plan::{Basis, Plan, SizeField, sizes};
+use crate::plan::{Basis, Plan, SizeField};
 use percute_core::mesh::Mesh;
 use percute_core::simplex::ByDimension;
 use percute_io::{Overwrite, gmsh};
@@ -89,7 +89,7 @@ pub(super) fn meshed<const D: usize, const N: usize>(
     let read = gmsh::read(&at("mesh.msh"), scale).map_err(|error| failed(error.to_string()))?;
     let mesh: Mesh<D, N> =
         of_dimension(read).ok_or_else(|| failed("the geometry is not that of a body of this dimension".into()))?;
-    let [made, stated] = [&mesh, first].map(|mesh| sizes(mesh).iter().map(|h| h.powi(D as i32)).sum::<f64>());
+    let [made, stated] = [&mesh, first].map(|mesh| mesh.volumes().iter().sum::<f64>());
     if (made - stated).abs() > SAME_BODY * stated || mesh.parts() != first.parts() {
         return Err(failed(format!(
             "the geometry has an area of {} m² and {}, the first mesh {} m² and {}: is it the same body, and `scale` \

@@ -60,10 +60,6 @@ pub struct Iteration {
 impl Iteration {
     /// Of a report on a mesh with these sizes.
     pub(super) fn new(report: &Report, basis: Option<&Basis>, size: &[f64], measure: Measure, made: Made) -> Self {
-        let parts = |basis: &Basis| {
-            let mean = &basis.sources().mean;
-            [mean.surface, mean.front, mean.dispersion, mean.mesh].map(|part| part / mean.total())
-        };
         let sizes = [f64::min, f64::max].map(|pick| size.iter().copied().reduce(pick).unwrap_or(0.0));
         Self {
             branch: made.branch,
@@ -74,7 +70,7 @@ impl Iteration {
             error: measure.of(report),
             predicted: made.predicted,
             quantity: None,
-            sources: basis.map(parts),
+            sources: basis.map(Basis::shares),
             trust: report.verdict.trust,
             doubts: report.verdict.doubts.clone(),
         }

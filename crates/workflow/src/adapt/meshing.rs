@@ -73,7 +73,12 @@ where
 
     /// The same by the generator of the first mesh, if all elements become smaller alike.
     pub(super) fn generated(&self, run: &Mesh<D, N>, plan: &Plan) -> Option<(Mesh<D, N>, f64)> {
-        generated(run, plan).filter(|_| self.mesher == Mesher::Bisection)
+        if plan.branch != Branch::Uniform || self.mesher != Mesher::Bisection {
+            return None;
+        }
+        let next = run.resized(1.0 / plan.ratio.first()?)?;
+        let finer = next.element_count() as f64 / run.element_count() as f64;
+        Some((next, finer.powf(-plan.exponents.far / D as f64)))
     }
 
     /// How much larger than in a run each of its elements may become: with bisection not larger than in the first mesh.
@@ -81,23 +86,9 @@ where
         let (locator, first) = (Locator::new(self.first.mesh()), sizes(self.first.mesh()));
         let most = if self.mesher == Mesher::Bisection { 1.0 } else { LARGEST };
         let of = |(e, h): (usize, f64)| {
-            let corners = run.cell_points(ElementId::new(e));
-            let middle = std::array::from_fn(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64);
-            (most * first[locator.element_near(&middle).index()] / h).clamp(1.0, LARGEST)
+            let in_first = locator.element_near(&run.centroid(ElementId::new(e)));
+            (most * first[in_first.index()] / h).clamp(1.0, LARGEST)
         };
         sizes(run).into_iter().enumerate().map(of).collect()
     }
-}
-
-/// Of a uniform plan for a mesh of a generator, its mesh with smaller elements, and the mean error expected on it.
-fn generated<const D: usize, const N: usize>(run: &Mesh<D, N>, plan: &Plan) -> Option<(Mesh<D, N>, f64)>
-where
-    Mesh<D, N>: Generated,
-{
-    if plan.branch != Branch::Uniform {
-        return None;
-    }
-    let next = run.resized(1.0 / plan.ratio.first()?)?;
-    let finer = next.element_count() as f64 / run.element_count() as f64;
-    Some((next, finer.powf(-plan.exponents.far / D as f64)))
 }

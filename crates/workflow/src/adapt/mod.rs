@@ -29,6 +29,7 @@ use percute_core::observer::Observer;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
+use std::sync::Arc;
 
 /// The most elements times steps of a run, unless another limit is given: less than a minute.
 pub const LIMIT: f64 = 1e8;
@@ -98,7 +99,7 @@ pub struct Adaptation<const D: usize, const N: usize> {
     /// Warnings about the meshes.
     pub warnings: Vec<String>,
     /// The best run; none if the first was interrupted.
-    pub best: Option<Best<D, N>>,
+    pub best: Option<Arc<Best<D, N>>>,
 }
 
 /// The best run of an adaptation.

@@ -24,19 +24,9 @@ pub(super) fn warning<const D: usize, const N: usize>(mesh: &Mesh<D, N>, basis: 
     ))
 }
 
-/// The angle between the two edges of the boundary at a node (degrees).
+/// The angle between the directions of the two edges of the boundary at a node (degrees).
 fn turn<const D: usize, const N: usize>(mesh: &Mesh<D, N>, node: NodeId) -> Option<f64> {
-    let around = mesh.stars().star(node).elements.iter().flat_map(|element| mesh.cell_facets()[element.index()]);
-    let edges = around.map(|facet| &mesh.facets()[facet.index()]);
-    let here = mesh.points()[node.index()];
-    let ends = edges.filter(|edge| edge.neighbour.is_none() && edge.nodes.contains(&node)).filter_map(|edge| {
-        let end = edge.nodes.iter().find(|other| **other != node)?;
-        let point = mesh.points()[end.index()];
-        Some([point[0] - here[0], point.get(1)? - here.get(1)?])
-    });
-    let [u, w] = ends.collect::<Vec<[f64; 2]>>().try_into().ok()?;
-    let (cross, dot) = (u[0] * w[1] - u[1] * w[0], u[0] * w[0] + u[1] * w[1]);
-    Some(180.0 - cross.abs().atan2(dot).to_degrees())
+    Some((180.0 - mesh.angle_of_outline(node)?.to_degrees()).abs())
 }
 
 #[cfg(test)]

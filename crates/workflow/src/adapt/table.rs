@@ -3,7 +3,8 @@
 use super::iteration::{Iteration, Measure, Reason};
 use super::toward::judged;
 use super::{Adaptation, Next};
-use crate::message::{counted, percent, short, trimmed, whole_percent};
+use crate::message::{counted, percent, short, trimmed};
+use crate::plan::shares_told;
 use crate::quantity::{Judgement, Quantity};
 use crate::report::Report;
 use percute_core::units::Units;
@@ -145,12 +146,7 @@ fn row(cells: &[String; 9]) -> String {
 
 /// The sources of the first run and of the last one.
 fn sources(iterations: &[Iteration]) -> String {
-    let told = |iteration: &Iteration| {
-        let names = ["surface", "front", "dispersion", "mesh"];
-        let parts = iteration.sources?;
-        let each = names.iter().zip(parts).map(|(name, part)| format!("{name} {}", whole_percent(part)));
-        Some(each.collect::<Vec<_>>().join(", "))
-    };
+    let told = |iteration: &Iteration| iteration.sources.as_ref().map(shares_told);
     let first = iterations.first().and_then(told).unwrap_or_else(|| "unknown".to_string());
     let last = iterations.last().and_then(told).filter(|_| iterations.len() > 1);
     let last = last.map_or_else(String::new, |last| format!("\n                  last run: {last}"));

@@ -1,8 +1,9 @@
 //! What a plan follows from.
 
 use super::{Branch, MOST};
+use crate::message::whole_percent;
 use percute_core::contact::ContactResults;
-use percute_core::ids::{ElementId, NodeId};
+use percute_core::ids::NodeId;
 use percute_core::mesh::Mesh;
 use percute_estimator::{Estimate, Separation};
 
@@ -86,6 +87,13 @@ impl Basis {
         self.element_steps
     }
 
+    /// Parts of the sources in the squared mean error: surface, front, dispersion, mesh.
+    #[must_use]
+    pub fn shares(&self) -> [f64; 4] {
+        let mean = &self.sources.mean;
+        [mean.surface, mean.front, mean.dispersion, mean.mesh].map(|part| part / mean.total())
+    }
+
     /// The sources of the squared mean error.
     #[must_use]
     pub fn sources(&self) -> &Separation {
@@ -93,8 +101,14 @@ impl Basis {
     }
 }
 
+/// Parts of the sources in words.
+pub(crate) fn shares_told(shares: &[f64; 4]) -> String {
+    let names = ["surface", "front", "dispersion", "mesh"];
+    let each = names.iter().zip(shares).map(|(name, part)| format!("{name} {}", whole_percent(*part)));
+    each.collect::<Vec<_>>().join(", ")
+}
+
 /// h of each element: the root of its area, or its length (m).
 pub(crate) fn sizes<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Vec<f64> {
-    let size = |element| mesh.cell_geometry(ElementId::new(element)).volume.powf(1.0 / D as f64);
-    (0..mesh.element_count()).map(size).collect()
+    mesh.volumes().into_iter().map(|volume| volume.powf(1.0 / D as f64)).collect()
 }

@@ -16,7 +16,7 @@ mod wanted;
 
 pub use advice::Advice;
 pub use basis::Basis;
-pub(crate) use basis::sizes;
+pub(crate) use basis::{shares_told, sizes};
 pub use exponents::Exponents;
 pub use next_mesh::NextMesh;
 pub use size_field::SizeField;

@@ -1,8 +1,8 @@
 //! A plan in words, and as a document.
 
-use super::{Basis, Branch, Exponents, Plan};
+use super::{Basis, Branch, Exponents, Plan, shares_told};
 use crate::effort::{Effort, duration};
-use crate::message::{counted, percent, short, trimmed, whole_percent};
+use crate::message::{counted, percent, short, trimmed};
 use percute_core::mesh::Mesh;
 use serde::Serialize;
 
@@ -54,13 +54,12 @@ impl NextMesh {
         let bounds = |sizes: &mut dyn Iterator<Item = f64>| {
             sizes.fold([f64::INFINITY, 0.0_f64], |[low, high], h| [low.min(h), high.max(h)])
         };
-        let mean = &basis.sources.mean;
         Self {
             error,
             target,
             branch: plan.branch,
             exponents: plan.exponents,
-            sources: [mean.surface, mean.front, mean.dispersion, mean.mesh].map(|part| part / mean.total()),
+            sources: basis.shares(),
             elements: mesh.element_count(),
             sizes: bounds(&mut basis.size.iter().copied()),
             planned: bounds(&mut basis.size.iter().zip(&plan.ratio).map(|(h, r)| h * r)),
@@ -85,9 +84,7 @@ impl NextMesh {
     pub fn told(&self) -> String {
         let Self { error, target, branch, sources, elements, sizes, planned, expected, .. } = self;
         let (error, target) = (percent(*error), percent(*target));
-        let names = ["surface", "front", "dispersion", "mesh"];
-        let sources = names.iter().zip(sources).map(|(name, part)| format!("{name} {}", whole_percent(*part)));
-        let sources = sources.collect::<Vec<_>>().join(", ");
+        let sources = shares_told(sources);
         if self.error <= self.target {
             return format!("The mean error is {error}: the target of {target} is reached.\n");
         }

@@ -1,6 +1,6 @@
 //! The sizes of a plan at the nodes of a mesh, for mesh generators.
 
-use super::{Basis, Branch, Plan, Wanted, sizes};
+use super::{Basis, Branch, Plan, Wanted};
 use percute_core::ids::ElementId;
 use percute_core::mesh::{Mesh, MeshError};
 
@@ -34,9 +34,7 @@ impl<const D: usize, const N: usize> SizeField<D, N> {
         let wanted = Wanted::new(run, basis, plan);
         let mut mesh = run.clone();
         for _ in 0..ROUNDS {
-            let too_large =
-                |(e, size): (usize, f64)| size > COARSE * wanted.within(&mesh.cell_points(ElementId::new(e)));
-            let chosen: Vec<bool> = sizes(&mesh).into_iter().enumerate().map(too_large).collect();
+            let chosen = wanted.too_large(&mesh, COARSE);
             if !chosen.contains(&true) || chosen.len() > most {
                 break;
             }
@@ -44,8 +42,7 @@ impl<const D: usize, const N: usize> SizeField<D, N> {
         }
         let mut size = vec![f64::INFINITY; mesh.node_count()];
         for (e, cell) in mesh.cells().iter().enumerate() {
-            let points = mesh.cell_points(ElementId::new(e));
-            let planned = wanted.planned_in(wanted.element_of(&points));
+            let planned = wanted.planned_in(wanted.element_of(&mesh, ElementId::new(e)));
             cell.iter().for_each(|node| size[node.index()] = size[node.index()].min(planned));
         }
         limit_growth(&mesh, &mut size);

@@ -1,6 +1,6 @@
 //! The wanted size of elements at each point.
 
-use super::{Basis, Branch, Plan};
+use super::{Basis, Branch, Plan, sizes};
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::mesh::{Locator, Mesh};
 use std::collections::BTreeMap;
@@ -52,17 +52,23 @@ impl<'m, const D: usize, const N: usize> Wanted<'m, D, N> {
         self.size[element.index()]
     }
 
-    /// The smallest size in an element with these corners (m).
-    pub(crate) fn within(&self, corners: &[[f64; D]; N]) -> f64 {
-        let middle: [f64; D] = std::array::from_fn(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64);
-        let towards =
-            |corner: &[f64; D]| self.at(&std::array::from_fn(|c| middle[c] + TOWARDS * (corner[c] - middle[c])));
-        corners.iter().map(towards).fold(self.at(&middle), f64::min)
+    /// Whether each element of a mesh has more than so many times the wanted size.
+    pub(crate) fn too_large(&self, mesh: &Mesh<D, N>, times: f64) -> Vec<bool> {
+        let is_too_large = |(e, size): (usize, f64)| size > times * self.within(mesh, ElementId::new(e));
+        sizes(mesh).into_iter().enumerate().map(is_too_large).collect()
     }
 
-    /// The element of the mesh of the run that an element with these corners lies in.
-    pub(crate) fn element_of(&self, corners: &[[f64; D]; N]) -> ElementId {
-        self.locator.element_near(&std::array::from_fn(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64))
+    /// The smallest size in an element of a mesh (m).
+    fn within(&self, mesh: &Mesh<D, N>, element: ElementId) -> f64 {
+        let middle = mesh.centroid(element);
+        let towards =
+            |corner: &[f64; D]| self.at(&std::array::from_fn(|c| middle[c] + TOWARDS * (corner[c] - middle[c])));
+        mesh.cell_points(element).iter().map(towards).fold(self.at(&middle), f64::min)
+    }
+
+    /// The element of the mesh of the run that an element of a mesh lies in.
+    pub(crate) fn element_of(&self, mesh: &Mesh<D, N>, element: ElementId) -> ElementId {
+        self.locator.element_near(&mesh.centroid(element))
     }
 }
 

@@ -220,11 +220,10 @@ pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<
 }
 
 fn worst<const D: usize, const N: usize>(mesh: &Mesh<D, N>, estimate: &Estimate<D>) -> Vec<WorstElement> {
-    let centroid = |element: ElementId| {
-        let corners = mesh.cell_points(element);
-        (0..D).map(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64).collect()
+    let named = |(id, error): (ElementId, f64)| {
+        let centroid = mesh.centroid(id).to_vec();
+        WorstElement { element: id.index(), error, centroid }
     };
-    let named = |(id, error): (ElementId, f64)| WorstElement { element: id.index(), error, centroid: centroid(id) };
     estimate.worst_elements(WORST).into_iter().map(named).collect()
 }
 

@@ -38,8 +38,7 @@ pub(super) fn poor_elements<const D: usize, const N: usize>(mesh: &Mesh<D, N>, b
         let (aspect, angles) = (aspect(mesh, element), angles(mesh, element));
         let smallest_angle = angles.iter().copied().fold(f64::INFINITY, f64::min);
         let largest_angle = angles.iter().copied().fold(0.0, f64::max);
-        let corners = mesh.cell_points(ElementId::new(element));
-        let centroid = (0..D).map(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64).collect();
+        let centroid = mesh.centroid(ElementId::new(element)).to_vec();
         let share = by_element[element] * by_element[element] / total;
         let is_poor = aspect > LONG || largest_angle > flat::ANGLE;
         is_poor.then_some(PoorElement { element, centroid, aspect, smallest_angle, largest_angle, share })

@@ -220,7 +220,7 @@ fn partner<const D: usize, const N: usize>(
     let mut found: (usize, Option<ElementId>) = (1, None);
     for (apart, facet) in mesh.cell_facets()[e].iter().enumerate() {
         let facet = &mesh.facets()[facet.index()];
-        let Some(other) = (if facet.owner == id { facet.neighbour } else { Some(facet.owner) }) else { continue };
+        let Some(other) = facet.across(id) else { continue };
         let o = other.index();
         if range.contains(&o) && !taken[o] && laws[o] == laws[e] && found.1.is_none_or(|known| other < known) {
             found = (apart, Some(other));
