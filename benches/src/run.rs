@@ -43,8 +43,8 @@ impl<S> Timed<S> {
     }
 }
 
-impl<S: StateSink<2>> StateSink<2> for Timed<S> {
-    fn accept(&mut self, state: &State<'_, 2>) -> Result<(), SinkError> {
+impl<S: StateSink> StateSink for Timed<S> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         self.first.get_or_insert_with(self.clock);
         self.inner.accept(state)
     }
@@ -54,11 +54,11 @@ impl<S: StateSink<2>> StateSink<2> for Timed<S> {
 #[derive(Clone, Debug)]
 struct Last {
     step: usize,
-    displacement: Vec<[f64; 2]>,
+    displacement: Vec<f64>,
 }
 
-impl StateSink<2> for Last {
-    fn accept(&mut self, state: &State<'_, 2>) -> Result<(), SinkError> {
+impl StateSink for Last {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         if state.step().index == self.step {
             self.displacement = state.step().displacement.to_vec();
         }
@@ -83,7 +83,7 @@ pub fn simulated(
     count: usize,
     threads: Option<usize>,
     clock: Clock,
-) -> Result<(Duration, Vec<[f64; 2]>), Failure> {
+) -> Result<(Duration, Vec<f64>), Failure> {
     let mut sink = Timed::new(Last { step: count, displacement: Vec::new() }, clock);
     simulate_threaded(&block.problem, &steps(block.step, count)?, threads, &mut sink, &mut Unobserved)?;
     let end = clock();
@@ -94,12 +94,7 @@ pub fn simulated(
 ///
 /// # Errors
 /// A simulation or an estimate that fails.
-pub fn estimated(
-    block: &Block,
-    count: usize,
-    options: Options,
-    clock: Clock,
-) -> Result<(Duration, Estimate<2>), Failure> {
+pub fn estimated(block: &Block, count: usize, options: Options, clock: Clock) -> Result<(Duration, Estimate), Failure> {
     let times = steps(block.step, count)?;
     let estimator = Estimator::new(&block.problem, &times, options)?;
     let mut sink = Timed::new(estimator, clock);

@@ -76,7 +76,7 @@ mod tests {
             let [angle, speed, gap] = kind.impact();
             let (sin, cos) = angle.to_radians().sin_cos();
             let (_, displacement) = simulated(&block, steps, Some(1), wall).unwrap();
-            let points = block.problem.mesh().points().iter().zip(&displacement);
+            let points = block.problem.mesh().points().iter().zip(displacement.chunks_exact(2));
             let lowest = points.map(|(p, u)| sin * (p[0] + u[0]) + cos * (p[1] + u[1])).fold(f64::INFINITY, f64::min);
             assert!(speed * block.step * steps as f64 > 2.0 * gap, "{name}");
             // Rounding of places.

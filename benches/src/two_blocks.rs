@@ -52,8 +52,8 @@ pub fn two_blocks(contact: Contact) -> Result<Block, Failure> {
         let builder = TriangleProblem::builder(mesh).material(material()?).initial_velocity(velocity);
         let builder = match contact {
             Contact::None => builder,
-            Contact::Pairs => builder.interface(Interface::matching::<2>("upper.bottom", "lower.top", 0.2)?),
-            Contact::Sliding => builder.interface(Interface::sliding::<2>("upper.bottom", "lower.top", 0.2)?),
+            Contact::Pairs => builder.interface(Interface::matching(2, "upper.bottom", "lower.top", 0.2)?),
+            Contact::Sliding => builder.interface(Interface::sliding(2, "upper.bottom", "lower.top", 0.2)?),
         };
         Ok(builder.build()?)
     };

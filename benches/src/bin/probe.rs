@@ -118,7 +118,7 @@ fn write(block: &Block, request: &Request, words: &[&str], file: &str) -> Result
     let (numbers, answer) = match *words {
         ["displacement", count, _] => {
             let (_, displacement) = simulated(block, count.parse()?, request.threads, request.clock)?;
-            (displacement.into_flattened(), "written".into())
+            (displacement, "written".into())
         }
         ["parts", count, _] => {
             let options = request.options.ok_or("parts need --estimate")?;

@@ -1,33 +1,45 @@
 //! Strain, stress and energies of the elements at an instant, from the motion of the nodes.
 
+use crate::border::vectors;
 use crate::ids::ElementId;
 use crate::material::{Law, Tensor};
 use crate::mesh::Mesh;
-use crate::problem::Problem;
+use crate::on_problem;
+use crate::problem::{Problem, ProblemRef};
 
-/// The state of a P1 element at an instant: strain and stress are constant in it.
+/// The state of a P1 element at an instant: strain and stress are constant in it. Components beyond the dimension are 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ElementState<const D: usize> {
+pub struct ElementState {
+    dimension: usize,
     /// ε, eq. \[5\].
-    pub strain: Tensor<D>,
+    pub strain: Tensor<3>,
     /// σ_h (Pa), eq. \[9\].
-    pub stress: Tensor<D>,
+    pub stress: Tensor<3>,
     /// σ_zz (Pa): λ tr ε in plane strain, 0 in plane stress and in a bar.
     pub stress_across: f64,
     /// ½∫σ:ε (J), over the element with its section or thickness.
     pub strain_energy: f64,
 }
 
-impl<const D: usize> ElementState<D> {
-    /// The state of an element for these displacements of all nodes (m).
+impl ElementState {
+    /// The state of an element for these displacements of all nodes (m), in rows.
     #[must_use]
-    pub fn new<const N: usize>(problem: &Problem<D, N>, element: ElementId, displacement: &[[f64; D]]) -> Self {
+    pub fn new<'p>(problem: impl Into<ProblemRef<'p>>, element: ElementId, displacement: &[f64]) -> Self {
+        on_problem!(problem.into(), problem => Self::of(problem, element, vectors(displacement)))
+    }
+
+    fn of<const D: usize, const N: usize>(
+        problem: &Problem<D, N>,
+        element: ElementId,
+        displacement: &[[f64; D]],
+    ) -> Self {
         let law = problem.material(element);
         let gradient = displacement_gradient(problem.mesh(), element, displacement);
         let strain = std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * (gradient[a][b] + gradient[b][a])));
         Self {
-            strain,
-            stress: law.stress(&gradient),
+            dimension: D,
+            strain: in_space::<D>(&strain),
+            stress: in_space(&law.stress(&gradient)),
             stress_across: law.stress_across(&gradient),
             strain_energy: problem.volume(element) * law.strain_energy(&gradient),
         }
@@ -38,7 +50,7 @@ impl<const D: usize> ElementState<D> {
     pub fn von_mises(&self) -> f64 {
         let [a, b, c] = self.normal_stresses();
         let squares = (a - b).powi(2) + (b - c).powi(2) + (c - a).powi(2);
-        let shears = (0..D).flat_map(|i| (0..i).map(move |j| (i, j)));
+        let shears = (0..3).flat_map(|i| (0..i).map(move |j| (i, j)));
         (0.5 * squares + 3.0 * shears.map(|(i, j)| self.stress[i][j].powi(2)).sum::<f64>()).sqrt()
     }
 
@@ -46,10 +58,10 @@ impl<const D: usize> ElementState<D> {
     /// elongation.
     #[must_use]
     pub fn principal_strain(&self) -> f64 {
-        if D == 1 {
+        if self.dimension == 1 {
             return self.strain[0][0];
         }
-        let (xx, yy, xy) = (self.strain[0][0], self.strain[1 % D][1 % D], self.strain[0][1 % D]);
+        let (xx, yy, xy) = (self.strain[0][0], self.strain[1][1], self.strain[0][1]);
         let (mean, radius) = (0.5 * (xx + yy), (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
         if mean < 0.0 { mean - radius } else { mean + radius }
     }
@@ -62,12 +74,13 @@ impl<const D: usize> ElementState<D> {
 
     /// σ₁₁, σ₂₂ and σ₃₃ (Pa).
     fn normal_stresses(&self) -> [f64; 3] {
-        std::array::from_fn(|a| match a {
-            a if a < D => self.stress[a][a],
-            2 => self.stress_across,
-            _ => 0.0,
-        })
+        [self.stress[0][0], self.stress[1][1], self.stress_across]
     }
+}
+
+/// A tensor with three rows and columns.
+fn in_space<const D: usize>(tensor: &Tensor<D>) -> Tensor<3> {
+    std::array::from_fn(|a| std::array::from_fn(|b| if a < D && b < D { tensor[a][b] } else { 0.0 }))
 }
 
 /// ∂u_a/∂x_b of an element for these displacements of all nodes (m).
@@ -89,15 +102,14 @@ pub fn displacement_gradient<const D: usize, const N: usize>(
     gradient
 }
 
-/// Kinetic energy of an element (J) for these velocities of all nodes (m/s), with its share of their lumped masses, eq.
-/// \[35\].
+/// Kinetic energy of an element (J) for these velocities of all nodes (m/s), in rows, with its share of their lumped
+/// masses, eq. \[35\].
 #[must_use]
-pub fn kinetic_energy<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    element: ElementId,
-    velocity: &[[f64; D]],
-) -> f64 {
-    let mass = problem.material(element).density() * problem.volume(element) / N as f64;
-    let nodes = &problem.mesh().cells()[element.index()];
-    0.5 * mass * nodes.iter().flat_map(|node| velocity[node.index()]).map(|v| v * v).sum::<f64>()
+pub fn kinetic_energy<'p>(problem: impl Into<ProblemRef<'p>>, element: ElementId, velocity: &[f64]) -> f64 {
+    fn of<const D: usize, const N: usize>(problem: &Problem<D, N>, element: ElementId, velocity: &[[f64; D]]) -> f64 {
+        let mass = problem.material(element).density() * problem.volume(element) / N as f64;
+        let nodes = &problem.mesh().cells()[element.index()];
+        0.5 * mass * nodes.iter().flat_map(|node| velocity[node.index()]).map(|v| v * v).sum::<f64>()
+    }
+    on_problem!(problem.into(), problem => of(problem, element, vectors(velocity)))
 }

@@ -9,6 +9,7 @@
 //!
 #![doc = include_str!("method.md")]
 
+pub mod border;
 pub mod contact;
 pub mod dynamics;
 pub mod element_state;

@@ -1,5 +1,6 @@
 //! Supports, tractions and body forces, as the user states them.
 
+use crate::border::{Vector, cut, padded};
 use thiserror::Error;
 
 /// Why a table was refused.
@@ -23,17 +24,17 @@ pub enum TableError {
 
 /// A vector that is piecewise linear in time and constant outside its table.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Table<const C: usize> {
+pub struct Table {
     time: Vec<f64>,
-    value: Vec<[f64; C]>,
+    value: Vec<Vector>,
 }
 
-impl<const C: usize> Table<C> {
+impl Table {
     /// A table of instants (s) and values.
     ///
     /// # Errors
     /// Lengths that differ, instants that do not increase, values that are not finite.
-    pub fn new(time: Vec<f64>, value: Vec<[f64; C]>) -> Result<Self, TableError> {
+    pub fn new<const C: usize>(time: Vec<f64>, value: Vec<[f64; C]>) -> Result<Self, TableError> {
         if time.is_empty() || time.len() != value.len() {
             return Err(TableError::Lengths { times: time.len(), values: value.len() });
         }
@@ -45,13 +46,13 @@ impl<const C: usize> Table<C> {
                 return Err(TableError::Order { index, time: *t });
             }
         }
-        Ok(Self { time, value })
+        Ok(Self { time, value: value.iter().map(padded).collect() })
     }
 
     /// The same value at all times.
     #[must_use]
-    pub fn constant(value: [f64; C]) -> Self {
-        Self { time: vec![0.0], value: vec![value] }
+    pub fn constant<const C: usize>(value: [f64; C]) -> Self {
+        Self { time: vec![0.0], value: vec![padded(&value)] }
     }
 
     /// Its instants (s).
@@ -62,7 +63,7 @@ impl<const C: usize> Table<C> {
 
     /// Its values at them.
     #[must_use]
-    pub fn value(&self) -> &[[f64; C]] {
+    pub fn value(&self) -> &[Vector] {
         &self.value
     }
 
@@ -74,15 +75,15 @@ impl<const C: usize> Table<C> {
 
     /// The value at an instant.
     #[must_use]
-    pub fn at(&self, t: f64) -> [f64; C] {
+    pub fn at(&self, t: f64) -> Vector {
         let after = self.time.partition_point(|&x| x <= t);
         if after == 0 || after == self.time.len() {
             return self.value[after.saturating_sub(1)];
         }
         let (t0, t1) = (self.time[after - 1], self.time[after]);
         let s = (t - t0) / (t1 - t0);
-        let mut value = [0.0; C];
-        for c in 0..C {
+        let mut value = [0.0; 3];
+        for c in 0..3 {
             value[c] = (1.0 - s) * self.value[after - 1][c] + s * self.value[after][c];
         }
         value
@@ -96,13 +97,13 @@ impl<const C: usize> Table<C> {
 
     /// One component as a table of its own.
     #[must_use]
-    pub fn component(&self, c: usize) -> Table<1> {
-        Table { time: self.time.clone(), value: self.value.iter().map(|v| [v[c]]).collect() }
+    pub fn component(&self, c: usize) -> Self {
+        Self { time: self.time.clone(), value: self.value.iter().map(|v| [v[c], 0.0, 0.0]).collect() }
     }
 
     /// Which components are ever different from zero.
     #[must_use]
-    pub fn acting_components(&self) -> [bool; C] {
+    pub fn acting_components(&self) -> [bool; 3] {
         std::array::from_fn(|c| self.value.iter().any(|v| v[c] != 0.0))
     }
 
@@ -122,7 +123,7 @@ impl<const C: usize> Table<C> {
                 continue;
             }
             let s = (t - instants[after - 1]) / (instants[after] - instants[after - 1]);
-            for c in 0..C {
+            for c in 0..3 {
                 let line = (1.0 - s) * sampled[after - 1][c] + s * sampled[after][c];
                 error = error.max((line - value[c]).abs());
             }
@@ -133,53 +134,53 @@ impl<const C: usize> Table<C> {
 
 /// Components of the motion prescribed on a group of facets, ∂₁Ω (eq. \[4\]).
 #[derive(Clone, Debug)]
-pub struct Support<const D: usize> {
+pub struct Support {
     /// Group of facets.
     pub group: String,
     /// Which components, in global axes.
-    pub components: [bool; D],
+    pub components: [bool; 3],
     /// Their velocity v_d(t) (m/s); `None` keeps them fixed.
-    pub velocity: Option<Table<D>>,
+    pub velocity: Option<Table>,
 }
 
 /// A scalar factor that varies linearly in space: `value + gradient · x`.
 #[derive(Clone, Copy, Debug)]
-pub struct Profile<const D: usize> {
+pub struct Profile {
     /// Value at the origin.
     pub value: f64,
     /// Gradient (1/m).
-    pub gradient: [f64; D],
+    pub gradient: Vector,
 }
 
-impl<const D: usize> Profile<D> {
+impl Profile {
     /// 1 everywhere.
-    pub const UNIFORM: Self = Self { value: 1.0, gradient: [0.0; D] };
+    pub const UNIFORM: Self = Self { value: 1.0, gradient: [0.0; 3] };
 
     /// The factor at a point.
     #[must_use]
-    pub fn at(&self, point: &[f64; D]) -> f64 {
-        self.value + self.gradient.iter().zip(point).map(|(g, x)| g * x).sum::<f64>()
+    pub fn at<const D: usize>(&self, point: &[f64; D]) -> f64 {
+        self.value + cut::<D>(&self.gradient).iter().zip(point).map(|(g, x)| g * x).sum::<f64>()
     }
 }
 
 /// A traction F_d on a group of facets, ∂₂Ω: a table in time (Pa) times a profile in space.
 #[derive(Clone, Debug)]
-pub struct Traction<const D: usize> {
+pub struct Traction {
     /// Group of facets.
     pub group: String,
     /// Force per area (Pa), in global axes.
-    pub value: Table<D>,
+    pub value: Table,
     /// Linear variation along the facets.
-    pub profile: Profile<D>,
+    pub profile: Profile,
 }
 
 /// A body force f_d on a group of elements, or on all.
 #[derive(Clone, Debug)]
-pub struct BodyForce<const D: usize> {
+pub struct BodyForce {
     /// Group of elements; `None` means all.
     pub group: Option<String>,
     /// Force per volume (N/m³), in global axes.
-    pub value: Table<D>,
+    pub value: Table,
 }
 
 #[cfg(test)]
@@ -203,7 +204,7 @@ mod tests {
     #[test]
     fn bad_tables_are_refused() {
         assert!(matches!(Table::new(vec![0.0], vec![[1.0], [2.0]]), Err(TableError::Lengths { .. })));
-        assert!(matches!(Table::<1>::new(vec![], vec![]), Err(TableError::Lengths { .. })));
+        assert!(matches!(Table::new::<1>(vec![], vec![]), Err(TableError::Lengths { .. })));
         assert!(matches!(Table::new(vec![0.0, 0.0], vec![[1.0], [2.0]]), Err(TableError::Order { index: 1, .. })));
         assert!(matches!(Table::new(vec![0.0], vec![[f64::NAN]]), Err(TableError::NotFinite { .. })));
     }

@@ -15,5 +15,5 @@ pub(crate) fn problem(bodies: &[Body<'_>]) -> Builder<2, 3> {
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Nodal(velocity))
         .automatic_contact()
-        .contact(Contact::new::<2>(Between::All, 0.0, None).unwrap())
+        .contact(Contact::new(2, Between::All, 0.0, None).unwrap())
 }

@@ -30,7 +30,7 @@ fn setup(criterion: &mut Criterion) {
             // A problem keeps its critical step.
             b.iter_batched_ref(
                 || case.problem.clone(),
-                |problem| critical_time_step(black_box(problem)),
+                |problem| critical_time_step(black_box(&*problem)),
                 BatchSize::PerIteration,
             );
         });

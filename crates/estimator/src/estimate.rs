@@ -148,7 +148,7 @@ pub struct SurfaceEstimate {
 
 /// The constitutive relation error of a history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Estimate<const D: usize> {
+pub struct Estimate {
     /// The measures.
     pub error: ErrorMeasures,
     /// When η is largest (s).
@@ -162,7 +162,7 @@ pub struct Estimate<const D: usize> {
     /// e_E of each element, √((1/T)∫η_E dt) (J^½), eq. \[20\].
     pub by_element: Vec<f64>,
     /// The maps requested at steps that the run reached, in their order.
-    pub maps: Vec<ElementMap<D>>,
+    pub maps: Vec<ElementMap>,
     /// How far each field is from exactly admissible.
     pub residuals: Residuals,
     /// Normal impulse of the admissible contact force over that of the simulation; `None` without contact.
@@ -185,7 +185,7 @@ pub struct Estimate<const D: usize> {
     pub end: f64,
 }
 
-impl<const D: usize> Estimate<D> {
+impl Estimate {
     /// Whether every number of it is one.
     pub(crate) fn is_finite(&self) -> bool {
         let mut measures = self.error.entries().into_iter().map(|(_, x)| x);

@@ -3,55 +3,15 @@
 use crate::error::{EstimateError, RunError};
 use crate::estimate::Estimate;
 use crate::options::Options;
-use crate::pipeline::{self, Pipeline, Steps};
+use crate::pipeline::{self, Steps};
 use crate::replay;
 use crate::request::Request;
 use percute_core::dynamics::Simulation;
 use percute_core::history::{SinkError, State, StateSink, StepSource};
 use percute_core::observer::{Observer, StopFlag};
-use percute_core::problem::Problem;
-use percute_core::simplex::{Shape, instance};
+use percute_core::on_problem;
+use percute_core::problem::ProblemRef;
 use percute_core::time::TimeGrid;
-
-type Begin<const D: usize, const N: usize> =
-    for<'p> fn(&'p Problem<D, N>, &'p TimeGrid, Options) -> Result<Box<dyn Steps<D> + 'p>, EstimateError>;
-type Replay<const D: usize, const N: usize> = fn(
-    &Problem<D, N>,
-    &dyn StepSource<D>,
-    Options,
-    &Request,
-    &mut dyn StateSink<D>,
-    &mut dyn Observer,
-) -> Result<(Simulation, Estimate<D>), RunError>;
-
-/// Its functions for one element.
-struct Functions<const D: usize, const N: usize> {
-    begin: Begin<D, N>,
-    estimate: Replay<D, N>,
-    memory: fn(&Problem<D, N>, &TimeGrid, &Options) -> usize,
-}
-
-static BAR: Functions<1, 2> = Functions::NEW;
-static TRIANGLE: Functions<2, 3> = Functions::NEW;
-
-impl<const D: usize, const N: usize> Functions<D, N> {
-    const NEW: Self = Self { begin, estimate: replay::estimate, memory: pipeline::memory };
-
-    fn of(problem: &Problem<D, N>) -> &'static Self {
-        instance(match problem.mesh().simplex().shape() {
-            Shape::Bar => &BAR,
-            Shape::Triangle => &TRIANGLE,
-        })
-    }
-}
-
-fn begin<'p, const D: usize, const N: usize>(
-    problem: &'p Problem<D, N>,
-    times: &'p TimeGrid,
-    options: Options,
-) -> Result<Box<dyn Steps<D> + 'p>, EstimateError> {
-    Ok(Box::new(Pipeline::new(problem, times, options)?))
-}
 
 /// Takes in the steps of a history and estimates its constitutive relation error.
 ///
@@ -66,19 +26,19 @@ fn begin<'p, const D: usize, const N: usize>(
 /// returns, and so does [`finish`](Estimator::finish) on the last one: about a second on one core for a million
 /// elements. [`stopping`](Estimator::stopping) ends it before.
 #[derive(Debug)]
-pub struct Estimator<'p, const D: usize>(Box<dyn Steps<D> + 'p>);
+pub struct Estimator<'p>(Box<dyn Steps + 'p>);
 
-impl<'p, const D: usize> Estimator<'p, D> {
+impl<'p> Estimator<'p> {
     /// Prepares the estimate of a problem over a time grid.
     ///
     /// # Errors
     /// Options out of range, threads that cannot be started, or no folder for a temporary file that may be needed.
-    pub fn new<const N: usize>(
-        problem: &'p Problem<D, N>,
+    pub fn new(
+        problem: impl Into<ProblemRef<'p>>,
         times: &'p TimeGrid,
         options: Options,
     ) -> Result<Self, EstimateError> {
-        (Functions::of(problem).begin)(problem, times, options).map(Self)
+        pipeline::begin(problem.into(), times, options).map(Self)
     }
 
     /// Keeps the maps requested as well, from the first step on. Only [`Sampling::Auto`](crate::Sampling::Auto) samples
@@ -103,13 +63,13 @@ impl<'p, const D: usize> Estimator<'p, D> {
     ///
     /// # Errors
     /// Fewer than two steps, none estimated before a [stop](Estimator::stopping), or numbers out of range.
-    pub fn finish(self) -> Result<Estimate<D>, EstimateError> {
+    pub fn finish(self) -> Result<Estimate, EstimateError> {
         self.0.finish()
     }
 }
 
-impl<const D: usize> StateSink<D> for Estimator<'_, D> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl StateSink for Estimator<'_> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         self.0.accept(state)
     }
 }
@@ -117,8 +77,8 @@ impl<const D: usize> StateSink<D> for Estimator<'_, D> {
 /// About how much memory (bytes) an estimate takes beside its problem: its levels and the data that it keeps of
 /// each element and sample.
 #[must_use]
-pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, options: &Options) -> usize {
-    (Functions::of(problem).memory)(problem, times, options)
+pub fn memory<'p>(problem: impl Into<ProblemRef<'p>>, times: &TimeGrid, options: &Options) -> usize {
+    on_problem!(problem.into(), problem => pipeline::memory(problem, times, options))
 }
 
 /// Estimates a history: from the same steps, the same bits as beside the run that made them. If the observer breaks,
@@ -128,13 +88,13 @@ pub fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &T
 /// # Errors
 /// [`RunError`]: a history that cannot be read or does not fit the problem, options out of range, maps
 /// that cannot be kept.
-pub fn estimate<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    source: &dyn StepSource<D>,
+pub fn estimate<'p>(
+    problem: impl Into<ProblemRef<'p>>,
+    source: &dyn StepSource,
     options: Options,
     request: &Request,
-    beside: &mut dyn StateSink<D>,
+    beside: &mut dyn StateSink,
     observer: &mut dyn Observer,
-) -> Result<(Simulation, Estimate<D>), RunError> {
-    (Functions::of(problem).estimate)(problem, source, options, request, beside, observer)
+) -> Result<(Simulation, Estimate), RunError> {
+    replay::estimate(problem.into(), source, options, request, beside, observer)
 }

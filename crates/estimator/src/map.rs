@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The contributions of all elements to the error at one instant t_n. Where the contact zone
 /// changes at that instant, they are those after it, like the later of its two samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ElementMap<const D: usize> {
+pub struct ElementMap {
     /// n.
     pub step: usize,
     /// t_n (s).
@@ -20,30 +20,25 @@ pub struct ElementMap<const D: usize> {
     /// [`ElementMap::error`].
     pub accumulated: Vec<f64>,
     /// The fields, if they were requested.
-    pub fields: Option<AdmissibleFields<D>>,
+    pub fields: Option<AdmissibleFields>,
 }
 
 /// Admissible fields at one instant; where they jump in time, their values after it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AdmissibleFields<const D: usize> {
+pub struct AdmissibleFields {
     /// u_CA at the nodes (m).
-    #[serde(with = "vectors")]
-    pub displacement: Vec<[f64; D]>,
+    pub displacement: Vec<f64>,
     /// u̇_CA at the nodes (m/s).
-    #[serde(with = "vectors")]
-    pub velocity: Vec<[f64; D]>,
+    pub velocity: Vec<f64>,
     /// Mean of σ_DA over each element (Pa).
-    #[serde(with = "tensors")]
-    pub stress: Vec<[[f64; D]; D]>,
+    pub stress: Vec<f64>,
     /// σ_CA = Kε(u_CA) of each element (Pa).
-    #[serde(with = "tensors")]
-    pub compatible_stress: Vec<[[f64; D]; D]>,
+    pub compatible_stress: Vec<f64>,
     /// Mean of Γ_DA/ρ over each element (m/s²).
-    #[serde(with = "vectors")]
-    pub acceleration: Vec<[f64; D]>,
+    pub acceleration: Vec<f64>,
 }
 
-impl<const D: usize> ElementMap<D> {
+impl ElementMap {
     /// η_E(t_n) of each element (J), eq. \[21\].
     #[must_use]
     pub fn total(&self) -> Vec<f64> {
@@ -57,34 +52,5 @@ impl<const D: usize> ElementMap<D> {
     #[must_use]
     pub fn error(&self, end: f64) -> Vec<f64> {
         self.accumulated.iter().map(|integral| (integral / end).sqrt()).collect()
-    }
-}
-
-/// Vectors as a flat list of numbers.
-mod vectors {
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    pub(super) fn serialize<const D: usize, S: Serializer>(rows: &[[f64; D]], to: S) -> Result<S::Ok, S::Error> {
-        rows.as_flattened().serialize(to)
-    }
-
-    pub(super) fn deserialize<'de, const D: usize, S: Deserializer<'de>>(from: S) -> Result<Vec<[f64; D]>, S::Error> {
-        Ok(Vec::<f64>::deserialize(from)?.as_chunks().0.to_vec())
-    }
-}
-
-/// Tensors as a flat list of numbers.
-mod tensors {
-    use super::vectors;
-    use serde::{Deserializer, Serializer};
-
-    pub(super) fn serialize<const D: usize, S: Serializer>(rows: &[[[f64; D]; D]], to: S) -> Result<S::Ok, S::Error> {
-        vectors::serialize(rows.as_flattened(), to)
-    }
-
-    pub(super) fn deserialize<'de, const D: usize, S: Deserializer<'de>>(
-        from: S,
-    ) -> Result<Vec<[[f64; D]; D]>, S::Error> {
-        Ok(vectors::deserialize::<D, S>(from)?.as_chunks().0.to_vec())
     }
 }

@@ -3,25 +3,25 @@
 use crate::error::{EstimateError, RunError};
 use crate::estimate::Estimate;
 use crate::options::Options;
-use crate::pipeline::{Pipeline, Steps};
+use crate::pipeline::begin;
 use crate::request::Request;
 use percute_core::dynamics::{Balancing, Evaluation, Simulation};
 use percute_core::history::{SinkError, StateSink, StepError, StepSource};
 use percute_core::observer::{Observer, Progress};
-use percute_core::problem::Problem;
+use percute_core::problem::ProblemRef;
 use std::ops::ControlFlow;
 use thiserror::Error;
 
 /// Estimates a history, [`estimate`](crate::estimate()).
-pub(crate) fn estimate<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    source: &dyn StepSource<D>,
+pub(crate) fn estimate(
+    problem: ProblemRef<'_>,
+    source: &dyn StepSource,
     options: Options,
     request: &Request,
-    beside: &mut dyn StateSink<D>,
+    beside: &mut dyn StateSink,
     observer: &mut dyn Observer,
-) -> Result<(Simulation, Estimate<D>), RunError> {
-    let mut pipeline = Pipeline::new(problem, source.times(), options)?;
+) -> Result<(Simulation, Estimate), RunError> {
+    let mut pipeline = begin(problem, source.times(), options)?;
     pipeline.keep(request)?;
     pipeline.stop_at(observer.flag());
     let mut sinks = (pipeline, (Balancing::new(problem, source.times()), beside));
@@ -44,7 +44,7 @@ pub(crate) fn estimate<const D: usize, const N: usize>(
     let balance_over_time = balancing.finish();
     let balance = balance_over_time.last().copied().unwrap_or_default();
     let steps = balance_over_time.len().saturating_sub(1);
-    let estimate = Box::new(pipeline).finish()?;
+    let estimate = pipeline.finish()?;
     Ok((Simulation { balance, balance_over_time, steps, interrupted }, estimate))
 }
 

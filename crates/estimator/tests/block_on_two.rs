@@ -83,7 +83,7 @@ impl Row {
         let velocity = (0..3).flat_map(|k| vec![self.velocities[k.min(1)]; blocks[k].node_count()]).collect();
         let contact = |below: &str| {
             let groups = Between::Groups(["upper.bottom", below].map(str::to_string));
-            Contact::new::<2>(groups, self.friction, None).unwrap()
+            Contact::new(2, groups, self.friction, None).unwrap()
         };
         TriangleProblem::builder(TriangleMesh::joined(&named).unwrap())
             .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())

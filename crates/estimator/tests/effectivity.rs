@@ -36,7 +36,7 @@ fn grid(problem: &TriangleProblem, reach: f64) -> TimeGrid {
 }
 
 /// Motion and estimates of one run, in the order of [`INDEPENDENT`].
-fn run(problem: &TriangleProblem, times: &TimeGrid) -> (Motion<2>, [ErrorMeasures; 2]) {
+fn run(problem: &TriangleProblem, times: &TimeGrid) -> (Motion, [ErrorMeasures; 2]) {
     let estimator = |which: usize| {
         let options = Options { reconstruction: INDEPENDENT[which].0, ..Options::default() };
         Estimator::new(problem, times, options).unwrap()

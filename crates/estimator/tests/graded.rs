@@ -27,7 +27,7 @@ fn corner(times: usize) -> TriangleProblem {
         .unwrap()
 }
 
-fn estimate(problem: &TriangleProblem, courant: f64) -> Estimate<2> {
+fn estimate(problem: &TriangleProblem, courant: f64) -> Estimate {
     let end = 2e-5;
     let count = (end / (courant * critical_time_step(problem))).ceil() as usize;
     let times = TimeGrid::uniform(end, count).unwrap();

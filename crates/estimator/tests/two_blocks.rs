@@ -83,7 +83,7 @@ impl Row {
         }
         for k in 1..count {
             let [upper, lower] = [format!("{}.bottom", name(k - 1)), format!("{}.top", name(k))];
-            builder = builder.interface(Interface::matching::<2>(&upper, &lower, self.friction).unwrap());
+            builder = builder.interface(Interface::matching(2, &upper, &lower, self.friction).unwrap());
         }
         builder.build().unwrap()
     }

@@ -1,6 +1,6 @@
 //! Checksums of stored numbers and texts.
 
-use percute_core::mesh::Mesh;
+use percute_core::mesh::AnyMesh;
 
 /// A checksum of what was added to it. Each step maps its 64 bits one to one, so that a change of one number always
 /// changes it. A step spreads the change of any bit over many, so that the change of another number undoes it by chance
@@ -43,11 +43,11 @@ impl Checksum {
     }
 
     /// Adds a mesh: its points, elements and groups.
-    pub(crate) fn mesh<const D: usize, const N: usize>(self, mesh: &Mesh<D, N>) -> Self {
-        let cells = mesh.cells().iter().flatten().map(|node| node.index());
-        let mut all = self.numbers(mesh.points().as_flattened()).indices(cells);
+    pub(crate) fn mesh(self, mesh: &AnyMesh) -> Self {
+        let cells = mesh.cells().flatten().map(|node| node.index());
+        let mut all = self.numbers(mesh.points()).indices(cells);
         for (name, members) in mesh.facet_groups() {
-            let nodes = members.iter().flat_map(|facet| mesh.facets()[facet.index()].nodes);
+            let nodes = members.iter().flat_map(|&facet| mesh.facet(facet).nodes);
             all = all.text(name).indices(nodes.map(|node| node.index()));
         }
         for (name, members) in mesh.element_groups() {

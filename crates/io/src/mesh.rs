@@ -6,8 +6,7 @@ use crate::read::{Data, Opened, Part};
 use crate::write::{attribute, group, numbers, unit};
 use hdf5::Group;
 use hdf5::types::FixedAscii;
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
-use percute_core::simplex::{Element, Simplex};
+use percute_core::mesh::{AnyMesh, ElementGroups, FacetRows};
 
 /// Numbers and names of the elements in VTK, by dimension from 1.
 pub(crate) const VTK_TYPES: [(u8, &str); 2] = [(3, "VTK_LINE"), (5, "VTK_TRIANGLE")];
@@ -18,63 +17,59 @@ pub(crate) const BODY: &str = "body";
 const OF_BODIES: u64 = 4_000;
 
 /// The number of the body of each element, from 0, in the order of their first nodes; none of a single body.
-pub(crate) fn bodies<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Option<Vec<i64>> {
+pub(crate) fn bodies(mesh: &AnyMesh) -> Option<Vec<i64>> {
     (mesh.parts() > 1).then(|| mesh.part_of_elements().into_iter().map(|body| body as i64).collect())
 }
 
 /// Bytes of these numbers in a file with so many instants.
-pub(crate) fn bytes_of_bodies<const D: usize, const N: usize>(mesh: &Mesh<D, N>, instants: usize) -> u64 {
+pub(crate) fn bytes_of_bodies(mesh: &AnyMesh, instants: usize) -> u64 {
     if mesh.parts() > 1 { 8 * (mesh.element_count() + instants) as u64 + OF_BODIES } else { 0 }
 }
 
 /// Writes these numbers into the group of the fields of elements; gives their name with their rows in each step, none.
-pub(crate) fn write_bodies<const D: usize, const N: usize>(
-    cell_data: &Group,
-    mesh: &Mesh<D, N>,
-) -> Result<Option<(&'static str, usize)>, FileCause> {
+pub(crate) fn write_bodies(cell_data: &Group, mesh: &AnyMesh) -> Result<Option<(&'static str, usize)>, FileCause> {
     let Some(bodies) = bodies(mesh) else { return Ok(None) };
     numbers(cell_data, BODY, &[bodies.len()], &bodies)?;
     Ok(Some((BODY, 0)))
 }
 
-/// Nodal vectors with three components each, for ParaView.
+/// Vectors of a dimension, in rows, with three components each, for ParaView.
 #[must_use]
-pub fn in_space<const D: usize>(values: &[[f64; D]]) -> Vec<f64> {
-    let mut flat = vec![0.0; 3 * values.len()];
-    for (to, from) in flat.chunks_exact_mut(3).zip(values) {
-        to[..D].copy_from_slice(from);
+pub fn in_space(values: &[f64], dimension: usize) -> Vec<f64> {
+    let mut space = vec![0.0; values.len() / dimension * 3];
+    for (to, from) in space.chunks_exact_mut(3).zip(values.chunks_exact(dimension)) {
+        to[..dimension].copy_from_slice(from);
     }
-    flat
+    space
 }
 
 /// Creates the group `VTKHDF` with the grid, without its `Steps`.
-pub(crate) fn write_grid<const D: usize, const N: usize>(file: &Group, mesh: &Mesh<D, N>) -> Result<Group, FileCause> {
+pub(crate) fn write_grid(file: &Group, mesh: &AnyMesh) -> Result<Group, FileCause> {
     let vtk = group(file, "VTKHDF")?;
     let version = vtk.new_attr::<i64>().shape(2).create("Version").and_then(|a| a.write_raw(&[2_i64, 2]));
     version.map_err(|error| crate::library::refused(&error))?;
     let kind = FixedAscii::<16>::from_ascii(b"UnstructuredGrid");
     attribute(&vtk, "Type", kind.map_err(|_| FileCause::Damaged { detail: "a name".to_string() })?)?;
-    let (nodes, cells) = (mesh.node_count(), mesh.element_count());
-    for (name, count) in [("NumberOfPoints", nodes), ("NumberOfCells", cells), ("NumberOfConnectivityIds", cells * N)] {
+    let (nodes, cells, n) = (mesh.node_count(), mesh.element_count(), mesh.nodes_of_element());
+    for (name, count) in [("NumberOfPoints", nodes), ("NumberOfCells", cells), ("NumberOfConnectivityIds", cells * n)] {
         numbers(&vtk, name, &[1], &[count as i64])?;
     }
-    unit(&numbers(&vtk, "Points", &[nodes, 3], &in_space(mesh.points()))?, "m")?;
-    let connectivity: Vec<i64> = mesh.cells().iter().flatten().map(|node| node.index() as i64).collect();
-    numbers(&vtk, "Connectivity", &[cells * N], &connectivity)?;
-    let offsets: Vec<i64> = (0..=cells).map(|e| (e * N) as i64).collect();
+    unit(&numbers(&vtk, "Points", &[nodes, 3], &in_space(mesh.points(), mesh.dimension()))?, "m")?;
+    let connectivity: Vec<i64> = mesh.cells().flatten().map(|node| node.index() as i64).collect();
+    numbers(&vtk, "Connectivity", &[cells * n], &connectivity)?;
+    let offsets: Vec<i64> = (0..=cells).map(|e| (e * n) as i64).collect();
     numbers(&vtk, "Offsets", &[cells + 1], &offsets)?;
-    numbers(&vtk, "Types", &[cells], &vec![VTK_TYPES[D - 1].0; cells])?;
+    numbers(&vtk, "Types", &[cells], &vec![VTK_TYPES[mesh.dimension() - 1].0; cells])?;
     Ok(vtk)
 }
 
 /// Creates the groups of facets and elements in the group `percute`.
-pub(crate) fn write_groups<const D: usize, const N: usize>(ours: &Group, mesh: &Mesh<D, N>) -> Result<(), FileCause> {
+pub(crate) fn write_groups(ours: &Group, mesh: &AnyMesh) -> Result<(), FileCause> {
     let facets = group(ours, "facet_groups")?;
     for (name, members) in mesh.facet_groups() {
-        let of =
-            |facet: &percute_core::ids::FacetId| mesh.facets()[facet.index()].nodes.map(|node| node.index() as i64);
-        let nodes: Vec<i64> = members.iter().flat_map(of).collect();
-        numbers(&facets, &encoded(name), &[members.len(), D], &nodes)?;
+        let nodes = members.iter().flat_map(|&facet| mesh.facet(facet).nodes);
+        let nodes: Vec<i64> = nodes.map(|node| node.index() as i64).collect();
+        numbers(&facets, &encoded(name), &[members.len(), mesh.dimension()], &nodes)?;
     }
     let elements = group(ours, "element_groups")?;
     for (name, members) in mesh.element_groups() {
@@ -85,39 +80,35 @@ pub(crate) fn write_groups<const D: usize, const N: usize>(ours: &Group, mesh: &
 }
 
 /// Reads the mesh: points, elements and groups, with their order and orientation.
-pub(crate) fn read<const D: usize, const N: usize>(opened: &Opened) -> Result<Mesh<D, N>, FileCause>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+pub(crate) fn read(opened: &Opened, dimension: usize) -> Result<AnyMesh, FileCause> {
     let root = opened.root();
     let (vtk, ours) = (root.group("VTKHDF")?, root.group("percute")?);
     let points = vtk.data("Points")?;
     points.expect_dimensions(2, "(nodes, 3)")?;
     let nodes = points.shape[0];
-    let points = vectors::<D>(&points, points.floats()?)?;
-    let cells = cells::<N>(&vtk, D, nodes)?;
-    for (name, count) in [("NumberOfPoints", nodes), ("NumberOfCells", cells.len())] {
+    let points = vectors(&points, &points.floats()?, dimension)?;
+    let (cells, count_of_cells) = cells(&vtk, dimension, nodes)?;
+    for (name, count) in [("NumberOfPoints", nodes), ("NumberOfCells", count_of_cells)] {
         let Some(data) = vtk.optional(name)? else { continue };
         if let Some(other) = data.integers()?.into_iter().find(|&n| n != count as i64) {
             let detail = format!("{other} does not fit the mesh, which has {count}");
             return Err(FileCause::Value { name: data.name, detail });
         }
     }
-    let mut facets = FacetGroups::new();
+    let mut facets = FacetRows::new();
     for_each_group(&ours, "facet_groups", |name, members| {
         let count = members.shape.first().copied().unwrap_or(0);
-        members.expect(&[count, D], "the nodes of each facet")?;
-        let of = members.indices(nodes, "nodes")?;
-        facets.insert(name, of.as_chunks::<D>().0.to_vec());
+        members.expect(&[count, dimension], "the nodes of each facet")?;
+        facets.insert(name, members.indices(nodes, "nodes")?);
         Ok(())
     })?;
     let mut elements = ElementGroups::new();
     for_each_group(&ours, "element_groups", |name, members| {
         members.expect_dimensions(1, "(elements)")?;
-        elements.insert(name, members.indices(cells.len(), "elements")?);
+        elements.insert(name, members.indices(count_of_cells, "elements")?);
         Ok(())
     })?;
-    Ok(Mesh::of_bodies(points, &cells, &facets, &elements)?)
+    Ok(AnyMesh::of_bodies(dimension, &points, &cells, (&facets, &elements))?)
 }
 
 fn for_each_group(
@@ -129,11 +120,13 @@ fn for_each_group(
     groups.names()?.iter().try_for_each(|link| take(decoded(link), &groups.data(link)?))
 }
 
-fn cells<const N: usize>(vtk: &Part<'_>, dimension: usize, nodes: usize) -> Result<Vec<[usize; N]>, FileCause> {
+/// The nodes of all elements, in rows, and the number of elements.
+fn cells(vtk: &Part<'_>, dimension: usize, nodes: usize) -> Result<(Vec<usize>, usize), FileCause> {
+    let n = dimension + 1;
     let connectivity = vtk.data("Connectivity")?;
     connectivity.expect_dimensions(1, "(elements x nodes of each)")?;
-    let count = connectivity.shape[0] / N;
-    connectivity.expect(&[count * N], &format!("{N} nodes for each element"))?;
+    let count = connectivity.shape[0] / n;
+    connectivity.expect(&[count * n], &format!("{n} nodes for each element"))?;
     let types = vtk.data("Types")?;
     types.expect(&[count], "one type for each element")?;
     let (needed, shape) = VTK_TYPES[dimension - 1];
@@ -145,21 +138,22 @@ fn cells<const N: usize>(vtk: &Part<'_>, dimension: usize, nodes: usize) -> Resu
     let offsets = vtk.data("Offsets")?;
     offsets.expect(&[count + 1], "one more than elements")?;
     let offsets_given = offsets.integers()?;
-    if let Some(at) = (0..=count).find(|&e| offsets_given[e] != (e * N) as i64) {
-        let detail = format!("entry {at} is {}; it must be {}", offsets_given[at], at * N);
+    if let Some(at) = (0..=count).find(|&e| offsets_given[e] != (e * n) as i64) {
+        let detail = format!("entry {at} is {}; it must be {}", offsets_given[at], at * n);
         return Err(FileCause::Value { name: offsets.name, detail });
     }
-    Ok(connectivity.indices(nodes, "nodes")?.as_chunks::<N>().0.to_vec())
+    Ok((connectivity.indices(nodes, "nodes")?, count))
 }
 
-/// Vectors of `D` components from the three stored ones; the others must be zero.
-pub(crate) fn vectors<const D: usize>(data: &Data<'_>, values: Vec<f64>) -> Result<Vec<[f64; D]>, FileCause> {
+/// Vectors of a dimension, in rows, from the three components stored; the others must be zero.
+pub(crate) fn vectors(data: &Data<'_>, values: &[f64], dimension: usize) -> Result<Vec<f64>, FileCause> {
     data.expect(&[data.shape[0], 3], "three components")?;
     let (stored, _) = values.as_chunks::<3>();
-    if let Some(at) = stored.iter().position(|v| v[D..].iter().any(|x| *x != 0.0)) {
+    if let Some(at) = stored.iter().position(|v| v[dimension..].iter().any(|x| *x != 0.0)) {
+        let row = stored[at];
         let detail =
-            format!("row {at} is {:?}; components beyond the dimension of the problem, {D}, must be 0", stored[at]);
+            format!("row {at} is {row:?}; components beyond the dimension of the problem, {dimension}, must be 0");
         return Err(FileCause::Value { name: data.name.clone(), detail });
     }
-    Ok(stored.iter().map(|v| std::array::from_fn(|c| v[c])).collect())
+    Ok(stored.iter().flat_map(|v| &v[..dimension]).copied().collect())
 }

@@ -1,7 +1,7 @@
 //! A mesh to draw.
 
-use percute_core::mesh::{AnyMesh, Mesh};
-use percute_core::{each_dimension, ids::NodeId};
+use percute_core::ids::NodeId;
+use percute_core::mesh::AnyMesh;
 use std::collections::{BTreeMap, HashSet};
 
 /// A mesh in the plane; a bar lies on the axis x.
@@ -22,23 +22,16 @@ pub struct Body {
 impl Body {
     /// That of a mesh.
     #[must_use]
-    pub fn new<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Self {
-        let point = |p: &[f64; D]| [p[0], p.get(1).copied().unwrap_or(0.0)];
+    pub fn new(mesh: &AnyMesh) -> Self {
         let facets = mesh.facet_groups().iter().map(|(name, members)| (name.clone(), members.len()));
         let elements = mesh.element_groups().iter().map(|(name, members)| (name.clone(), members.len()));
         Self {
-            dimension: D,
-            points: mesh.points().iter().map(point).collect(),
+            dimension: mesh.dimension(),
+            points: mesh.places().map(|[x, y, _]| [x, y]).collect(),
             part: mesh.part_of_nodes().into_iter().map(NodeId::index).collect(),
-            cells: mesh.cells().as_flattened().iter().copied().map(NodeId::index).collect(),
+            cells: mesh.cells().flatten().copied().map(NodeId::index).collect(),
             groups: [facets.collect(), elements.collect()],
         }
-    }
-
-    /// That of a mesh of either dimension.
-    #[must_use]
-    pub fn of(mesh: &AnyMesh) -> Self {
-        each_dimension!(mesh, mesh => Self::new(mesh))
     }
 
     /// Number of elements.
@@ -117,7 +110,7 @@ mod tests {
         let cells: Vec<[usize; 3]> =
             (0..4).flat_map(|k| [[k, (k + 1) % 4, 4 + k], [(k + 1) % 4, 4 + (k + 1) % 4, 4 + k]]).collect();
         let mesh = TriangleMesh::new([outer, inner].concat(), &cells, &Default::default(), &Default::default());
-        assert_eq!(Body::new(&mesh.unwrap()).outline(), [vec![0, 1, 2, 3, 0], vec![4, 7, 6, 5, 4]]);
-        assert!(Body::new(&percute_core::mesh::BarMesh::uniform_bar(1.0, 3).unwrap()).outline().is_empty());
+        assert_eq!(Body::new(&mesh.unwrap().into()).outline(), [vec![0, 1, 2, 3, 0], vec![4, 7, 6, 5, 4]]);
+        assert!(Body::new(&AnyMesh::uniform_bar(1.0, 3).unwrap()).outline().is_empty());
     }
 }

@@ -141,7 +141,7 @@ mod tests {
     fn square() -> Body {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]];
         let cells = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
-        Body::new(&TriangleMesh::new(points, &cells, &Default::default(), &Default::default()).unwrap())
+        Body::new(&TriangleMesh::new(points, &cells, &Default::default(), &Default::default()).unwrap().into())
     }
 
     /// The outline where the corners have moved by a map.
@@ -208,7 +208,7 @@ mod tests {
     fn each_body_has_a_rigid_motion_of_its_own() {
         let square = TriangleMesh::rectangle(1.0, 1.0, 1, 1).unwrap();
         let beside = square.mapped(|[x, y]| [x + 1.5, *y]).unwrap();
-        let body = Body::new(&TriangleMesh::joined(&[("a", &square), ("b", &beside)]).unwrap());
+        let body = Body::new(&TriangleMesh::joined(&[("a", &square), ("b", &beside)]).unwrap().into());
         let turned = |node: usize| {
             let [x, y] = body.points[node];
             let centre = if node < 4 { [0.5, 0.5] } else { [2.0, 0.5] };

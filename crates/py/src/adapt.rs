@@ -6,8 +6,6 @@ use crate::options::{Stated, options};
 use crate::problem::ProblemData;
 use crate::simulate::Times;
 use crate::{bridge, errors, time};
-use percute_core::each_dimension;
-use percute_core::simplex::ByDimension;
 use percute_estimator::Options;
 use percute_workflow::adapt::{Adapting, Best, Geometry, Measure, Mesher, Wish, announced, table};
 use pyo3::prelude::*;
@@ -15,14 +13,14 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Shared with the thread of a run.
-type Shared<const D: usize, const N: usize> = Arc<Mutex<Adapting<D, N>>>;
+type Shared = Arc<Mutex<Adapting>>;
 /// Target, measure or quantity, limit and number of runs.
 type Wanted = (f64, String, f64, usize);
 
 /// An adaptation on its way.
 #[pyclass(frozen, module = "percute._percute")]
 pub(crate) struct AdaptingData {
-    adapting: ByDimension<Shared<1, 2>, Shared<2, 3>>,
+    adapting: Shared,
     options: Options,
 }
 
@@ -53,51 +51,31 @@ impl AdaptingData {
             Mesher::Gmsh(file.map_or(Geometry::Outline, |file| Geometry::File(file, scale)))
         };
         let wish = (Wish { target, measure, on, courant, limit, runs }, gmsh.map_or(Mesher::Bisection, geometry));
-        let adapting = match &problem.problem {
-            ByDimension::Bar(problem) => {
-                Adapting::new(problem, &times, options, wish).map(shared).map(ByDimension::Bar)
-            }
-            ByDimension::Plane(problem) => {
-                Adapting::new(problem, &times, options, wish).map(shared).map(ByDimension::Plane)
-            }
-        };
-        Ok(Self { adapting: adapting.map_err(|error| errors::run(py, &error))?, options })
+        let adapting = Adapting::new(&problem.problem, &times, options, wish);
+        let adapting = adapting.map_err(|error| errors::run(py, &error))?;
+        Ok(Self { adapting: Arc::new(Mutex::new(adapting)), options })
     }
 
     /// Plans the next run, and tells of it; none if the adaptation has ended.
     fn next(&self, py: Python<'_>) -> PyResult<Option<String>> {
-        let next = each_dimension!(&self.adapting, adapting => {
-            let adapting = adapting.clone();
-            bridge::blocking(py, None, move |_| adapting.lock().unwrap_or_else(PoisonError::into_inner).upcoming())?
-        });
+        let adapting = self.adapting.clone();
+        let next = move |_| adapting.lock().unwrap_or_else(PoisonError::into_inner).upcoming();
+        let next = bridge::blocking(py, None, next)?;
         next.map(|next| next.as_ref().map(announced)).map_err(|error| errors::run(py, &error))
     }
 
     /// Does the planned run.
     fn run(&self, py: Python<'_>, progress: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
-        let done = each_dimension!(&self.adapting, adapting => {
-            let adapting = adapting.clone();
-            let work = move |mut watch: bridge::Watch| {
-                adapting.lock().unwrap_or_else(PoisonError::into_inner).run(&mut watch)
-            };
-            bridge::blocking(py, progress, work)?
-        });
-        done.map_err(|error| errors::run(py, &error))
+        let adapting = self.adapting.clone();
+        let work =
+            move |mut watch: bridge::Watch| adapting.lock().unwrap_or_else(PoisonError::into_inner).run(&mut watch);
+        bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))
     }
 
     /// The JSON document and the table of the runs so far, and the problem and the estimate of the best one.
     fn so_far(&self, py: Python<'_>) -> PyResult<(String, String, Option<ProblemData>, Option<EstimateData>)> {
         // A run that was told to stop ends first.
-        let (document, table, best) = py.detach(|| match &self.adapting {
-            ByDimension::Bar(adapting) => {
-                let (document, table, best) = told(adapting, self.options);
-                (document, table, best.map(ByDimension::Bar))
-            }
-            ByDimension::Plane(adapting) => {
-                let (document, table, best) = told(adapting, self.options);
-                (document, table, best.map(ByDimension::Plane))
-            }
-        });
+        let (document, table, best) = py.detach(|| told(&self.adapting, self.options));
         let document = document.map_err(|error| errors::percute_error(py, &error.to_string()))?;
         let estimate = best.map(|made| EstimateData { made });
         let problem = estimate.as_ref().map(EstimateData::problem);
@@ -105,18 +83,14 @@ impl AdaptingData {
     }
 }
 
-fn shared<const D: usize, const N: usize>(adapting: Adapting<D, N>) -> Shared<D, N> {
-    Arc::new(Mutex::new(adapting))
-}
+type Told = (Result<String, std::io::Error>, String, Option<Arc<Made>>);
 
-type Told<const D: usize, const N: usize> = (Result<String, std::io::Error>, String, Option<Arc<Made<D, N>>>);
-
-fn told<const D: usize, const N: usize>(adapting: &Shared<D, N>, options: Options) -> Told<D, N> {
+fn told(adapting: &Shared, options: Options) -> Told {
     let adaptation = adapting.lock().unwrap_or_else(PoisonError::into_inner).so_far();
     let (document, table) = (adaptation.to_json(), table(&adaptation));
-    let made = |best: Arc<Best<D, N>>| {
+    let made = |best: Arc<Best>| {
         let best = Arc::unwrap_or_clone(best);
-        Arc::new(Made::new(Arc::new(best.problem), best.times, options, best.results, None, 0.0))
+        Arc::new(Made::new(best.problem, best.times, options, best.results, None, 0.0))
     };
     (document, table, adaptation.best.map(made))
 }

@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// The rebound and the impacts as a JSON document; `null` without contact, and without several bodies.
-pub(crate) fn rebound<const D: usize, const N: usize>(py: Python<'_>, run: &Arc<Run<D, N>>) -> PyResult<String> {
+pub(crate) fn rebound(py: Python<'_>, run: &Arc<Run>) -> PyResult<String> {
     let contact = contact::of_run(py, run)?;
     let balance = kept(py, run)?;
     let rebound = Rebound::new(&run.problem, &balance, &contact, None);
@@ -18,7 +18,7 @@ pub(crate) fn rebound<const D: usize, const N: usize>(py: Python<'_>, run: &Arc<
 }
 
 /// Energies, works and momentum at each instant, computed now or before.
-pub(crate) fn kept<const D: usize, const N: usize>(py: Python<'_>, run: &Arc<Run<D, N>>) -> PyResult<Vec<Balance>> {
+pub(crate) fn kept(py: Python<'_>, run: &Arc<Run>) -> PyResult<Vec<Balance>> {
     let worker = run.clone();
     let kept = bridge::blocking(py, None, move |watch| worker.balance(watch).map(<[Balance]>::to_vec))?;
     kept.map_err(|error| errors::steps(py, &error))

@@ -1,8 +1,6 @@
 //! Case files.
 
 use crate::{bridge, errors};
-use percute_core::each_dimension;
-use percute_core::simplex::ByDimension;
 use percute_workflow::Failure;
 use percute_workflow::case::{Case, Instants, Source, parse};
 use percute_workflow::effort::Long;
@@ -38,30 +36,24 @@ impl CaseData {
     fn resolved(&self, py: Python<'_>, progress: Option<&Bound<'_, PyAny>>) -> PyResult<(Self, Option<String>)> {
         let case = self.case.clone();
         let work = move |mut watch: bridge::Watch| -> Result<Option<Case>, Failure> {
-            Ok(match case {
-                ByDimension::Bar(case) => resolved(&case, &mut watch)
-                    .map_err(|failure| located(&case, failure))?
-                    .map(|case| ByDimension::Bar(Box::new(case))),
-                ByDimension::Plane(case) => resolved(&case, &mut watch)
-                    .map_err(|failure| located(&case, failure))?
-                    .map(|case| ByDimension::Plane(Box::new(case))),
-            })
+            resolved(&case, &mut watch).map_err(|failure| located(&case, failure))
         };
         let found = bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))?;
         let case = found.ok_or_else(|| errors::percute_error(py, "the search for the rebound was stopped"))?;
-        let told = each_dimension!(&case, case => case.unended.as_ref().map(|warning| warning.message.clone()));
+        let told = case.unended.as_ref().map(|warning| warning.message.clone());
         Ok((Self { case }, told))
     }
 
     /// Refuses a start that the simulation would refuse, and a long run unless `long` says so.
     fn check_run(&self, py: Python<'_>, long: bool) -> PyResult<()> {
         let long = Long::asked(long, "`long=True`");
-        each_dimension!(&self.case, case => case.check_run(true, long)).map_err(|error| errors::input(py, error))
+        self.case.check_run(true, long).map_err(|error| errors::input(py, error))
     }
 
     /// Its plausibility warnings; with `in_memory`, its history is kept in memory.
     fn plausibility_warnings(&self, in_memory: bool) -> Vec<String> {
-        each_dimension!(&self.case, case => case.plausibility_warnings(in_memory))
+        self.case
+            .plausibility_warnings(in_memory)
             .into_iter()
             .map(|plausibility_warning| plausibility_warning.message)
             .collect()
@@ -69,7 +61,7 @@ impl CaseData {
 
     /// The import warnings of its mesh.
     fn import_warnings(&self) -> Vec<String> {
-        let warnings = each_dimension!(&self.case, case => case.problem.mesh().import_warnings());
+        let warnings = self.case.problem.mesh().import_warnings();
         warnings.iter().map(|warning| warning.message.clone()).collect()
     }
 
@@ -82,15 +74,14 @@ impl CaseData {
         store: Option<PathBuf>,
         overwrite: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let output = each_dimension!(&self.case, case => &case.output);
+        let output = &self.case.output;
         let chosen = [
             outputs::chosen(["`store`", "[output] history"], store.as_deref(), output.history.as_deref()),
             outputs::chosen(["", "[output] estimate"], None, output.estimate.as_deref()),
         ];
         let made = chosen.map(|file| file.is_some());
-        let unused = each_dimension!(&self.case, case => case.check_files(made[0], made[1]));
-        unused.map_err(|error| errors::input(py, error))?;
-        let inputs = each_dimension!(&self.case, read => read.inputs(case.as_deref()));
+        self.case.check_files(made[0], made[1]).map_err(|error| errors::input(py, error))?;
+        let inputs = self.case.inputs(case.as_deref());
         let checked = outputs::check(&inputs, &chosen, overwrite).and_then(|()| outputs::check_endings(&chosen));
         checked.map_err(|error| errors::output(py, &error))?;
         let asked = PyDict::new(py);

@@ -4,17 +4,16 @@ use crate::bridge::Watch;
 use crate::problem::ProblemData;
 use crate::{bridge, errors};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
-use percute_core::each_dimension;
 use percute_core::element_state::{ElementState, kinetic_energy};
 use percute_core::ids::ElementId;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use pyo3::prelude::*;
 
 /// Numbers of one element, from the rows of all nodes at an instant.
-type Numbers<const D: usize, const N: usize> = fn(&Problem<D, N>, ElementId, &[[f64; D]], &mut Vec<f64>);
+type Numbers = fn(&AnyProblem, ElementId, &[f64], &mut Vec<f64>);
 
-/// A quantity of each element at instants: (instants, elements), of a tensor (instants, elements, D, D). `nodal` are
-/// velocities (m/s) for `kinetic_energy` and displacements (m) for the others, (instants, nodes, D).
+/// A quantity of each element at instants: (instants, elements), of a tensor (instants, elements, dimension, dimension). `nodal` are
+/// velocities (m/s) for `kinetic_energy` and displacements (m) for the others, (instants, nodes, dimension).
 #[pyfunction]
 pub(crate) fn element_field<'py>(
     py: Python<'py>,
@@ -22,34 +21,33 @@ pub(crate) fn element_field<'py>(
     quantity: &str,
     nodal: PyReadonlyArray3<'py, f64>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    each_dimension!(&problem.problem, problem => {
-        let shape = nodal.shape().to_vec();
-        let (numbers, order) = quantity_of(problem, quantity).ok_or_else(|| errors::input(py, "no such quantity"))?;
-        let (nodes, elements) = (problem.mesh().node_count(), problem.mesh().element_count());
-        let dimension = problem.mesh().points()[0].len();
-        if (shape[1], shape[2]) != (nodes, dimension) {
-            return Err(errors::input(py, format!("the field has the shape {shape:?}; it must be (instants, {nodes}, \
-                {dimension})")));
-        }
-        let (problem, rows) = (problem.clone(), nodal.as_slice()?.to_vec());
-        let work = move |watch: Watch| over_time(&problem, &rows, numbers, watch);
-        let values = bridge::blocking(py, None, work)?;
-        let shape = [&[shape[0], elements], &[dimension; 2][..order]].concat();
-        let array = values.into_pyarray(py).reshape(shape)?;
-        array.readwrite().make_nonwriteable();
-        Ok(array)
-    })
+    let problem = &problem.problem;
+    let shape = nodal.shape().to_vec();
+    let (numbers, order) = quantity_of(quantity).ok_or_else(|| errors::input(py, "no such quantity"))?;
+    let (nodes, elements) = (problem.mesh().node_count(), problem.mesh().element_count());
+    let dimension = problem.dimension();
+    if (shape[1], shape[2]) != (nodes, dimension) {
+        return Err(errors::input(
+            py,
+            format!(
+                "the field has the shape {shape:?}; it must be (instants, {nodes}, \
+                {dimension})"
+            ),
+        ));
+    }
+    let (problem, rows) = (problem.clone(), nodal.as_slice()?.to_vec());
+    let work = move |watch: Watch| over_time(&problem, &rows, numbers, watch);
+    let values = bridge::blocking(py, None, work)?;
+    let shape = [&[shape[0], elements], &[dimension; 2][..order]].concat();
+    let array = values.into_pyarray(py).reshape(shape)?;
+    array.readwrite().make_nonwriteable();
+    Ok(array)
 }
 
 /// The numbers of all elements at all instants, until `watch` asks for a stop.
-fn over_time<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    rows: &[f64],
-    numbers: Numbers<D, N>,
-    watch: Watch,
-) -> Vec<f64> {
+fn over_time(problem: &AnyProblem, rows: &[f64], numbers: Numbers, watch: Watch) -> Vec<f64> {
     let mut values = Vec::new();
-    for instant in rows.as_chunks::<D>().0.chunks_exact(problem.mesh().node_count()) {
+    for instant in rows.chunks_exact(problem.dimension() * problem.mesh().node_count()) {
         if watch.0.stopped() {
             break;
         }
@@ -60,10 +58,10 @@ fn over_time<const D: usize, const N: usize>(
 }
 
 /// The numbers of a quantity, and the order of its tensor.
-fn quantity_of<const D: usize, const N: usize>(_: &Problem<D, N>, quantity: &str) -> Option<(Numbers<D, N>, usize)> {
+fn quantity_of(quantity: &str) -> Option<(Numbers, usize)> {
     Some(match quantity {
-        "strain" => (|p, e, u, to| to.extend(ElementState::new(p, e, u).strain.as_flattened()), 2),
-        "stress" => (|p, e, u, to| to.extend(ElementState::new(p, e, u).stress.as_flattened()), 2),
+        "strain" => (|p, e, u, to| to.extend(tensor(p, &ElementState::new(p, e, u).strain)), 2),
+        "stress" => (|p, e, u, to| to.extend(tensor(p, &ElementState::new(p, e, u).stress)), 2),
         "stress_across" => (|p, e, u, to| to.push(ElementState::new(p, e, u).stress_across), 0),
         "von_mises" => (|p, e, u, to| to.push(ElementState::new(p, e, u).von_mises()), 0),
         "pressure" => (|p, e, u, to| to.push(ElementState::new(p, e, u).pressure()), 0),
@@ -71,4 +69,10 @@ fn quantity_of<const D: usize, const N: usize>(_: &Problem<D, N>, quantity: &str
         "kinetic_energy" => (|p, e, v, to| to.push(kinetic_energy(p, e, v)), 0),
         _ => return None,
     })
+}
+
+/// The components of a tensor in the dimension of a problem.
+fn tensor(problem: &AnyProblem, tensor: &[[f64; 3]; 3]) -> impl Iterator<Item = f64> {
+    let dimension = problem.dimension();
+    tensor.iter().take(dimension).flat_map(move |row| row.iter().take(dimension)).copied()
 }

@@ -7,9 +7,7 @@ use crate::problem::ProblemData;
 use crate::run::Run;
 use crate::{bridge, errors, view};
 use numpy::{PyArray1, PyArrayDyn};
-use percute_core::simplex::ByDimension;
 use percute_core::units::Units;
-use percute_core::{each_dimension, map_dimension};
 use percute_estimator::{AdmissibleFields, ElementMap, Options, UnknownName};
 use percute_io::Overwrite;
 use percute_workflow::case::Instants;
@@ -24,15 +22,13 @@ use std::time::Instant;
 /// An estimate of either dimension.
 #[pyclass(frozen, module = "percute._percute")]
 pub(crate) struct EstimateData {
-    pub(crate) made: ByDimension<Arc<Made<1, 2>>, Arc<Made<2, 3>>>,
+    pub(crate) made: Arc<Made>,
 }
 
 /// A number of each element.
-type Numbers<const D: usize> = fn(&ElementMap<D>) -> &[f64];
-/// Vectors of admissible fields.
-type Vectors<const D: usize> = fn(&AdmissibleFields<D>) -> &[[f64; D]];
-/// Stresses.
-type Tensors<const D: usize> = fn(&AdmissibleFields<D>) -> &[[[f64; D]; D]];
+type Numbers = fn(&ElementMap) -> &[f64];
+/// Components of an admissible field.
+type Components = fn(&AdmissibleFields) -> &[f64];
 
 /// Estimates a history; without `instants`, no maps are kept.
 #[pyfunction]
@@ -55,7 +51,7 @@ pub(crate) fn estimate(
     let options = Options { ablation, threads, window, ..options(py, reconstruction, acceleration, &every)? };
     let instants = instants.map(Instants::from);
     let maps = (instants.as_ref(), fields);
-    let made = map_dimension!(&history.run, run => estimate_one(py, run, options, maps, accept, progress)?);
+    let made = estimate_one(py, &history.run, options, maps, accept, progress)?;
     Ok(EstimateData { made })
 }
 
@@ -71,14 +67,14 @@ pub(crate) fn meaning() -> &'static str {
     percute_workflow::report::meaning()
 }
 
-fn estimate_one<const D: usize, const N: usize>(
+fn estimate_one(
     py: Python<'_>,
-    run: &Arc<Run<D, N>>,
+    run: &Arc<Run>,
     options: Options,
     (instants, fields): (Option<&Instants>, bool),
     accept: bool,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Arc<Made<D, N>>> {
+) -> PyResult<Arc<Made>> {
     let analysis = analysis(options, instants, fields, false, run.times());
     let start = Instant::now();
     let work = {
@@ -100,54 +96,51 @@ fn estimate_one<const D: usize, const N: usize>(
 #[pymethods]
 impl EstimateData {
     pub(crate) fn problem(&self) -> ProblemData {
-        ProblemData::new(map_dimension!(&self.made, m => m.problem.clone()))
+        ProblemData::new(self.made.problem.clone())
     }
 
     /// All of it but its problem and its history, as bytes for `restore`; `name` is that of the report.
     fn state<'py>(&self, py: Python<'py>, name: String) -> PyResult<Bound<'py, PyBytes>> {
         let report = self.to_json(py, name)?;
-        let bytes = each_dimension!(&self.made, made => made.state(&report));
+        let bytes = self.made.state(&report);
         Ok(PyBytes::new(py, &bytes.map_err(|error| errors::percute_error(py, &error.to_string()))?))
     }
 
     /// The same estimate, bit by bit, from its problem and its `state`.
     #[staticmethod]
     fn restore(py: Python<'_>, problem: &ProblemData, state: &[u8]) -> PyResult<Self> {
-        Ok(Self { made: map_dimension!(&problem.problem, problem => Arc::new(Made::restored(py, problem, state)?)) })
+        Ok(Self { made: Arc::new(Made::restored(py, &problem.problem, state)?) })
     }
 
     /// The measures: those of `percute.Estimate` that are single numbers.
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let (error, time_of_sup, steps, end, kept) = each_dimension!(&self.made, m => {
-            let e = &m.estimate;
-            (e.error, e.time_of_sup, e.steps, e.end, e.kept_impulse)
-        });
+        let estimate = &self.made.estimate;
         let numbers = PyDict::new(py);
-        for (name, value) in error.entries() {
+        for (name, value) in estimate.error.entries() {
             numbers.set_item(name, value)?;
         }
-        numbers.set_item("time_of_sup", time_of_sup)?;
-        numbers.set_item("steps", steps)?;
-        numbers.set_item("end", end)?;
-        numbers.set_item("kept_impulse", kept)?;
+        numbers.set_item("time_of_sup", estimate.time_of_sup)?;
+        numbers.set_item("steps", estimate.steps)?;
+        numbers.set_item("end", estimate.end)?;
+        numbers.set_item("kept_impulse", estimate.kept_impulse)?;
         Ok(numbers)
     }
 
     /// Parts of η at the time of the sup: kinetic, elastic, contact (J).
     fn parts(&self) -> (f64, f64, f64) {
-        let parts = each_dimension!(&self.made, m => m.estimate.parts);
+        let parts = &self.made.estimate.parts;
         (parts.kinetic, parts.elastic, parts.contact)
     }
 
     /// η, its parts and d at all samples, an array each.
     fn over_time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        view::columns(py, each_dimension!(&self.made, m => &m.estimate.over_time), &PARTS)
+        view::columns(py, &self.made.estimate.over_time, &PARTS)
     }
 
     /// The sources of η, each as its four numbers, but over time an array for each; `None` without an auxiliary
     /// solution.
     fn sources<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let Some(separation) = each_dimension!(&self.made, m => m.estimate.sources.as_ref()) else { return Ok(None) };
+        let Some(separation) = self.made.estimate.sources.as_ref() else { return Ok(None) };
         let numbers = PyDict::new(py);
         let sources = [("at_sup", separation.at_sup), ("mean", separation.mean), ("half_size", separation.half_size)];
         for (name, source) in sources {
@@ -159,14 +152,13 @@ impl EstimateData {
     }
 
     fn by_element<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each_dimension!(&self.made, m => {
-            view::view(py, m, |m| m.estimate.by_element.as_slice(), &[m.estimate.by_element.len()])
-        })
+        let shape = [self.made.estimate.by_element.len()];
+        view::view(py, &self.made, |made| made.estimate.by_element.as_slice(), &shape)
     }
 
     fn residuals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let residuals = PyDict::new(py);
-        for (name, value) in each_dimension!(&self.made, m => m.estimate.residuals.entries()) {
+        for (name, value) in self.made.estimate.residuals.entries() {
             residuals.set_item(name, value)?;
         }
         Ok(residuals)
@@ -174,7 +166,7 @@ impl EstimateData {
 
     /// Whether the history brought velocities, and accelerations.
     fn given(&self) -> (bool, bool) {
-        let given = each_dimension!(&self.made, m => m.estimate.given);
+        let given = &self.made.estimate.given;
         (given.velocity, given.acceleration)
     }
 
@@ -185,25 +177,25 @@ impl EstimateData {
             let of_options = warning.name == "few_samples";
             of_options && options || !of_options && input
         };
-        let [found, mut before] = each_dimension!(&self.made, made => made.warnings());
+        let [found, mut before] = self.made.warnings();
         before.retain(told);
         found.into_iter().chain(before).map(|warning| (warning.message.clone(), warning.doubts_result())).collect()
     }
 
     /// Names of the method's choices, and the samples taken.
     fn options(&self) -> Stated {
-        options::stated(&each_dimension!(&self.made, m => m.options))
+        options::stated(&self.made.options)
     }
 
     /// The elements that contribute most, largest first.
     fn worst_elements(&self, count: usize) -> Vec<(usize, f64)> {
-        let worst = each_dimension!(&self.made, m => m.estimate.worst_elements(count));
+        let worst = self.made.estimate.worst_elements(count);
         worst.into_iter().map(|(element, error)| (element.index(), error)).collect()
     }
 
     /// Each map as its arguments.
     fn maps<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each_dimension!(&self.made, m => (0..m.estimate.maps.len()).map(|i| one_map(py, m, i)).collect())
+        (0..self.made.estimate.maps.len()).map(|i| one_map(py, &self.made, i)).collect()
     }
 
     /// Writes an estimate file; contact results come from the history.
@@ -216,47 +208,32 @@ impl EstimateData {
         history: Option<&HistoryData>,
     ) -> PyResult<()> {
         let overwrite = Overwrite::allowed(overwrite);
-        match (&self.made, history.map(|history| &history.run)) {
-            (ByDimension::Bar(made), Some(ByDimension::Bar(run))) => made.saved(py, path, overwrite, name, Some(run)),
-            (ByDimension::Plane(made), Some(ByDimension::Plane(run))) => {
-                made.saved(py, path, overwrite, name, Some(run))
-            }
-            (ByDimension::Bar(made), _) => made.saved(py, path, overwrite, name, None),
-            (ByDimension::Plane(made), _) => made.saved(py, path, overwrite, name, None),
-        }
+        self.made.saved(py, path, overwrite, name, history.map(|history| &history.run))
     }
 
     /// A JSON document with verdict, rebound and warnings.
     fn verdict(&self, py: Python<'_>) -> PyResult<String> {
-        let text = each_dimension!(&self.made, made => {
-            let made = made.clone();
-            bridge::blocking(py, None, move |_| made.document("", Report::verdict_to_json))?
-        });
+        let made = self.made.clone();
+        let text = bridge::blocking(py, None, move |_| made.document("", Report::verdict_to_json))?;
         text.map_err(|message| errors::percute_error(py, &message))
     }
 
     /// The document of `percute run --json`.
     fn to_json(&self, py: Python<'_>, name: String) -> PyResult<String> {
-        let text = each_dimension!(&self.made, made => {
-            let made = made.clone();
-            bridge::blocking(py, None, move |_| made.report(&name))?
-        });
+        let made = self.made.clone();
+        let text = bridge::blocking(py, None, move |_| made.report(&name))?;
         text.map_err(|message| errors::percute_error(py, &message))
     }
 }
 
 /// One map.
-fn one_map<'py, const D: usize, const N: usize>(
-    py: Python<'py>,
-    made: &Arc<Made<D, N>>,
-    at: usize,
-) -> PyResult<Bound<'py, PyDict>> {
+fn one_map<'py>(py: Python<'py>, made: &Arc<Made>, at: usize) -> PyResult<Bound<'py, PyDict>> {
     let map = &made.estimate.maps[at];
     let arguments = PyDict::new(py);
     arguments.set_item("step", map.step)?;
     arguments.set_item("time", map.time)?;
     let elements = map.kinetic.len();
-    let parts: [(&str, Numbers<D>); 3] =
+    let parts: [(&str, Numbers); 3] =
         [("kinetic", |m| &m.kinetic), ("elastic", |m| &m.elastic), ("contact", |m| &m.contact)];
     for (name, part) in parts {
         arguments.set_item(name, view::view(py, made, |m| part(&m.estimate.maps[at]), &[elements])?)?;
@@ -266,25 +243,22 @@ fn one_map<'py, const D: usize, const N: usize>(
     arguments.set_item("total", PyArray1::from_vec(py, map.total()))?;
     arguments.set_item("error", PyArray1::from_vec(py, map.error(made.estimate.end)))?;
     let Some(fields) = &map.fields else { return Ok(arguments) };
-    let nodes = fields.displacement.len();
-    let vectors: [(&str, usize, Vectors<D>); 3] = [
-        ("displacement", nodes, |f| &f.displacement),
-        ("velocity", nodes, |f| &f.velocity),
-        ("acceleration", elements, |f| &f.acceleration),
+    let dimension = made.problem.dimension();
+    let nodes = fields.displacement.len() / dimension;
+    let (vector, tensor) = ([elements, dimension], [elements, dimension, dimension]);
+    let components: [(&str, &[usize], Components); 5] = [
+        ("displacement", &[nodes, dimension], |f| &f.displacement),
+        ("velocity", &[nodes, dimension], |f| &f.velocity),
+        ("acceleration", &vector, |f| &f.acceleration),
+        ("stress", &tensor, |f| &f.stress),
+        ("compatible_stress", &tensor, |f| &f.compatible_stress),
     ];
-    for (name, count, field) in vectors {
-        let shown = view::field(py, made, |m| fields_of(m, at).map_or(&[], field), &[count])?;
-        arguments.set_item(name, shown)?;
-    }
-    let tensors: [(&str, Tensors<D>); 2] = [("stress", |f| &f.stress), ("compatible_stress", |f| &f.compatible_stress)];
-    for (name, field) in tensors {
-        let shown =
-            view::field(py, made, |m| fields_of(m, at).map_or(&[], |f| field(f).as_flattened()), &[elements, D])?;
-        arguments.set_item(name, shown)?;
+    for (name, shape, field) in components {
+        arguments.set_item(name, view::view(py, made, |m| fields_of(m, at).map_or(&[], field), shape)?)?;
     }
     Ok(arguments)
 }
 
-fn fields_of<const D: usize, const N: usize>(made: &Made<D, N>, at: usize) -> Option<&AdmissibleFields<D>> {
+fn fields_of(made: &Made, at: usize) -> Option<&AdmissibleFields> {
     made.estimate.maps[at].fields.as_ref()
 }

@@ -6,12 +6,10 @@ use crate::run::Run;
 use crate::{bridge, errors};
 use numpy::{PyArray1, PyReadonlyArray2};
 use percute_core::dynamics::replay;
-use percute_core::simplex::ByDimension;
 use percute_estimator::reference::{Motion, ReferenceError, TrueError, bar_impact_error};
 use percute_exact::{BarEnds, BarImpact, BarMode, BarRamp, BlockMode, BouncingBar, ClampedRod, RigidSlide, Wave};
 use pyo3::prelude::*;
 use std::collections::HashMap;
-use std::sync::Arc;
 
 /// A function of place (m) and time (s), in this order.
 type Function = Box<dyn Fn(&[f64]) -> f64 + Send + Sync>;
@@ -154,16 +152,16 @@ pub(crate) fn true_error_of_bar_impact<'py>(
     values: [f64; 6],
     history: &HistoryData,
 ) -> PyResult<TrueErrorColumns<'py>> {
-    let ByDimension::Bar(run) = &history.run else {
+    let run = history.run.clone();
+    if run.problem.dimension() != 1 {
         return Err(errors::input(py, "`history` is that of a plane body; the exact solution is that of a bar"));
-    };
-    let run = run.clone();
+    }
     let outcome = bridge::blocking(py, None, move |watch| true_error(&run, &impact(values), watch))?;
     let error = outcome.map_err(|message| errors::input(py, format!("`history`: {message}")))?;
     told(py, &error)
 }
 
-fn true_error(run: &Arc<Run<1, 2>>, exact: &BarImpact, watch: bridge::Watch) -> Result<TrueError, String> {
+fn true_error(run: &Run, exact: &BarImpact, watch: bridge::Watch) -> Result<TrueError, String> {
     let mut motion = Motion::default();
     replay(&run.problem, &run.stoppable(watch), &mut motion).map_err(|error| error.to_string())?;
     bar_impact_error(&run.problem, &motion, exact).map_err(|error: ReferenceError| error.to_string())

@@ -3,7 +3,6 @@
 use crate::bridge::Watch;
 use crate::history::HistoryData;
 use crate::{bridge, errors};
-use percute_core::each_dimension;
 use percute_core::history::StepSource;
 use percute_io::Overwrite;
 use percute_workflow::Failure;
@@ -30,25 +29,23 @@ pub(crate) fn export(
 ) -> PyResult<Vec<PathBuf>> {
     let instants = if choice.2.is_some() { "`times`" } else { "`steps`" };
     let names = Names { path: "`path`", instants, fields: "`fields`", estimate: "`estimate`" };
-    let lacks = each_dimension!(&history.run, run => run.file().and_then(lacks));
-    let kept = each_dimension!(&history.run, run => run.file().and_then(|file| Some(file.kept()?.steps.clone())));
+    let lacks = history.run.file().and_then(lacks);
+    let kept = history.run.file().and_then(|file| Some(file.kept()?.steps.clone()));
     let request = Request { lacks, kept, names, steps: chosen(choice), fields, error };
-    each_dimension!(&history.run, run => {
-        let run = run.clone();
-        let work = move |mut watch: Watch| -> Result<Vec<PathBuf>, Failure> {
-            let stored = run.stored_source();
-            let source = stored.as_ref().map_or(run.source(), |stored| stored as &dyn StepSource<_>);
-            let export = Export::new(&run.problem, source, &path, &request)?;
-            let inputs: Vec<(&str, &Path)> = inputs.iter().map(|file| ("input", file.as_path())).collect();
-            export.check("`path`", &inputs, overwrite)?;
-            // A stop has an exception of its own.
-            Ok(export.write(Overwrite::allowed(overwrite), &mut watch)?.unwrap_or_default())
-        };
-        bridge::blocking(py, progress, work)?.map_err(|error| match error {
-            Failure::File(error) => errors::file(py, &error),
-            Failure::Run(_) => errors::run(py, &error),
-            error => errors::output(py, &error),
-        })
+    let run = history.run.clone();
+    let work = move |mut watch: Watch| -> Result<Vec<PathBuf>, Failure> {
+        let stored = run.stored_source();
+        let source = stored.as_ref().map_or(run.source(), |stored| stored as &dyn StepSource);
+        let export = Export::new(&run.problem, source, &path, &request)?;
+        let inputs: Vec<(&str, &Path)> = inputs.iter().map(|file| ("input", file.as_path())).collect();
+        export.check("`path`", &inputs, overwrite)?;
+        // A stop has an exception of its own.
+        Ok(export.write(Overwrite::allowed(overwrite), &mut watch)?.unwrap_or_default())
+    };
+    bridge::blocking(py, progress, work)?.map_err(|error| match error {
+        Failure::File(error) => errors::file(py, &error),
+        Failure::Run(_) => errors::run(py, &error),
+        error => errors::output(py, &error),
     })
 }
 

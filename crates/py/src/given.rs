@@ -4,12 +4,11 @@ use crate::errors;
 use crate::run::Run;
 use numpy::PyReadonlyArray3;
 use percute_core::history::{History, SinkError, Step, StepSource};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_workflow::foreign::{Completed, Lacks, Origin};
 use pyo3::prelude::*;
-use std::sync::Arc;
 
 /// Arrays of a history, of all instants.
 pub(crate) struct Given<'a> {
@@ -22,14 +21,14 @@ pub(crate) struct Given<'a> {
 
 impl Given<'_> {
     /// The history, of percute or of another program.
-    pub(crate) fn run<const D: usize, const N: usize>(
+    pub(crate) fn run(
         &self,
         py: Python<'_>,
-        problem: &Arc<Problem<D, N>>,
+        problem: &AnyProblem,
         times: &TimeGrid,
         options: Options,
         origin: Option<Origin>,
-    ) -> PyResult<Run<D, N>> {
+    ) -> PyResult<Run> {
         let history = self.history(py, problem, times)?;
         Ok(match origin {
             Some(origin) => Run::foreign(problem.clone(), history, options, origin),
@@ -38,13 +37,13 @@ impl Given<'_> {
     }
 
     /// With what it lacks, and the last instant (s) if it was left out.
-    pub(crate) fn completed<const D: usize, const N: usize>(
+    pub(crate) fn completed(
         &self,
         py: Python<'_>,
-        problem: &Arc<Problem<D, N>>,
+        problem: &AnyProblem,
         times: &TimeGrid,
         program: Option<String>,
-    ) -> PyResult<(Run<D, N>, Option<f64>)> {
+    ) -> PyResult<(Run, Option<f64>)> {
         let history = self.history(py, problem, times)?;
         let lacks = Lacks { reaction: self.reaction.is_none(), touching: self.touching.is_none() };
         let refused = |error: SinkError| errors::input(py, error);
@@ -55,24 +54,21 @@ impl Given<'_> {
         Ok((Run::foreign(problem.clone(), all, Options::default(), origin), complete.left_out()))
     }
 
-    fn history<const D: usize, const N: usize>(
-        &self,
-        py: Python<'_>,
-        problem: &Problem<D, N>,
-        times: &TimeGrid,
-    ) -> PyResult<History<D>> {
+    fn history(&self, py: Python<'_>, problem: &AnyProblem, times: &TimeGrid) -> PyResult<History> {
         let mut history = History::new(times);
-        let (nodes, contact) = (problem.mesh().node_count(), problem.surface().nodes().len());
-        let (no_force, no_touch) = (vec![[0.0; D]; contact], vec![false; contact]);
+        let (nodes, contact) = (problem.mesh().node_count(), problem.contact_nodes().len());
+        let dimension = problem.dimension();
+        let (in_body, in_contact) = (dimension * nodes, dimension * contact);
+        let (no_force, no_touch) = (vec![0.0; in_contact], vec![false; contact]);
         for (index, &time) in times.instants().iter().enumerate().take(self.count) {
             let step = Step {
                 index,
                 time,
-                displacement: rows(self.displacement.as_chunks().0, index, nodes),
-                reaction: self.reaction.map_or(&no_force, |r| rows(r.as_chunks().0, index, contact)),
+                displacement: rows(self.displacement, index, in_body),
+                reaction: self.reaction.map_or(&no_force, |r| rows(r, index, in_contact)),
                 touching: self.touching.map_or(&no_touch, |t| rows(t, index, contact)),
-                velocity: self.motion[0].map(|a| rows(a.as_chunks().0, index, nodes)),
-                acceleration: self.motion[1].map(|a| rows(a.as_chunks().0, index, nodes)),
+                velocity: self.motion[0].map(|a| rows(a, index, in_body)),
+                acceleration: self.motion[1].map(|a| rows(a, index, in_body)),
             };
             history.push(&step).map_err(|error| errors::input(py, error))?;
         }

@@ -1,16 +1,15 @@
 //! Histories: simulated, shown as arrays, put together again.
 
-use crate::any::AnyProblem;
 use crate::given::{Given, slice};
 use crate::options::Stated;
 use crate::problem::ProblemData;
-use crate::run::AnyRun;
+use crate::run::Run;
 use crate::stored_fields::{read, stored_acceleration, stored_velocity};
 use crate::{balance, bridge, contact, errors, options, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2, PyReadonlyArray3};
 use percute_core::history::History;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
-use percute_core::{each_dimension, map_dimension};
 use percute_estimator::Options;
 use percute_io::Overwrite;
 use percute_io::history::HistoryFile;
@@ -24,7 +23,7 @@ use std::sync::Arc;
 /// A history of either dimension.
 #[pyclass(frozen, module = "percute._percute")]
 pub(crate) struct HistoryData {
-    pub(crate) run: AnyRun,
+    pub(crate) run: Arc<Run>,
 }
 
 #[pymethods]
@@ -58,7 +57,7 @@ impl HistoryData {
             let derived = names.iter().filter_map(|name| Derived::of_name(name)).collect();
             Origin { program, derived, ..Origin::default() }
         });
-        Ok(Self { run: map_dimension!(&problem.problem, p => Arc::new(given.run(py, p, &times, options, origin)?)) })
+        Ok(Self { run: Arc::new(given.run(py, &problem.problem, &times, options, origin)?) })
     }
 
     /// A history of another program; its missing parts are derived. With it the last instant (s), if it was left out.
@@ -84,48 +83,39 @@ impl HistoryData {
             touching: touching.as_ref().map(PyReadonlyArray2::as_slice).transpose()?,
             motion: [slice(velocity.as_ref())?, slice(acceleration.as_ref())?],
         };
-        let left_out;
-        let run = map_dimension!(&problem.problem, p => {
-            let (run, last) = given.completed(py, p, &times, program)?;
-            left_out = last;
-            Arc::new(run)
-        });
-        Ok((Self { run }, left_out.map(percute_workflow::report::left_out)))
+        let (run, left_out) = given.completed(py, &problem.problem, &times, program)?;
+        Ok((Self { run: Arc::new(run) }, left_out.map(percute_workflow::report::left_out)))
     }
 
     /// Names of the parts that were derived; none for a history of percute.
     #[getter]
     fn derived(&self) -> Option<Vec<&'static str>> {
-        each_dimension!(&self.run, run => {
-            let origin = run.origin.as_ref()?;
-            Some(origin.derived.iter().map(|derived| derived.name()).collect())
-        })
+        let origin = self.run.origin.as_ref()?;
+        Some(origin.derived.iter().map(|derived| derived.name()).collect())
     }
 
     /// The program that simulated a history of another program, if its name is known.
     #[getter]
     fn program(&self) -> Option<String> {
-        each_dimension!(&self.run, run => run.origin.as_ref().and_then(|origin| origin.program.clone()))
+        self.run.origin.as_ref().and_then(|origin| origin.program.clone())
     }
 
     /// Writes a history that is in memory into a file.
     fn save(&self, py: Python<'_>, path: PathBuf, overwrite: bool) -> PyResult<()> {
         let overwrite = Overwrite::allowed(overwrite);
-        each_dimension!(&self.run, run => {
-            let run = run.clone();
-            let saved = bridge::writing(py, None, move |watch, open| {
-                let saved = run.save(&path, overwrite, watch);
-                drop(open);
-                saved
-            });
-            saved?.map_err(|failure| errors::failure(py, &failure))
-        })
+        let run = self.run.clone();
+        let saved = bridge::writing(py, None, move |watch, open| {
+            let saved = run.save(&path, overwrite, watch);
+            drop(open);
+            saved
+        });
+        saved?.map_err(|failure| errors::failure(py, &failure))
     }
 
     /// Whether it has velocities and accelerations of its own.
     #[getter]
     fn given(&self) -> [bool; 2] {
-        each_dimension!(&self.run, run => run.given())
+        self.run.given()
     }
 
     #[getter]
@@ -136,47 +126,46 @@ impl HistoryData {
     /// All instants planned (s).
     #[getter]
     fn times<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each_dimension!(&self.run, run => {
+        {
+            let run = &self.run;
             let instants = run.times().instants().len();
             view::view(py, run, |r| r.times().instants(), &[instants])
-        })
+        }
     }
 
     /// Number of instants held.
     #[getter]
     fn count(&self) -> usize {
-        each_dimension!(&self.run, run => run.count())
+        self.run.count()
     }
 
     #[getter]
     fn complete(&self) -> bool {
-        each_dimension!(&self.run, run => run.count() == run.times().instants().len())
+        self.run.count() == self.run.times().instants().len()
     }
 
     /// Arguments of `estimate` that it takes unless told otherwise.
     fn options(&self) -> Stated {
-        options::stated(&each_dimension!(&self.run, run => run.options))
+        options::stated(&self.run.options)
     }
 
     /// Nodes of the rows of reactions and touching status.
     #[getter]
     fn contact_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        each_dimension!(&self.run, run => view::column(py, &run.contact_nodes(), |n| *n as i64))
+        view::column(py, &self.run.contact_nodes(), |n| *n as i64)
     }
 
     /// The file that holds the steps, or none.
     #[getter]
     fn path(&self) -> Option<PathBuf> {
-        each_dimension!(&self.run, run => run.file().map(|file| file.path().to_path_buf()))
+        self.run.file().map(|file| file.path().to_path_buf())
     }
 
     /// Name, shape and first byte of each array in the file that can be mapped into memory.
     fn arrays(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, Vec<usize>, u64)>> {
-        each_dimension!(&self.run, run => {
-            let Some(file) = run.file().cloned() else { return Ok(Vec::new()) };
-            let arrays = bridge::blocking(py, None, move |_| file.arrays())?.map_err(|error| errors::file(py, &error))?;
-            Ok(arrays.into_iter().filter_map(|a| Some((a.name, a.shape, a.offset?))).collect())
-        })
+        let Some(file) = self.run.file().cloned() else { return Ok(Vec::new()) };
+        let arrays = bridge::blocking(py, None, move |_| file.arrays())?.map_err(|error| errors::file(py, &error))?;
+        Ok(arrays.into_iter().filter_map(|a| Some((a.name, a.shape, a.offset?))).collect())
     }
 
     /// Compares vectors at some instants that were read by mapping with their checksums, a row for each instant.
@@ -189,10 +178,8 @@ impl HistoryData {
         sums: PyReadonlyArray2<'_, i64>,
     ) -> PyResult<()> {
         let (values, sums) = (values.as_slice()?, sums.as_slice()?);
-        each_dimension!(&self.run, run => {
-            let checked = run.file().map_or(Ok(()), |file| file.check_mapped(field, &steps, values, sums));
-            checked.map_err(|error| errors::file(py, &error))
-        })
+        let checked = self.run.file().map_or(Ok(()), |file| file.check_mapped(field, &steps, values, sums));
+        checked.map_err(|error| errors::file(py, &error))
     }
 
     /// The same of touching status.
@@ -204,89 +191,86 @@ impl HistoryData {
         sums: PyReadonlyArray2<'_, i64>,
     ) -> PyResult<()> {
         let (values, sums) = (values.as_slice()?, sums.as_slice()?);
-        each_dimension!(&self.run, run => {
-            let checked = run.file().map_or(Ok(()), |file| file.check_mapped_flags(&steps, values, sums));
-            checked.map_err(|error| errors::file(py, &error))
-        })
+        let checked = self.run.file().map_or(Ok(()), |file| file.check_mapped_flags(&steps, values, sums));
+        checked.map_err(|error| errors::file(py, &error))
     }
 
     /// From memory as it is; from a file a copy.
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each_dimension!(&self.run, run => match run.memory() {
-            Some(_) => view::field(py, run, |r| r.memory().map_or(&[], History::displacement), &run.shape()),
-            None => view::field(py, &read(py, run, HistoryFile::displacement)?, Vec::as_slice, &run.shape()),
-        })
+        let shape = self.run.shape_of_motion();
+        match self.run.memory() {
+            Some(_) => view::view(py, &self.run, |r| r.memory().map_or(&[], History::displacement), &shape),
+            None => view::view(py, &read(py, &self.run, HistoryFile::displacement)?, Vec::as_slice, &shape),
+        }
     }
 
     /// Likewise.
     fn reaction<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each_dimension!(&self.run, run => match run.memory() {
-            Some(_) => view::field(py, run, |r| r.memory().map_or(&[], History::reaction), &run.contact_shape()),
-            None => view::field(py, &read(py, run, HistoryFile::reaction)?, Vec::as_slice, &run.contact_shape()),
-        })
+        let [count, nodes] = self.run.contact_shape();
+        let shape = [count, nodes, self.run.problem.dimension()];
+        match self.run.memory() {
+            Some(_) => view::view(py, &self.run, |r| r.memory().map_or(&[], History::reaction), &shape),
+            None => view::view(py, &read(py, &self.run, HistoryFile::reaction)?, Vec::as_slice, &shape),
+        }
     }
 
     /// Likewise.
     fn touching<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
-        each_dimension!(&self.run, run => match run.memory() {
-            Some(_) => view::view(py, run, |r| r.memory().map_or(&[], History::touching), &run.contact_shape()),
-            None => view::view(py, &read(py, run, HistoryFile::touching)?, Vec::as_slice, &run.contact_shape()),
-        })
+        let shape = self.run.contact_shape();
+        match self.run.memory() {
+            Some(_) => view::view(py, &self.run, |r| r.memory().map_or(&[], History::touching), &shape),
+            None => view::view(py, &read(py, &self.run, HistoryFile::touching)?, Vec::as_slice, &shape),
+        }
     }
 
     /// The number of each instant in the run of a thinned history; none for one with all steps.
     fn steps<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<i64>>> {
-        each_dimension!(&self.run, run => {
-            let kept = run.file()?.kept()?;
-            Some(view::column(py, &kept.steps[..run.count()], |n| *n as i64))
-        })
+        let kept = self.run.file()?.kept()?;
+        Some(view::column(py, &kept.steps[..self.run.count()], |n| *n as i64))
     }
 
     /// Fields that a thinned history lacks.
     fn lacks(&self) -> Vec<&'static str> {
-        each_dimension!(&self.run, run => run.file().and_then(lacks)).unwrap_or_default()
+        self.run.file().and_then(lacks).unwrap_or_default()
     }
 
     /// The velocity or, with `acceleration`, the acceleration that a thinned history has; from its file.
     fn stored_motion<'py>(&self, py: Python<'py>, acceleration: bool) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each_dimension!(&self.run, run => {
-            let field = if acceleration { stored_acceleration } else { stored_velocity };
-            view::field(py, &read(py, run, field)?, Vec::as_slice, &run.shape())
-        })
+        let field = if acceleration { stored_acceleration } else { stored_velocity };
+        view::view(py, &read(py, &self.run, field)?, Vec::as_slice, &self.run.shape_of_motion())
     }
 
     /// Velocity and acceleration, derived now.
     fn motion<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArrayDyn<f64>>; 2]> {
-        each_dimension!(&self.run, run => {
-            let worker = run.clone();
-            let derived = bridge::blocking(py, None, move |watch| worker.motion(watch))?;
-            let motion = Arc::new(derived.map_err(|error| errors::steps(py, &error))?);
-            Ok([
-                view::field(py, &motion, |m| &m.velocity, &run.shape())?,
-                view::field(py, &motion, |m| &m.acceleration, &run.shape())?,
-            ])
-        })
+        let worker = self.run.clone();
+        let derived = bridge::blocking(py, None, move |watch| worker.motion(watch))?;
+        let motion = Arc::new(derived.map_err(|error| errors::steps(py, &error))?);
+        let shape = self.run.shape_of_motion();
+        Ok([
+            view::view(py, &motion, |m| m.velocity.as_slice(), &shape)?,
+            view::view(py, &motion, |m| m.acceleration.as_slice(), &shape)?,
+        ])
     }
 
     /// What contact did, computed now or before: arrays by name, see `python/percute/contact.py`.
     fn contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        each_dimension!(&self.run, run => contact::arrays(py, &contact::of_run(py, run)?))
+        contact::arrays(py, &contact::of_run(py, &self.run)?)
     }
 
     /// Energies, works and drifts at each instant.
     fn balance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        each_dimension!(&self.run, run => balance::columns(py, &balance::kept(py, run)?))
+        balance::columns(py, &balance::kept(py, &self.run)?)
     }
 
     /// Velocities before and after contact, of one body and of several, as a JSON document.
     fn rebound(&self, py: Python<'_>) -> PyResult<String> {
-        each_dimension!(&self.run, run => balance::rebound(py, run))
+        balance::rebound(py, &self.run)
     }
 }
 
 impl HistoryData {
     fn any_problem(&self) -> AnyProblem {
-        map_dimension!(&self.run, run => run.problem.clone())
+        self.run.problem.clone()
     }
 }
 

@@ -2,7 +2,6 @@
 //! `python/percute`.
 
 mod adapt;
-mod any;
 mod balance;
 mod bar_row;
 mod bridge;

@@ -4,7 +4,7 @@ use crate::run::Run;
 use crate::{bridge, contact, errors};
 use percute_core::contact::ContactResults;
 use percute_core::dynamics::{Simulation, critical_time_step};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Options};
 use percute_io::estimate_file::EstimateContents;
@@ -24,13 +24,13 @@ use std::sync::Arc;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// An estimate, with what it is the estimate of.
-pub(crate) struct Made<const D: usize, const N: usize> {
-    pub(crate) problem: Arc<Problem<D, N>>,
+pub(crate) struct Made {
+    pub(crate) problem: AnyProblem,
     /// The instants planned.
     pub(crate) times: TimeGrid,
     pub(crate) options: Options,
-    pub(crate) estimate: Estimate<D>,
-    pub(crate) report: ReportSource<D>,
+    pub(crate) estimate: Estimate,
+    pub(crate) report: ReportSource,
     /// What was found about a history of another program.
     pub(crate) checked: Option<Checked>,
     /// The case file that was run.
@@ -40,13 +40,13 @@ pub(crate) struct Made<const D: usize, const N: usize> {
 }
 
 /// Where the report comes from.
-pub(crate) enum ReportSource<const D: usize> {
+pub(crate) enum ReportSource {
     /// It is made when it is asked for.
     Now {
         /// What the simulation did.
         simulation: Simulation,
         /// What contact did.
-        contact: Arc<ContactResults<D>>,
+        contact: Arc<ContactResults>,
         /// The outline of a plane body at the last step.
         outline: Option<Box<Outline>>,
         /// The deformation and the stress.
@@ -60,17 +60,17 @@ pub(crate) enum ReportSource<const D: usize> {
     Before(String),
 }
 
-impl<const D: usize, const N: usize> Made<D, N> {
+impl Made {
     /// An estimate from its state.
-    pub(crate) fn restored(py: Python<'_>, problem: &Arc<Problem<D, N>>, state: &[u8]) -> PyResult<Self> {
+    pub(crate) fn restored(py: Python<'_>, problem: &AnyProblem, state: &[u8]) -> PyResult<Self> {
         let refused =
             || errors::percute_error(py, "the estimate was pickled by another version of percute, or is damaged");
-        type State<const D: usize> = (Vec<f64>, Options, Estimate<D>, String);
+        type State = (Vec<f64>, Options, Estimate, String);
         let (version, rest) = postcard::take_from_bytes::<&str>(state).map_err(|_| refused())?;
         if version != VERSION {
             return Err(refused());
         }
-        let (times, options, estimate, report) = postcard::from_bytes::<State<D>>(rest).map_err(|_| refused())?;
+        let (times, options, estimate, report) = postcard::from_bytes::<State>(rest).map_err(|_| refused())?;
         let times = TimeGrid::from_instants(times).map_err(|_| refused())?;
         Ok(Self {
             problem: problem.clone(),
@@ -92,10 +92,10 @@ impl<const D: usize, const N: usize> Made<D, N> {
 
     /// The estimate of a run, or of a stored history with `held` instants, that took so many seconds.
     pub(crate) fn new(
-        problem: Arc<Problem<D, N>>,
+        problem: AnyProblem,
         times: TimeGrid,
         options: Options,
-        results: Results<D>,
+        results: Results,
         held: Option<usize>,
         seconds: f64,
     ) -> Self {
@@ -103,7 +103,8 @@ impl<const D: usize, const N: usize> Made<D, N> {
         let (contact, outline, deformation) = (Arc::new(contact), outline.map(Box::new), Box::new(deformation));
         let report = ReportSource::Now { simulation, contact, outline, deformation, held, seconds };
         let (checked, case, unended) = (None, None, None);
-        Self { problem, times, options: options.filled(D), estimate, report, checked, case, unended }
+        let options = options.filled(problem.dimension());
+        Self { problem, times, options, estimate, report, checked, case, unended }
     }
 
     /// The document of `percute run --json`.
@@ -155,7 +156,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
         path: &Path,
         overwrite: Overwrite,
         name: &str,
-        contact: Option<&ContactResults<D>>,
+        contact: Option<&ContactResults>,
     ) -> Result<(), Failure> {
         let Self { problem, estimate, case, .. } = self;
         let (report, case) = (&self.stored_report(name).map_err(Failure::Argument)?, case.as_ref());
@@ -168,8 +169,8 @@ impl<const D: usize, const N: usize> Made<D, N> {
     pub(crate) fn contact_steps(
         &self,
         py: Python<'_>,
-        history: Option<&Arc<Run<D, N>>>,
-    ) -> PyResult<Option<Arc<ContactResults<D>>>> {
+        history: Option<&Arc<Run>>,
+    ) -> PyResult<Option<Arc<ContactResults>>> {
         match &self.report {
             ReportSource::Now { contact, .. } if contact.steps.is_some() => Ok(Some(contact.clone())),
             _ => history.map(|run| contact::of_run(py, run)).transpose(),
@@ -183,7 +184,7 @@ impl<const D: usize, const N: usize> Made<D, N> {
         path: PathBuf,
         overwrite: Overwrite,
         name: String,
-        history: Option<&Arc<Run<D, N>>>,
+        history: Option<&Arc<Run>>,
     ) -> PyResult<()> {
         let contact = self.contact_steps(py, history)?;
         let made = self.clone();

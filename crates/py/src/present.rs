@@ -4,12 +4,9 @@ use crate::estimate::EstimateData;
 use crate::history::HistoryData;
 use crate::made::Made;
 use crate::mesh::MeshData;
-use crate::run::Run;
 use crate::{bridge, errors};
 use numpy::PyReadonlyArray1;
 use percute_core::contact::ContactResults;
-use percute_core::each_dimension;
-use percute_core::simplex::ByDimension;
 use percute_io::{Case, Overwrite, estimate_file};
 use percute_presentation::picture::svg;
 use percute_presentation::{About, Body, ColourScale, Contents, Deformed, Document, Surface, file};
@@ -18,7 +15,6 @@ use percute_workflow::case::statement;
 use percute_workflow::outputs::{self, OutputFile};
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// An estimate to show.
 struct Shown {
@@ -100,7 +96,7 @@ pub(crate) fn colour_scale(values: PyReadonlyArray1<'_, f64>, count: usize) -> P
 #[pyfunction]
 pub(crate) fn deformed_outline(py: Python<'_>, mesh: &MeshData, report: &str) -> PyResult<Option<(Lines, String)>> {
     let document = Document::parse(report).map_err(|error| errors::input(py, error))?;
-    let body = each_dimension!(&mesh.mesh, mesh => Body::new(mesh));
+    let body = Body::new(&mesh.mesh);
     Ok(Deformed::new(&body, &document).map(|Deformed { lines, label }| (lines, label)))
 }
 
@@ -118,28 +114,8 @@ pub(crate) fn present(
     let form = Form::of(page);
     form.check(&path, None, overwrite).map_err(|failure| refused(py, &failure))?;
     let history = history.filter(|_| form.is_page()).map(|history| &history.run);
-    match (&estimate.made, history) {
-        (ByDimension::Bar(made), Some(ByDimension::Bar(run))) => {
-            write(py, &form, made, (path, overwrite), name, Some(run))
-        }
-        (ByDimension::Plane(made), Some(ByDimension::Plane(run))) => {
-            write(py, &form, made, (path, overwrite), name, Some(run))
-        }
-        (ByDimension::Bar(made), _) => write(py, &form, made, (path, overwrite), name, None),
-        (ByDimension::Plane(made), _) => write(py, &form, made, (path, overwrite), name, None),
-    }
-}
-
-fn write<const D: usize, const N: usize>(
-    py: Python<'_>,
-    form: &Form,
-    made: &Arc<Made<D, N>>,
-    (path, overwrite): (PathBuf, bool),
-    name: String,
-    history: Option<&Arc<Run<D, N>>>,
-) -> PyResult<()> {
-    let contact = made.contact_steps(py, history)?;
-    let (form, made) = (form.clone(), made.clone());
+    let contact = estimate.made.contact_steps(py, history)?;
+    let made = estimate.made.clone();
     let work = move |_| {
         let shown = shown(&made, &name, contact.as_deref())?;
         form.write(&shown, &path, overwrite)
@@ -147,11 +123,7 @@ fn write<const D: usize, const N: usize>(
     bridge::blocking(py, None, work)?.map_err(|failure| refused(py, &failure))
 }
 
-fn shown<const D: usize, const N: usize>(
-    made: &Made<D, N>,
-    name: &str,
-    contact: Option<&ContactResults<D>>,
-) -> Result<Shown, Failure> {
+fn shown(made: &Made, name: &str, contact: Option<&ContactResults>) -> Result<Shown, Failure> {
     let json = made.stored_report(name).map_err(Failure::Argument)?;
     let document = Document::parse(&json).map_err(|error| Failure::Argument(error.to_string()))?;
     Ok(Shown {
@@ -179,9 +151,9 @@ pub(crate) fn present_file(
         let found = estimate_file::open(&estimate)?;
         let contact = if form.is_page() { estimate_file::contact(&estimate)? } else { None };
         let document = Document::parse(&found.report).map_err(|error| Failure::Argument(error.to_string()))?;
-        let surfaces = |contact| each_dimension!(&contact, results => Surface::all(results, &document));
+        let surfaces = |contact| Surface::all(&contact, &document);
         let surfaces = contact.map_or_else(Vec::new, surfaces);
-        let (body, statement, case) = (Body::of(&found.mesh), found.statement, found.case);
+        let (body, statement, case) = (Body::new(&found.mesh), found.statement, found.case);
         let shown = Shown { body, document, statement, case, surfaces };
         form.write(&shown, &path, overwrite)
     };

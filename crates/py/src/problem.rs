@@ -1,18 +1,13 @@
 //! Problems.
 
-use crate::any::AnyProblem;
 use crate::mesh::MeshData;
 use crate::{bridge, errors, statement, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2};
-use percute_core::contact::Obstacle;
+use percute_core::contact::AnyObstacle;
 use percute_core::dynamics::critical_time_step;
-use percute_core::load::{BodyForce, Support, Traction};
 use percute_core::material::{Elastic, Hypothesis, Law};
-use percute_core::mesh::Mesh;
-use percute_core::problem::{Contact, Initial, InputError, Problem};
-use percute_core::simplex::ByDimension;
-use percute_core::{each_dimension, map_dimension};
-use percute_workflow::Failure;
+use percute_core::mesh::AnyMesh;
+use percute_core::problem::{AnyProblem, Statement};
 use percute_workflow::case::ONE_BODY;
 use percute_workflow::restated::Restated;
 use pyo3::prelude::*;
@@ -31,21 +26,6 @@ type Objects<'py> = Vec<Bound<'py, PyAny>>;
 /// A nodal field: one row for all nodes, or one for each.
 type Field<'py> = Option<PyReadonlyArray2<'py, f64>>;
 
-/// What a problem takes beside its mesh.
-struct Stated<const D: usize> {
-    groups: Vec<Option<String>>,
-    materials: Vec<Elastic>,
-    obstacles: Vec<Obstacle<D>>,
-    contacts: Vec<Contact>,
-    /// Whether all bodies may touch each other.
-    automatic: bool,
-    supports: Vec<Support<D>>,
-    tractions: Vec<Traction<D>>,
-    body_forces: Vec<BodyForce<D>>,
-    velocity: Initial<D>,
-    displacement: Initial<D>,
-}
-
 impl ProblemData {
     pub(crate) fn new(problem: AnyProblem) -> Self {
         Self { problem, critical_step: OnceLock::new() }
@@ -57,24 +37,28 @@ impl ProblemData {
             return Ok(step);
         }
         let problem = self.problem.clone();
-        let step = bridge::blocking(py, None, move |_| each_dimension!(&problem, p => critical_time_step(p)))?;
+        let step = bridge::blocking(py, None, move |_| critical_time_step(&problem))?;
         Ok(*self.critical_step.get_or_init(|| step))
     }
-}
 
-impl ProblemData {
     /// Refuses a body that starts on a plane and moves into it, for histories that are not simulated here.
     pub(crate) fn check_planes(&self, py: Python<'_>) -> PyResult<()> {
-        let checked = each_dimension!(&self.problem, p => p.check_planes());
-        checked.map_err(|error| errors::problem(py, &error, &[]))
+        self.problem.check_planes().map_err(|error| errors::problem(py, &error, &[]))
     }
-}
 
-fn on<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    mesh: &Mesh<D, N>,
-) -> Result<Arc<Problem<D, N>>, Failure> {
-    Restated::new(problem)?.on(mesh.clone()).map(Arc::new)
+    fn view<'py>(
+        &self,
+        py: Python<'py>,
+        numbers: for<'a> fn(&'a AnyProblem) -> &'a [f64],
+        shape: &[usize],
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        view::view(py, &Arc::new(self.problem.clone()), numbers, shape)
+    }
+
+    /// The shape of a field of vectors at the nodes.
+    fn shape(&self) -> [usize; 2] {
+        [self.problem.mesh().node_count(), self.problem.dimension()]
+    }
 }
 
 #[pymethods]
@@ -98,26 +82,21 @@ impl ProblemData {
     ) -> PyResult<Self> {
         let lists = [&obstacles, &contacts, &supports, &tractions, &body_forces];
         let fields = [&velocity, &displacement];
-        let problem = match &mesh.mesh {
-            ByDimension::Bar(mesh) => ByDimension::Bar(build(py, mesh, &materials, lists, fields, automatic)?),
-            ByDimension::Plane(mesh) => ByDimension::Plane(build(py, mesh, &materials, lists, fields, automatic)?),
-        };
-        Ok(Self::new(problem))
+        build(py, &mesh.mesh, &materials, lists, fields, automatic).map(Self::new)
     }
 
     /// A copy of the mesh.
     fn mesh(&self) -> MeshData {
-        MeshData { mesh: map_dimension!(&self.problem, p => Arc::new(p.mesh().clone())) }
+        MeshData { mesh: self.problem.mesh().clone() }
     }
 
     /// The problem on another mesh of its body.
     fn on(&self, py: Python<'_>, mesh: &MeshData) -> PyResult<Self> {
         let (problem, mesh) = (self.problem.clone(), mesh.mesh.clone());
-        let made = bridge::blocking(py, None, move |_| match (&problem, &mesh) {
-            (ByDimension::Bar(problem), ByDimension::Bar(mesh)) => on(problem, mesh).map(ByDimension::Bar),
-            (ByDimension::Plane(problem), ByDimension::Plane(mesh)) => on(problem, mesh).map(ByDimension::Plane),
-            _ => Err(Failure::Argument("`mesh` has another dimension than the mesh of the problem".to_string())),
-        })?;
+        if problem.dimension() != mesh.dimension() {
+            return Err(errors::input(py, "`mesh` has another dimension than the mesh of the problem"));
+        }
+        let made = bridge::blocking(py, None, move |_| Restated::new(&problem)?.on(&mesh))?;
         made.map(Self::new).map_err(|error| errors::run(py, &error))
     }
 
@@ -135,7 +114,7 @@ impl ProblemData {
         step: Option<f64>,
         steps: Option<Vec<f64>>,
     ) -> PyResult<Option<Self>> {
-        if each_dimension!(&self.problem, p => p.check_planes()).is_ok() {
+        if self.problem.check_planes().is_ok() {
             return Ok(None);
         }
         let first = match (courant, step, steps.as_deref()) {
@@ -147,98 +126,83 @@ impl ProblemData {
         if !(first.is_finite() && first > 0.0) {
             return Ok(None);
         }
-        Ok(match &self.problem {
-            ByDimension::Bar(problem) => {
-                problem.with_planes_moved(first).map(|moved| ByDimension::Bar(Arc::new(moved)))
-            }
-            ByDimension::Plane(problem) => {
-                problem.with_planes_moved(first).map(|moved| ByDimension::Plane(Arc::new(moved)))
-            }
-        }
-        .map(Self::new))
+        Ok(self.problem.with_planes_moved(first).map(Self::new))
     }
 
     #[getter]
     fn per_metre(&self) -> bool {
-        each_dimension!(&self.problem, p => p.units().per_metre)
+        self.problem.units().per_metre
     }
 
     #[getter]
     fn mass<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each_dimension!(&self.problem, p => view::view(py, p, |p| p.mass(), &[p.mass().len()]))
+        self.view(py, AnyProblem::mass, &[self.problem.mesh().node_count()])
     }
 
     #[getter]
     fn initial_displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each_dimension!(&self.problem, p => view::field(py, p, |p| p.initial_displacement(), &[p.mesh().node_count()]))
+        self.view(py, AnyProblem::initial_displacement, &self.shape())
     }
 
     #[getter]
     fn initial_velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        each_dimension!(&self.problem, p => view::field(py, p, |p| p.initial_velocity(), &[p.mesh().node_count()]))
+        self.view(py, AnyProblem::initial_velocity, &self.shape())
     }
 
     #[getter]
     fn contact_nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        each_dimension!(&self.problem, p => view::column(py, p.surface().nodes(), |c| c.node.index() as i64))
+        view::column(py, self.problem.contact_nodes(), |c| c.node.index() as i64)
     }
 
     #[getter]
     fn wave_speed(&self) -> f64 {
-        each_dimension!(&self.problem, p => p.materials().iter().map(Elastic::wave_speed).fold(0.0, f64::max))
+        self.problem.materials().iter().map(Elastic::wave_speed).fold(0.0, f64::max)
     }
 
     /// σ_xx, σ_yy and σ_xy of a unit strain ε_xx, ε_xx and 2ε_xy, and σ_zz of a unit tr ε, for each element (Pa).
     fn stiffness<'py>(&self, py: Python<'py>) -> [Bound<'py, PyArray1<f64>>; 4] {
-        each_dimension!(&self.problem, p => {
-            let of = |number: fn(&Elastic) -> f64| {
-                let materials: Vec<f64> = p.materials().iter().map(number).collect();
-                let numbers = p.element_material().iter().map(|m| materials[usize::from(*m)]);
-                PyArray1::from_iter(py, numbers)
-            };
-            [of(|m| unit(m)[0][0]), of(|m| unit(m)[1][1]), of(shear), of(across)]
-        })
+        let of = |number: fn(&Elastic) -> f64| {
+            let materials: Vec<f64> = self.problem.materials().iter().map(number).collect();
+            let numbers = self.problem.element_material().iter().map(|m| materials[usize::from(*m)]);
+            PyArray1::from_iter(py, numbers)
+        };
+        [of(|m| unit(m)[0][0]), of(|m| unit(m)[1][1]), of(shear), of(across)]
     }
 
     /// Groups and arguments of the materials.
     fn materials<'py>(&self, py: Python<'py>) -> PyResult<Vec<(Option<String>, Bound<'py, PyDict>)>> {
-        let materials = each_dimension!(&self.problem, p => &p.statement().materials);
+        let materials = &self.problem.conditions().materials;
         materials.iter().map(|(group, law)| Ok((group.clone(), statement::material_arguments(py, law)?))).collect()
     }
 
     /// Arguments of the planes.
     fn obstacles<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each_dimension!(&self.problem, p => {
-            let planes = p.obstacles().iter().filter_map(|obstacle| Some((obstacle, obstacle.as_plane()?)));
-            planes.map(|plane| statement::plane_arguments(py, plane)).collect()
-        })
+        let planes = self.problem.obstacles().filter(AnyObstacle::is_plane);
+        planes.map(|plane| statement::plane_arguments(py, &plane, self.problem.dimension())).collect()
     }
 
     /// Arguments of the contacts of bodies.
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let interfaces = each_dimension!(&self.problem, p => &p.statement().interfaces);
+        let interfaces = &self.problem.conditions().interfaces;
         interfaces.iter().map(|interface| statement::contact_arguments(py, interface)).collect()
     }
 
     /// Arguments of the supports.
     fn supports<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each_dimension!(&self.problem, p => {
-            p.statement().supports.iter().map(|s| statement::support_arguments(py, s)).collect()
-        })
+        let supports = &self.problem.conditions().supports;
+        supports.iter().map(|s| statement::support_arguments(py, s, self.problem.dimension())).collect()
     }
 
     /// Arguments of the tractions.
     fn tractions<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each_dimension!(&self.problem, p => {
-            p.statement().tractions.iter().map(|t| statement::traction_arguments(py, t)).collect()
-        })
+        let tractions = &self.problem.conditions().tractions;
+        tractions.iter().map(|t| statement::traction_arguments(py, t, self.problem.dimension())).collect()
     }
 
     /// Arguments of the body forces.
     fn body_forces<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        each_dimension!(&self.problem, p => {
-            p.statement().body_forces.iter().map(|f| statement::body_force_arguments(py, f)).collect()
-        })
+        let forces = &self.problem.conditions().body_forces;
+        forces.iter().map(|f| statement::body_force_arguments(py, f, self.problem.dimension())).collect()
     }
 }
 
@@ -257,17 +221,18 @@ fn across(material: &Elastic) -> f64 {
     if material.hypothesis() == Hypothesis::PlaneStrain { unit(material)[1][1] } else { 0.0 }
 }
 
-fn build<const D: usize, const N: usize>(
+fn build(
     py: Python<'_>,
-    mesh: &Arc<Mesh<D, N>>,
+    mesh: &AnyMesh,
     materials: &[(Option<String>, Bound<'_, PyAny>)],
     lists: [&Objects<'_>; 5],
     fields: [&Field<'_>; 2],
     automatic: bool,
-) -> PyResult<Arc<Problem<D, N>>> {
+) -> PyResult<AnyProblem> {
+    let dimension = mesh.dimension();
     let law = |(group, law): &(Option<String>, Bound<'_, PyAny>)| {
         let name = group.as_ref().map_or_else(|| "material".to_string(), |group| format!("material[{group:?}]"));
-        statement::material::<D>(&name, law)
+        Ok((group.clone(), statement::material(&name, law, dimension)?))
     };
     let of_all = |given: &Bound<'_, PyAny>| -> PyResult<bool> {
         Ok(given.getattr("groups")?.is_none() && given.getattr("bodies")?.is_none())
@@ -277,41 +242,23 @@ fn build<const D: usize, const N: usize>(
             return Err(errors::input(py, format!("`contacts[{index}]`: {ONE_BODY}")));
         }
     }
-    let stated = Stated {
-        groups: materials.iter().map(|(group, _)| group.clone()).collect(),
+    let stated = Statement {
         materials: materials.iter().map(law).collect::<PyResult<_>>()?,
-        obstacles: each(lists[0], "obstacles", statement::plane)?,
-        contacts: each(lists[1], "contacts", statement::contact::<D>)?,
-        automatic,
-        supports: each(lists[2], "supports", statement::support)?,
-        tractions: each(lists[3], "tractions", statement::traction)?,
-        body_forces: each(lists[4], "body_forces", statement::body_force)?,
-        velocity: field(py, "initial_velocity", fields[0])?,
-        displacement: field(py, "initial_displacement", fields[1])?,
+        obstacles: each(lists[0], "obstacles", |name, plane| statement::plane(name, plane, dimension))?,
+        contacts: each(lists[1], "contacts", |name, contact| statement::contact(name, contact, dimension))?,
+        automatic_contact: automatic,
+        planes_to_be_moved: true,
+        supports: each(lists[2], "supports", |name, support| statement::support(name, support, dimension))?,
+        tractions: each(lists[3], "tractions", |name, traction| statement::traction(name, traction, dimension))?,
+        body_forces: each(lists[4], "body_forces", |name, force| statement::body_force(name, force, dimension))?,
+        gravity: None,
+        velocity: field(py, "initial_velocity", fields[0], dimension)?,
+        displacement: field(py, "initial_displacement", fields[1], dimension)?,
     };
-    let (mesh, groups) = (mesh.clone(), stated.groups.clone());
-    let built = bridge::blocking(py, None, move |_| assemble(&mesh, stated))?;
-    built.map(Arc::new).map_err(|error| errors::problem(py, &error, &groups))
-}
-
-fn assemble<const D: usize, const N: usize>(mesh: &Mesh<D, N>, stated: Stated<D>) -> Result<Problem<D, N>, InputError> {
-    let mut builder =
-        Problem::builder(mesh.clone()).initial_velocity(stated.velocity).initial_displacement(stated.displacement);
-    for (group, law) in stated.groups.into_iter().zip(stated.materials) {
-        builder = match group {
-            Some(group) => builder.material_of(group, law),
-            None => builder.material(law),
-        };
-    }
-    builder = stated.obstacles.into_iter().fold(builder, |b, plane| b.obstacle(plane));
-    builder = stated.contacts.into_iter().fold(builder, |b, contact| b.contact(contact));
-    if stated.automatic {
-        builder = builder.automatic_contact();
-    }
-    builder = stated.supports.into_iter().fold(builder, |b, support| b.support(support));
-    builder = stated.tractions.into_iter().fold(builder, |b, traction| b.traction(traction));
-    builder = stated.body_forces.into_iter().fold(builder, |b, force| b.body_force(force));
-    builder.planes_to_be_moved().build()
+    let groups: Vec<_> = stated.materials.iter().map(|(group, _)| group.clone()).collect();
+    let mesh = mesh.clone();
+    let built = bridge::blocking(py, None, move |_| AnyProblem::new(&mesh, &stated))?;
+    built.map_err(|error| errors::problem(py, &error, &groups))
 }
 
 /// Reads each object of a list under its name.
@@ -323,17 +270,19 @@ fn each<T>(
     objects.iter().enumerate().map(|(i, object)| read(&format!("{list}[{i}]"), object)).collect()
 }
 
-/// A mesh has two nodes or more: one row is for all.
-fn field<const D: usize>(py: Python<'_>, name: &str, given: &Field<'_>) -> PyResult<Initial<D>> {
-    let Some(array) = given else { return Ok(Initial::Uniform([0.0; D])) };
+/// A field in rows: nothing if none is given.
+fn field(py: Python<'_>, name: &str, given: &Field<'_>, dimension: usize) -> PyResult<Vec<f64>> {
+    let Some(array) = given else { return Ok(Vec::new()) };
     let columns = array.as_array().ncols();
-    if columns != D {
-        let needed = if D == 1 { "one number for a bar" } else { "two numbers, x and y, for a plane body" };
+    if columns != dimension {
+        let needed = if dimension == 1 { "one number for a bar" } else { "two numbers, x and y, for a plane body" };
         let message = format!(
             "`{name}` has {columns} numbers in a row; it must have {needed}: one row for all nodes, or one for each"
         );
         return Err(errors::input(py, message));
     }
-    let rows = array.as_slice()?.as_chunks::<D>().0;
-    Ok(if let [row] = rows { Initial::Uniform(*row) } else { Initial::Nodal(rows.to_vec()) })
+    if array.as_array().nrows() == 0 {
+        return Err(errors::input(py, format!("`{name}` has no row; give one row for all nodes, or one for each")));
+    }
+    Ok(array.as_slice()?.to_vec())
 }

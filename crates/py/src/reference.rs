@@ -1,13 +1,11 @@
 //! The true error of histories, against finer simulations.
 
-use crate::any::AnyProblem;
 use crate::history::HistoryData;
 use crate::problem::ProblemData;
-use crate::run::{AnyRun, Run};
+use crate::run::Run;
 use crate::simulate::Times;
 use crate::{bridge, errors, time, view};
-use percute_core::problem::Problem;
-use percute_core::simplex::ByDimension;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{ReferenceError, TrueError, TrueErrorSample};
 use percute_workflow::Failure;
@@ -29,25 +27,9 @@ pub(crate) fn errors_against_history<'py>(
     nested: bool,
 ) -> PyResult<Vec<TrueErrorColumns<'py>>> {
     let meshes = if nested { Meshes::Nested } else { Meshes::Any };
-    match &reference.run {
-        ByDimension::Bar(run) => compared(
-            py,
-            bars(py, &histories)?,
-            (run.problem.clone(), run.times().clone()),
-            Some(run.clone()),
-            meshes,
-            None,
-        ),
-        ByDimension::Plane(run) => compared(
-            py,
-            planes(py, &histories)?,
-            (run.problem.clone(), run.times().clone()),
-            Some(run.clone()),
-            meshes,
-            None,
-        ),
-    }
-    .map(|(errors, _)| errors)
+    let run = &reference.run;
+    let fine = (run.problem.clone(), run.times().clone());
+    compared(py, &histories, fine, Some(run.clone()), meshes, None).map(|(errors, _)| errors)
 }
 
 /// The same against a simulation that is run now, with the warning of its energy balance.
@@ -63,41 +45,27 @@ pub(crate) fn errors_against_simulation<'py>(
     let meshes = if nested { Meshes::Nested } else { Meshes::Any };
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
-    match &problem.problem {
-        AnyProblem::Bar(fine) => compared(py, bars(py, &histories)?, (fine.clone(), times), None, meshes, progress),
-        AnyProblem::Plane(fine) => compared(py, planes(py, &histories)?, (fine.clone(), times), None, meshes, progress),
-    }
+    compared(py, &histories, (problem.problem.clone(), times), None, meshes, progress)
 }
 
-fn bars(py: Python<'_>, histories: &[PyRef<'_, HistoryData>]) -> PyResult<Vec<Arc<Run<1, 2>>>> {
-    let bar = |history: &PyRef<'_, HistoryData>| match &history.run {
-        AnyRun::Bar(run) => Ok(run.clone()),
-        AnyRun::Plane(_) => Err(errors::input(py, "the reference is that of a bar, the history that of a plane body")),
-    };
-    histories.iter().map(bar).collect()
-}
-
-fn planes(py: Python<'_>, histories: &[PyRef<'_, HistoryData>]) -> PyResult<Vec<Arc<Run<2, 3>>>> {
-    let plane = |history: &PyRef<'_, HistoryData>| match &history.run {
-        AnyRun::Plane(run) => Ok(run.clone()),
-        AnyRun::Bar(_) => Err(errors::input(py, "the reference is that of a plane body, the history that of a bar")),
-    };
-    histories.iter().map(plane).collect()
-}
-
-/// Compares `runs` with the steps of `kept`; without it, with a simulation of the reference, which may give a warning.
-fn compared<'py, const D: usize, const N: usize>(
+/// Compares histories with the steps of `kept`; without it, with a simulation of the reference, which may give a warning.
+fn compared<'py>(
     py: Python<'py>,
-    runs: Vec<Arc<Run<D, N>>>,
-    (fine, times): (Arc<Problem<D, N>>, TimeGrid),
-    kept: Option<Arc<Run<D, N>>>,
+    histories: &[PyRef<'_, HistoryData>],
+    (fine, times): (AnyProblem, TimeGrid),
+    kept: Option<Arc<Run>>,
     meshes: Meshes,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Vec<TrueErrorColumns<'py>>, Option<String>)> {
+    if histories.iter().any(|history| history.run.problem.dimension() != fine.dimension()) {
+        let [one, other] = if fine.dimension() == 1 { ["a bar", "a plane body"] } else { ["a plane body", "a bar"] };
+        return Err(errors::input(py, format!("the reference is that of {one}, the history that of {other}")));
+    }
+    let runs: Vec<_> = histories.iter().map(|history| history.run.clone()).collect();
     let varies = times.varies();
     let found = bridge::blocking(py, progress, move |mut watch| {
         let sources: Vec<_> = runs.iter().map(|run| run.stoppable(watch.clone())).collect();
-        let runs: Vec<_> = runs.iter().zip(&sources).map(|(run, source)| (&*run.problem, source as _)).collect();
+        let runs: Vec<_> = runs.iter().zip(&sources).map(|(run, source)| (&run.problem, source as _)).collect();
         let steps = kept.as_ref().map(|kept| kept.stoppable(watch.clone()));
         true_errors(&runs, (&fine, &times), steps.as_ref().map(|steps| steps as _), meshes, &mut watch)
     })?;

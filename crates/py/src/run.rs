@@ -4,8 +4,7 @@ use crate::bridge::Watch;
 use percute_core::contact::{ContactRecorder, ContactResults};
 use percute_core::dynamics::Balance;
 use percute_core::history::{History, SinkError, Step, StepSource};
-use percute_core::problem::Problem;
-use percute_core::simplex::ByDimension;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_io::history::{HistoryFile, HistorySource, StoredSteps};
@@ -22,9 +21,9 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use thiserror::Error;
 
 /// A history and the problem it solves; it never changes.
-pub(crate) struct Run<const D: usize, const N: usize> {
-    pub(crate) problem: Arc<Problem<D, N>>,
-    pub(crate) steps: Steps<D, N>,
+pub(crate) struct Run {
+    pub(crate) problem: AnyProblem,
+    pub(crate) steps: Steps,
     /// Options that its estimate takes unless told otherwise.
     pub(crate) options: Options,
     /// The case that was run, of a history in memory.
@@ -32,54 +31,46 @@ pub(crate) struct Run<const D: usize, const N: usize> {
     /// Of a history of another program.
     pub(crate) origin: Option<Origin>,
     balance: OnceLock<Vec<Balance>>,
-    contact: OnceLock<Arc<ContactResults<D>>>,
+    contact: OnceLock<Arc<ContactResults>>,
 }
 
 /// Where the steps are.
-pub(crate) enum Steps<const D: usize, const N: usize> {
+pub(crate) enum Steps {
     /// In memory.
-    Memory(History<D>),
+    Memory(History),
     /// In a file, from which they are read as they are needed.
-    File(HistoryFile<D, N>, HistorySource<D, N>),
+    File(HistoryFile, HistorySource),
 }
-
-/// A run of either dimension, shared.
-pub(crate) type AnyRun = ByDimension<Arc<Run<1, 2>>, Arc<Run<2, 3>>>;
 
 /// Velocities and accelerations at all instants, node by node and step after step.
-pub(crate) struct Motion<const D: usize> {
-    pub(crate) velocity: Vec<[f64; D]>,
-    pub(crate) acceleration: Vec<[f64; D]>,
+pub(crate) struct Motion {
+    pub(crate) velocity: Vec<f64>,
+    pub(crate) acceleration: Vec<f64>,
 }
 
-impl<const D: usize, const N: usize> Run<D, N> {
-    pub(crate) fn new(
-        problem: Arc<Problem<D, N>>,
-        history: History<D>,
-        options: Options,
-        balance: Option<Vec<Balance>>,
-    ) -> Self {
+impl Run {
+    pub(crate) fn new(problem: AnyProblem, history: History, options: Options, balance: Option<Vec<Balance>>) -> Self {
         let balance = balance.map_or_else(OnceLock::new, OnceLock::from);
         let (steps, contact) = (Steps::Memory(history), OnceLock::new());
         Self { problem, steps, options, case: None, origin: None, balance, contact }
     }
 
     /// A history of another program, in memory.
-    pub(crate) fn foreign(problem: Arc<Problem<D, N>>, history: History<D>, options: Options, origin: Origin) -> Self {
+    pub(crate) fn foreign(problem: AnyProblem, history: History, options: Options, origin: Origin) -> Self {
         Self { origin: Some(origin), ..Self::new(problem, history, options, None) }
     }
 
     /// A history in a file.
-    pub(crate) fn stored(stored: Stored<D, N>) -> Result<Self, FileError> {
+    pub(crate) fn stored(stored: Stored) -> Result<Self, FileError> {
         let source = stored.file.source(&stored.problem)?;
         let origin = stored.origin();
         let steps = Steps::File(stored.file, source);
-        let (problem, options) = (Arc::new(stored.problem), stored.options);
+        let (problem, options) = (stored.problem, stored.options);
         Ok(Self { problem, steps, options, case: None, origin, balance: OnceLock::new(), contact: OnceLock::new() })
     }
 
     /// The steps, one after the other.
-    pub(crate) fn source(&self) -> &dyn StepSource<D> {
+    pub(crate) fn source(&self) -> &dyn StepSource {
         match &self.steps {
             Steps::Memory(history) => history,
             Steps::File(_, source) => source,
@@ -87,7 +78,7 @@ impl<const D: usize, const N: usize> Run<D, N> {
     }
 
     /// The stored steps of a file, which may be thinned.
-    pub(crate) fn stored_source(&self) -> Option<StoredSteps<'_, D, N>> {
+    pub(crate) fn stored_source(&self) -> Option<StoredSteps<'_>> {
         match &self.steps {
             Steps::Memory(_) => None,
             Steps::File(_, source) => Some(source.stored()),
@@ -95,12 +86,12 @@ impl<const D: usize, const N: usize> Run<D, N> {
     }
 
     /// The same until `watch` asks for a stop.
-    pub(crate) fn stoppable(&self, watch: Watch) -> Stoppable<'_, D> {
+    pub(crate) fn stoppable(&self, watch: Watch) -> Stoppable<'_> {
         Stoppable { source: self.source(), watch }
     }
 
     /// The file, if that is where the steps are.
-    pub(crate) fn file(&self) -> Option<&HistoryFile<D, N>> {
+    pub(crate) fn file(&self) -> Option<&HistoryFile> {
         match &self.steps {
             Steps::Memory(_) => None,
             Steps::File(file, _) => Some(file),
@@ -108,7 +99,7 @@ impl<const D: usize, const N: usize> Run<D, N> {
     }
 
     /// The history in memory, if that is where it is.
-    pub(crate) fn memory(&self) -> Option<&History<D>> {
+    pub(crate) fn memory(&self) -> Option<&History> {
         match &self.steps {
             Steps::Memory(history) => Some(history),
             Steps::File(..) => None,
@@ -151,13 +142,19 @@ impl<const D: usize, const N: usize> Run<D, N> {
     pub(crate) fn contact_nodes(&self) -> Vec<usize> {
         match self.file() {
             Some(file) => file.contact_nodes().to_vec(),
-            None => self.problem.surface().nodes().iter().map(|c| c.node.index()).collect(),
+            None => self.problem.contact_nodes().iter().map(|c| c.node.index()).collect(),
         }
     }
 
     /// Instants and nodes.
     pub(crate) fn shape(&self) -> [usize; 2] {
         [self.count(), self.problem.mesh().node_count()]
+    }
+
+    /// Instants, nodes and components of a displacement.
+    pub(crate) fn shape_of_motion(&self) -> [usize; 3] {
+        let [count, nodes] = self.shape();
+        [count, nodes, self.problem.dimension()]
     }
 
     /// Instants and nodes of the contact surface.
@@ -168,11 +165,11 @@ impl<const D: usize, const N: usize> Run<D, N> {
     /// Analyses the steps that `source` hands on, those of this run.
     pub(crate) fn graded(
         &self,
-        source: &dyn StepSource<D>,
+        source: &dyn StepSource,
         analysis: &Analysis,
         accept: bool,
         watch: &mut Watch,
-    ) -> Result<Graded<D>, Failure> {
+    ) -> Result<Graded, Failure> {
         self.file().map_or(Ok(()), HistoryFile::expect_all)?;
         if let Some(origin) = self.origin.clone() {
             let origin = &Origin { accept, ..origin };
@@ -192,7 +189,7 @@ impl<const D: usize, const N: usize> Run<D, N> {
     }
 
     /// What contact did, with all nodes at all instants, computed once.
-    pub(crate) fn contact(&self, watch: Watch) -> Result<Arc<ContactResults<D>>, SinkError> {
+    pub(crate) fn contact(&self, watch: Watch) -> Result<Arc<ContactResults>, SinkError> {
         if let Some(contact) = self.contact.get() {
             return Ok(contact.clone());
         }
@@ -202,7 +199,7 @@ impl<const D: usize, const N: usize> Run<D, N> {
     }
 
     /// v_n and a_n by the scheme, or as the history brings them.
-    pub(crate) fn motion(&self, watch: Watch) -> Result<Motion<D>, SinkError> {
+    pub(crate) fn motion(&self, watch: Watch) -> Result<Motion, SinkError> {
         let mut motion = Motion { velocity: Vec::new(), acceleration: Vec::new() };
         percute_workflow::run::motion(&self.problem, &self.stoppable(watch), |velocity, acceleration| {
             motion.velocity.extend(velocity);
@@ -219,12 +216,12 @@ pub(crate) struct Left;
 
 /// A history that ends with an error when its reader is told to stop: unlike an observer that breaks, it
 /// asks for nothing more to be computed.
-pub(crate) struct Stoppable<'a, const D: usize> {
-    pub(crate) source: &'a dyn StepSource<D>,
+pub(crate) struct Stoppable<'a> {
+    pub(crate) source: &'a dyn StepSource,
     pub(crate) watch: Watch,
 }
 
-impl<const D: usize> StepSource<D> for Stoppable<'_, D> {
+impl StepSource for Stoppable<'_> {
     fn times(&self) -> &TimeGrid {
         self.source.times()
     }
@@ -233,22 +230,22 @@ impl<const D: usize> StepSource<D> for Stoppable<'_, D> {
         self.source.count()
     }
 
-    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError> {
         self.source.replay(&mut |step| if self.watch.0.stopped() { Err(Left.into()) } else { take(step) })
     }
 }
 
 /// A history that two threads share while it grows: one fills it, the other may take it away at any moment.
 #[derive(Clone, Debug)]
-pub(crate) struct Growing<const D: usize>(Arc<Mutex<Option<History<D>>>>);
+pub(crate) struct Growing(Arc<Mutex<Option<History>>>);
 
-impl<const D: usize> Growing<D> {
+impl Growing {
     pub(crate) fn new(times: &TimeGrid) -> Self {
         Self(Arc::new(Mutex::new(Some(History::new(times)))))
     }
 
     /// Appends a step.
-    pub(crate) fn push(&self, step: &Step<'_, D>) -> Result<(), SinkError> {
+    pub(crate) fn push(&self, step: &Step<'_>) -> Result<(), SinkError> {
         match self.0.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
             Some(history) => history.push(step),
             None => Err(Left.into()),
@@ -256,7 +253,7 @@ impl<const D: usize> Growing<D> {
     }
 
     /// Takes what is there; later steps are refused.
-    pub(crate) fn take(&self) -> Option<History<D>> {
+    pub(crate) fn take(&self) -> Option<History> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take().filter(|history| !history.is_empty())
     }
 }

@@ -7,25 +7,23 @@ use crate::history::HistoryData;
 use crate::made::Made;
 use crate::options::{Wanted, analysis};
 use crate::problem::ProblemData;
-use crate::run::{AnyRun, Growing, Run};
+use crate::run::{Growing, Run};
 use crate::{bridge, errors, time};
 use percute_core::dynamics::{Balance, SimulationError, check_start};
 use percute_core::history::Step;
-use percute_core::problem::Problem;
-use percute_core::simplex::ByDimension;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
-use percute_core::{each_dimension, map_dimension};
 use percute_estimator::Options;
 use percute_io::history::{Plan, Writer};
 use percute_io::{FileCause, FileError, Overwrite};
 use percute_workflow::Failure;
-use percute_workflow::case::{CaseOf, Instants, Keep, Source, refused_start};
+use percute_workflow::case::{Instants, Keep, Source, refused_start};
 use percute_workflow::choice::StepChoice;
 use percute_workflow::effort::{Effort, Long};
 use percute_workflow::history::{plan, stored_case};
 use percute_workflow::info::memory;
 use percute_workflow::report::{drifted, varying_steps};
-use percute_workflow::run::{self, Analysis, Outcome, Storage, TakeStep};
+use percute_workflow::run::{self, Outcome, Storage, TakeStep};
 use percute_workflow::until::{Until, no_rebound};
 use pyo3::prelude::*;
 use std::any::Any;
@@ -33,9 +31,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Instant;
-
-/// From a run of one dimension to a run of either.
-type Either<const D: usize, const N: usize> = fn(Arc<Run<D, N>>) -> AnyRun;
 
 /// How the instants are stated: end, courant, step, steps.
 pub(crate) type Times = (Option<f64>, Option<f64>, Option<f64>, Option<Vec<f64>>);
@@ -73,30 +68,17 @@ pub(crate) fn simulate(
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
     let keep = keep_of(py, keep, &times)?;
     let store = store.map(|path| Store::new(path, overwrite, keep));
-    match &problem.problem {
-        ByDimension::Bar(problem) => simulate_one(py, problem, times, store, progress, ByDimension::Bar),
-        ByDimension::Plane(problem) => simulate_one(py, problem, times, store, progress, ByDimension::Plane),
-    }
-}
-
-fn simulate_one<const D: usize, const N: usize>(
-    py: Python<'_>,
-    problem: &Arc<Problem<D, N>>,
-    times: TimeGrid,
-    store: Option<Store>,
-    progress: Option<&Bound<'_, PyAny>>,
-    either: Either<D, N>,
-) -> PyResult<(HistoryData, Option<String>)> {
+    let problem = &problem.problem;
     let work = {
         let (problem, times) = (problem.clone(), times.clone());
-        move |storage: Storage<'_, D>, watch: &mut Watch| {
+        move |storage: Storage<'_>, watch: &mut Watch| {
             let Outcome { results, unstored } = run::simulate(&problem, &times, storage, watch)?;
             let drifted = drifted(results.balance.energy_drift, times.varies());
             Ok(Done { balance: results.balance_over_time, rest: drifted.map(|warning| warning.message), unstored })
         }
     };
     let planned = Planned { problem: problem.clone(), times, options: Options::default(), case: None, store };
-    let (history, drifted) = planned.carry_out(py, progress, either, work, &|failure| failure)?;
+    let (history, drifted) = planned.carry_out(py, progress, work, &|failure| failure)?;
     Ok((history?, drifted))
 }
 
@@ -115,42 +97,14 @@ pub(crate) fn run_case(
     contact_steps: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(HistoryData, EstimateData)> {
-    let instants = instants.map(Instants::from);
-    let analysis = each_dimension!(&case.case, case => {
-        let options = Options { threads: pace.0, window: pace.1, ..case.options };
-        analysis(options, instants.as_ref(), fields, contact_steps, &case.times)
-    });
-    let (history, made) = match &case.case {
-        ByDimension::Bar(case) => {
-            let (history, made) = run_one(py, case, store, overwrite, analysis, progress, ByDimension::Bar)?;
-            (history, ByDimension::Bar(made))
-        }
-        ByDimension::Plane(case) => {
-            let (history, made) = run_one(py, case, store, overwrite, analysis, progress, ByDimension::Plane)?;
-            (history, ByDimension::Plane(made))
-        }
-    };
-    let made = EstimateData { made };
-    match history {
-        Ok(history) => Ok((history, made)),
-        Err(error) => Err(errors::with(py, error, "estimate", Some(made))),
-    }
-}
-
-fn run_one<const D: usize, const N: usize>(
-    py: Python<'_>,
-    case: &CaseOf<D, N>,
-    store: Option<PathBuf>,
-    overwrite: bool,
-    analysis: Analysis,
-    progress: Option<&Bound<'_, PyAny>>,
-    either: Either<D, N>,
-) -> PyResult<(PyResult<HistoryData>, Arc<Made<D, N>>)> {
-    let (problem, times, options) = (Arc::new(case.problem.clone()), case.times.clone(), analysis.options);
+    let (case, instants) = (&case.case, instants.map(Instants::from));
+    let options = Options { threads: pace.0, window: pace.1, ..case.options };
+    let analysis = analysis(options, instants.as_ref(), fields, contact_steps, &case.times);
+    let (problem, times, options) = (case.problem.clone(), case.times.clone(), analysis.options);
     let store = store.map(|path| Store::new(path, overwrite, case.output.keep.clone()));
     let work = {
         let (problem, times) = (problem.clone(), times.clone());
-        move |storage: Storage<'_, D>, watch: &mut Watch| {
+        move |storage: Storage<'_>, watch: &mut Watch| {
             let start = Instant::now();
             let Outcome { results, unstored } = run::run(&problem, &times, &analysis, storage, watch)?;
             let balance = results.simulation.balance_over_time.clone();
@@ -161,11 +115,15 @@ fn run_one<const D: usize, const N: usize>(
     let planned =
         Planned { problem: problem.clone(), times: times.clone(), options: case.options, case: source, store };
     let (history, (results, seconds)) =
-        planned.carry_out(py, progress, either, work, &|failure| run::located(case, failure))?;
+        planned.carry_out(py, progress, work, &|failure| run::located(case, failure))?;
     let mut made = Made::new(problem, times, options, results, None, seconds);
     made.case = Some(stored_case(&case.source));
     made.unended.clone_from(&case.unended);
-    Ok((history, Arc::new(made)))
+    let made = EstimateData { made: Arc::new(made) };
+    match history {
+        Ok(history) => Ok((history, made)),
+        Err(error) => Err(errors::with(py, error, "estimate", Some(made))),
+    }
 }
 
 /// The end (s) of a run that ends with the rebound, by a pass of the integrator alone, and a warning if contact does
@@ -183,21 +141,19 @@ pub(crate) fn rebound_end(
     let critical = problem.critical_step(py)?;
     time::grid(py, Some(longest), courant, step, None, critical)?;
     let step = step.or_else(|| courant.map(|courant| courant * critical)).unwrap_or(critical);
-    each_dimension!(&problem.problem, problem => {
-        if let Some(told) = no_rebound(problem.as_ref()) {
-            return Err(errors::input(py, format!("`end`: {told}")));
-        }
-        let (problem, until) = (problem.clone(), Until::new(problem, longest, after, step));
-        let work = move |mut watch: Watch| run::rebound(&problem, &until, &mut watch);
-        let found = bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))?;
-        let found = found.ok_or_else(|| errors::percute_error(py, "the search for the rebound was stopped"))?;
-        Ok((found.times.end(), found.warning.map(|warning| warning.message)))
-    })
+    if let Some(told) = no_rebound(&problem.problem) {
+        return Err(errors::input(py, format!("`end`: {told}")));
+    }
+    let (problem, until) = (problem.problem.clone(), Until::new(&problem.problem, longest, after, step));
+    let work = move |mut watch: Watch| run::rebound(&problem, &until, &mut watch);
+    let found = bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))?;
+    let found = found.ok_or_else(|| errors::percute_error(py, "the search for the rebound was stopped"))?;
+    Ok((found.times.end(), found.warning.map(|warning| warning.message)))
 }
 
 /// The keys of `material`.
-fn groups<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Option<String>> {
-    problem.statement().materials.iter().map(|(group, _)| group.clone()).collect()
+fn groups(problem: &AnyProblem) -> Vec<Option<String>> {
+    problem.conditions().materials.iter().map(|(group, _)| group.clone()).collect()
 }
 
 /// Plausibility warnings about a run; with `in_memory`, its history is kept in memory.
@@ -211,12 +167,10 @@ pub(crate) fn plausibility_warnings(
     let (end, courant, step, steps) = times;
     let critical = problem.critical_step(py)?;
     let times = time::grid(py, end, courant, step, steps, critical)?;
-    let (plausibility_warnings, needed, names) = each_dimension!(&problem.problem, problem => {
-        let history = if in_memory { memory::of_history(problem, &times) } else { 0 };
-        let needed = memory::of_run(problem, &times).saturating_add(history);
-        (percute_core::problem::plausibility_warnings(problem, &times), needed, groups(problem))
-    });
-    let told = plausibility_warnings.into_iter().map(|plausibility_warning| {
+    let problem = &problem.problem;
+    let history = if in_memory { memory::of_history(problem, &times) } else { 0 };
+    let (needed, names) = (memory::of_run(problem, &times).saturating_add(history), groups(problem));
+    let told = percute_core::problem::plausibility_warnings(problem, &times).into_iter().map(|plausibility_warning| {
         format!("`{}`: {}", errors::argument(plausibility_warning.place, &names), plausibility_warning.message)
     });
     let scarce = memory::scarce(needed, memory::available(), in_memory).map(|message| format!("`mesh`: {message}"));
@@ -230,18 +184,17 @@ pub(crate) fn plausibility_warnings(
 pub(crate) fn check_run(py: Python<'_>, problem: &ProblemData, times: Times, long: bool) -> PyResult<()> {
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
-    each_dimension!(&problem.problem, problem => {
-        if let Err(error @ SimulationError::StartsTooNear { obstacle, .. }) = check_start(problem, &times) {
-            let (place, message) = refused_start(problem, &times, obstacle, &error);
-            return Err(errors::input(py, format!("`{}`: {message}", errors::argument(place, &groups(problem)))));
-        }
-        let effort = Effort::of(problem, &times, Options::default().every);
-        match effort.refusal(&times, false, Long::asked(long, "`long=True`")) {
-            Some(told) => Err(errors::input(py, format!("`end` {told}"))),
-            None => memory::refusal(memory::of_run(problem, &times))
-                .map_or(Ok(()), |told| Err(errors::input(py, format!("`mesh`: {told}")))),
-        }
-    })
+    let problem = &problem.problem;
+    if let Err(error @ SimulationError::StartsTooNear { obstacle, .. }) = check_start(problem, &times) {
+        let (place, message) = refused_start(problem, &times, obstacle, &error);
+        return Err(errors::input(py, format!("`{}`: {message}", errors::argument(place, &groups(problem)))));
+    }
+    let effort = Effort::of(problem, &times, Options::default().every);
+    match effort.refusal(&times, false, Long::asked(long, "`long=True`")) {
+        Some(told) => Err(errors::input(py, format!("`end` {told}"))),
+        None => memory::refusal(memory::of_run(problem, &times))
+            .map_or(Ok(()), |told| Err(errors::input(py, format!("`mesh`: {told}")))),
+    }
 }
 
 /// Lets the run of a history go on, which was killed or stopped; with a warning as that of [`simulate`].
@@ -254,15 +207,14 @@ pub(crate) fn resume(
     let (file, begun) = (path.clone(), Arc::new(AtomicBool::new(false)));
     let goes_on = begun.clone();
     let work = move |mut watch: Watch, open: Box<dyn Any + Send>| {
-        each_dimension!(percute_workflow::history::open(&file)?, stored => {
-            if stored.file.has_ended() {
-                return Ok((None, None));
-            }
-            goes_on.store(true, Relaxed);
-            let Outcome { results, unstored } = stored.resume(None, Some(open), &mut watch)?;
-            let drifted = drifted(results.balance.energy_drift, stored.file.run_times().varies());
-            Ok((drifted.map(|warning| warning.message), unstored))
-        })
+        let stored = percute_workflow::history::open(&file)?;
+        if stored.file.has_ended() {
+            return Ok((None, None));
+        }
+        goes_on.store(true, Relaxed);
+        let Outcome { results, unstored } = stored.resume(None, Some(open), &mut watch)?;
+        let drifted = drifted(results.balance.energy_drift, stored.file.run_times().varies());
+        Ok((drifted.map(|warning| warning.message), unstored))
     };
     let done = bridge::writing(py, progress, move |watch, open| work(watch, Box::new(open)));
     let done = done.and_then(|done: Result<_, Failure>| done.map_err(|failure| errors::run(py, &failure)));
@@ -284,9 +236,9 @@ pub(crate) fn open_history(py: Python<'_>, path: PathBuf) -> PyResult<HistoryDat
     Ok(HistoryData { run: opened.map_err(|error| errors::failure(py, &error))? })
 }
 
-fn opened(path: &Path) -> Result<AnyRun, Failure> {
+fn opened(path: &Path) -> Result<Arc<Run>, Failure> {
     let stored = percute_workflow::history::open(path)?;
-    Ok(map_dimension!(stored, stored => Arc::new(Run::stored(*stored)?)))
+    Ok(Arc::new(Run::stored(stored)?))
 }
 
 /// A file to simulate into.
@@ -306,7 +258,7 @@ impl Store {
     }
 
     /// Makes the planned file.
-    fn begin<const D: usize, const N: usize>(&self, plan: &Plan<'_, D, N>) -> Result<Writer<D>, Failure> {
+    fn begin(&self, plan: &Plan<'_>) -> Result<Writer, Failure> {
         let writer = plan.create(&self.path, Overwrite::allowed(self.overwrite))?;
         self.ours.store(true, Relaxed);
         Ok(writer)
@@ -322,8 +274,8 @@ struct Done<T> {
 }
 
 /// A run whose history goes to a file or into memory.
-struct Planned<const D: usize, const N: usize> {
-    problem: Arc<Problem<D, N>>,
+struct Planned {
+    problem: AnyProblem,
     times: TimeGrid,
     /// Options that the estimate of its history takes unless told otherwise.
     options: Options,
@@ -331,14 +283,13 @@ struct Planned<const D: usize, const N: usize> {
     store: Option<Store>,
 }
 
-impl<const D: usize, const N: usize> Planned<D, N> {
+impl Planned {
     /// Does the work, and gives the history and the rest. There is no history if its file was lost during the run.
     fn carry_out<T: Send + 'static>(
         self,
         py: Python<'_>,
         progress: Option<&Bound<'_, PyAny>>,
-        either: Either<D, N>,
-        work: impl FnOnce(Storage<'_, D>, &mut Watch) -> Result<Done<T>, Failure> + Send + 'static,
+        work: impl FnOnce(Storage<'_>, &mut Watch) -> Result<Done<T>, Failure> + Send + 'static,
         located: &dyn Fn(Failure) -> Failure,
     ) -> PyResult<(PyResult<HistoryData>, T)> {
         let Self { problem, times, options, case, store } = self;
@@ -348,8 +299,8 @@ impl<const D: usize, const N: usize> Planned<D, N> {
             move |mut watch: Watch, open: Option<Box<dyn Any + Send>>| {
                 let begin = |store: &Store| store.begin(&plan(&problem, &times, &options, case.as_ref(), &store.keep)?);
                 let file = store.as_ref().map(begin).transpose()?;
-                let mut keep = growing.as_ref().map(|growing| |step: &Step<'_, D>| growing.push(step));
-                let memory = keep.as_mut().map(|keep| keep as &mut TakeStep<'_, D>);
+                let mut keep = growing.as_ref().map(|growing| |step: &Step<'_>| growing.push(step));
+                let memory = keep.as_mut().map(|keep| keep as &mut TakeStep<'_>);
                 let done = work(Storage { file, memory, open }, &mut watch);
                 if let (Err(failure), Some(store)) = (&done, &store)
                     && failure.is_refused_start()
@@ -368,7 +319,7 @@ impl<const D: usize, const N: usize> Planned<D, N> {
         let data = |history, balance| {
             let mut run = Run::new(problem, history, options, balance);
             run.case = case;
-            HistoryData { run: either(Arc::new(run)) }
+            HistoryData { run: Arc::new(run) }
         };
         match (outcome, store) {
             (Ok(Done { rest, unstored: Some(lost), .. }), Some(_)) => {

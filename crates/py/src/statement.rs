@@ -1,7 +1,8 @@
 //! From the value classes of `percute.statement` to the statement of a problem, and back.
 
 use crate::errors;
-use percute_core::contact::{Interface, Obstacle, ObstacleError, Plane};
+use percute_core::border::{Vector, row};
+use percute_core::contact::{AnyObstacle, Interface, ObstacleError, PlaneAt};
 use percute_core::load::{BodyForce, Profile, Support, Table, TableError, Traction};
 use percute_core::material::{Elastic, Hypothesis, Law, MaterialError};
 use percute_core::problem::{Between, Contact};
@@ -17,9 +18,12 @@ fn wrong(py: Python<'_>, name: &str, message: impl std::fmt::Display) -> PyErr {
 }
 
 /// A vector with a component for each axis of the mesh.
-fn vector<const D: usize>(py: Python<'_>, name: &str, given: &[f64]) -> PyResult<[f64; D]> {
-    let needed = if D == 1 { "one number for a bar" } else { "two numbers, x and y, for a plane body" };
-    given.try_into().map_err(|_| wrong(py, name, format!("has {} numbers; it must have {needed}", given.len())))
+fn vector(py: Python<'_>, name: &str, given: &[f64], dimension: usize) -> PyResult<Vector> {
+    if given.len() != dimension {
+        let needed = if dimension == 1 { "one number for a bar" } else { "two numbers, x and y, for a plane body" };
+        return Err(wrong(py, name, format!("has {} numbers; it must have {needed}", given.len())));
+    }
+    Ok(row(given, 0, dimension))
 }
 
 /// An attribute of a value class, which has checked its type.
@@ -31,7 +35,7 @@ where
 }
 
 /// One material, stated as `name`.
-pub(crate) fn material<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Elastic> {
+pub(crate) fn material(name: &str, given: &Bound<'_, PyAny>, dimension: usize) -> PyResult<Elastic> {
     let py = given.py();
     let (young, density): (f64, f64) = (attribute(given, "young")?, attribute(given, "density")?);
     let poisson: Option<f64> = attribute(given, "poisson")?;
@@ -43,7 +47,7 @@ pub(crate) fn material<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> 
         bad(name, &format!("is {value} {unit}; it must be {allowed}"))
     };
     let yielding = |law: Elastic| yield_stress.map_or(Ok(law), |stress| law.with_yield_stress(stress));
-    if D == 1 {
+    if dimension == 1 {
         for (key, there) in
             [("poisson", poisson.is_some()), ("plane", plane.is_some()), ("thickness", thickness != 1.0)]
         {
@@ -68,48 +72,49 @@ pub(crate) fn material<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> 
 }
 
 /// One plane.
-pub(crate) fn plane<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Obstacle<D>> {
+pub(crate) fn plane(name: &str, given: &Bound<'_, PyAny>, dimension: usize) -> PyResult<AnyObstacle> {
     let py = given.py();
     let point = attribute::<Option<Vec<f64>>>(given, "point")?;
-    let point = point.map(|point| vector(py, &format!("{name}.point"), &point)).transpose()?;
-    let normal = vector(py, &format!("{name}.normal"), &attribute::<Vec<f64>>(given, "normal")?)?;
+    let point = point.map(|point| vector(py, &format!("{name}.point"), &point, dimension)).transpose()?;
+    let normal = vector(py, &format!("{name}.normal"), &attribute::<Vec<f64>>(given, "normal")?, dimension)?;
     let (friction, group) = (attribute(given, "friction")?, attribute(given, "group")?);
-    let made = match point {
-        Some(point) => Obstacle::plane(point, normal, friction, group),
+    let place = match point {
+        Some(point) => PlaneAt::Point(point),
         // A plane that the body strikes at once is moved away by the least gap.
-        None => Obstacle::plane_at_gap(attribute(given, "gap").unwrap_or(0.0), normal, friction, group),
+        None => PlaneAt::Gap(attribute(given, "gap").unwrap_or(0.0)),
     };
+    let made = AnyObstacle::plane(dimension, place, &normal, friction, group);
     // The message begins with the name of the value.
     made.map_err(|error: ObstacleError| errors::input(py, format!("`{name}`: {error}")))
 }
 
 /// Contact between bodies.
-pub(crate) fn contact<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Contact> {
+pub(crate) fn contact(name: &str, given: &Bound<'_, PyAny>, dimension: usize) -> PyResult<Contact> {
     let [bodies, groups] = [attribute::<Option<[String; 2]>>(given, "bodies")?, attribute(given, "groups")?];
     let between = bodies.map(Between::Bodies).or(groups.map(Between::Groups)).unwrap_or(Between::All);
     let friction = attribute::<Option<f64>>(given, "friction")?.unwrap_or(0.0);
-    let made = Contact::new::<D>(between, friction, attribute(given, "matching")?);
+    let made = Contact::new(dimension, between, friction, attribute(given, "matching")?);
     made.map_err(|error: ObstacleError| errors::input(given.py(), format!("`{name}`: {error}")))
 }
 
 /// One support: `velocity` has a column for each component, in their order.
-pub(crate) fn support<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Support<D>> {
+pub(crate) fn support(name: &str, given: &Bound<'_, PyAny>, dimension: usize) -> PyResult<Support> {
     let py = given.py();
     let mut order = Vec::new();
     for axis in attribute::<Vec<String>>(given, "components")? {
-        let Some(at) = AXES[..D].iter().position(|known| *known == axis) else {
-            let known = AXES[..D].join("\" or \"");
+        let Some(at) = AXES[..dimension].iter().position(|known| *known == axis) else {
+            let known = AXES[..dimension].join("\" or \"");
             return Err(wrong(py, &format!("{name}.components"), format!("names {axis:?}; it must be \"{known}\"")));
         };
         order.push(at);
     }
-    let mut components = [false; D];
+    let mut components = [false; 3];
     order.iter().for_each(|&c| components[c] = true);
     let velocity = match attribute::<Option<Rows>>(given, "velocity")? {
         None => None,
         Some(rows) => {
             let spread = |row: &Vec<f64>| {
-                let mut all = [0.0; D];
+                let mut all = [0.0; 3];
                 order.iter().zip(row).for_each(|(&c, v)| all[c] = *v);
                 all
             };
@@ -120,18 +125,20 @@ pub(crate) fn support<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> P
 }
 
 /// One traction.
-pub(crate) fn traction<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Traction<D>> {
+pub(crate) fn traction(name: &str, given: &Bound<'_, PyAny>, dimension: usize) -> PyResult<Traction> {
     let py = given.py();
     let profile = match attribute::<Option<(f64, Vec<f64>)>>(given, "profile")? {
         None => Profile::UNIFORM,
-        Some((value, gradient)) => Profile { value, gradient: vector(py, &format!("{name}.profile"), &gradient)? },
+        Some((value, gradient)) => {
+            Profile { value, gradient: vector(py, &format!("{name}.profile"), &gradient, dimension)? }
+        }
     };
-    Ok(Traction { group: attribute(given, "group")?, value: load(name, given)?, profile })
+    Ok(Traction { group: attribute(given, "group")?, value: load(name, given, dimension)?, profile })
 }
 
 /// One body force.
-pub(crate) fn body_force<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyResult<BodyForce<D>> {
-    Ok(BodyForce { group: attribute(given, "group")?, value: load(name, given)? })
+pub(crate) fn body_force(name: &str, given: &Bound<'_, PyAny>, dimension: usize) -> PyResult<BodyForce> {
+    Ok(BodyForce { group: attribute(given, "group")?, value: load(name, given, dimension)? })
 }
 
 /// One row of numbers, or several.
@@ -145,21 +152,16 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Rows {
     }
 }
 
-fn load<const D: usize>(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Table<D>> {
+fn load(name: &str, given: &Bound<'_, PyAny>, dimension: usize) -> PyResult<Table> {
     let py = given.py();
     let rows: Rows = attribute(given, "value")?;
-    let values = rows.0.iter().map(|row| vector(py, &format!("{name}.value"), row)).collect::<PyResult<Vec<_>>>()?;
+    let values =
+        rows.0.iter().map(|row| vector(py, &format!("{name}.value"), row, dimension)).collect::<PyResult<Vec<_>>>()?;
     table(py, name, "value", attribute(given, "time")?, values)
 }
 
 /// A table in time; without instants, the same value at all times.
-fn table<const D: usize>(
-    py: Python<'_>,
-    name: &str,
-    key: &str,
-    time: Option<Vec<f64>>,
-    values: Vec<[f64; D]>,
-) -> PyResult<Table<D>> {
+fn table(py: Python<'_>, name: &str, key: &str, time: Option<Vec<f64>>, values: Vec<Vector>) -> PyResult<Table> {
     Table::new(time.unwrap_or_else(|| vec![0.0]), values).map_err(|error| match error {
         TableError::Lengths { times, values } => {
             let message =
@@ -188,15 +190,17 @@ pub(crate) fn material_arguments<'py>(py: Python<'py>, law: &Elastic) -> PyResul
 }
 
 /// What the value class of a plane takes.
-pub(crate) fn plane_arguments<'py, const D: usize>(
+pub(crate) fn plane_arguments<'py>(
     py: Python<'py>,
-    (obstacle, plane): (&Obstacle<D>, &Plane<D>),
+    plane: &AnyObstacle,
+    dimension: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
     let arguments = PyDict::new(py);
-    arguments.set_item("point", tuple(py, plane.point())?)?;
-    arguments.set_item("normal", tuple(py, plane.direction())?)?;
-    arguments.set_item("friction", obstacle.law().friction())?;
-    arguments.set_item("group", obstacle.group())?;
+    for (key, vector) in ["point", "normal"].into_iter().zip(plane.as_plane().iter().flatten()) {
+        arguments.set_item(key, tuple(py, &vector[..dimension])?)?;
+    }
+    arguments.set_item("friction", plane.law().friction())?;
+    arguments.set_item("group", plane.group())?;
     Ok(arguments)
 }
 
@@ -212,12 +216,13 @@ pub(crate) fn contact_arguments<'py>(py: Python<'py>, interface: &Interface) -> 
 }
 
 /// What the value class of a support takes.
-pub(crate) fn support_arguments<'py, const D: usize>(
+pub(crate) fn support_arguments<'py>(
     py: Python<'py>,
-    support: &Support<D>,
+    support: &Support,
+    dimension: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
     let arguments = PyDict::new(py);
-    let order: Vec<usize> = (0..D).filter(|&c| support.components[c]).collect();
+    let order: Vec<usize> = (0..dimension).filter(|&c| support.components[c]).collect();
     arguments.set_item("group", &support.group)?;
     arguments.set_item("components", PyTuple::new(py, order.iter().map(|&c| AXES[c]))?)?;
     if let Some(table) = &support.velocity {
@@ -228,33 +233,40 @@ pub(crate) fn support_arguments<'py, const D: usize>(
 }
 
 /// What the value class of a traction takes.
-pub(crate) fn traction_arguments<'py, const D: usize>(
+pub(crate) fn traction_arguments<'py>(
     py: Python<'py>,
-    traction: &Traction<D>,
+    traction: &Traction,
+    dimension: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
     let arguments = PyDict::new(py);
     arguments.set_item("group", &traction.group)?;
-    load_arguments(&arguments, &traction.value)?;
+    load_arguments(&arguments, &traction.value, dimension)?;
     let profile = traction.profile;
-    if profile.value != 1.0 || profile.gradient != [0.0; D] {
-        arguments.set_item("profile", (profile.value, tuple(py, &profile.gradient)?))?;
+    if profile.value != 1.0 || profile.gradient != [0.0; 3] {
+        arguments.set_item("profile", (profile.value, tuple(py, &profile.gradient[..dimension])?))?;
     }
     Ok(arguments)
 }
 
 /// What the value class of a body force takes.
-pub(crate) fn body_force_arguments<'py, const D: usize>(
+pub(crate) fn body_force_arguments<'py>(
     py: Python<'py>,
-    force: &BodyForce<D>,
+    force: &BodyForce,
+    dimension: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
     let arguments = PyDict::new(py);
-    load_arguments(&arguments, &force.value)?;
+    load_arguments(&arguments, &force.value, dimension)?;
     arguments.set_item("group", &force.group)?;
     Ok(arguments)
 }
 
-fn load_arguments<const D: usize>(arguments: &Bound<'_, PyDict>, table: &Table<D>) -> PyResult<()> {
-    table_arguments(arguments, "value", table.time(), table.value().iter().map(|row| row.to_vec()).collect())
+fn load_arguments(arguments: &Bound<'_, PyDict>, table: &Table, dimension: usize) -> PyResult<()> {
+    table_arguments(
+        arguments,
+        "value",
+        table.time(),
+        table.value().iter().map(|row| row[..dimension].to_vec()).collect(),
+    )
 }
 
 /// A table whose only instant is 0 is constant.

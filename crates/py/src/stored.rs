@@ -1,10 +1,9 @@
 //! Estimates in files.
 
-use crate::any::AnyMesh;
 use crate::mesh::MeshData;
 use crate::{bridge, contact, errors, view};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
-use percute_core::{each_dimension, map_dimension};
+use percute_core::mesh::AnyMesh;
 use percute_estimator::Sample;
 use percute_io::estimate_file::{self, Field};
 use percute_io::{Kind, kind};
@@ -31,7 +30,7 @@ impl EstimateFileData {
         let name = path.clone();
         let file = bridge::blocking(py, None, move |_| estimate_file::open(&name))?;
         let file = file.map_err(|error| errors::file(py, &error))?;
-        let mesh = map_dimension!(file.mesh, mesh => Arc::new(mesh));
+        let mesh = file.mesh;
         let (over_time, by_element) = (file.over_time, Arc::new(file.by_element));
         Ok(Self { path, mesh, over_time, by_element, report: file.report })
     }
@@ -60,7 +59,7 @@ impl EstimateFileData {
         let found = bridge::blocking(py, None, move |_| estimate_file::contact(&path))?;
         Ok(match found.map_err(|error| errors::file(py, &error))? {
             None => None,
-            Some(results) => Some(each_dimension!(results, results => contact::arrays(py, &Arc::new(results)))?),
+            Some(results) => Some(contact::arrays(py, &Arc::new(results))?),
         })
     }
 

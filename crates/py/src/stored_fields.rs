@@ -10,18 +10,12 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// The velocities of a thinned history.
-pub(crate) fn stored_velocity<const D: usize, const N: usize>(
-    file: &HistoryFile<D, N>,
-    steps: Range<usize>,
-) -> Result<Vec<[f64; D]>, FileError> {
+pub(crate) fn stored_velocity(file: &HistoryFile, steps: Range<usize>) -> Result<Vec<f64>, FileError> {
     Ok(file.velocity(steps)?.unwrap_or_default())
 }
 
 /// Its accelerations.
-pub(crate) fn stored_acceleration<const D: usize, const N: usize>(
-    file: &HistoryFile<D, N>,
-    steps: Range<usize>,
-) -> Result<Vec<[f64; D]>, FileError> {
+pub(crate) fn stored_acceleration(file: &HistoryFile, steps: Range<usize>) -> Result<Vec<f64>, FileError> {
     Ok(file.acceleration(steps)?.unwrap_or_default())
 }
 
@@ -29,10 +23,10 @@ pub(crate) fn stored_acceleration<const D: usize, const N: usize>(
 const BLOCK: usize = 1 << 25;
 
 /// Reads a field at all instants of a file, a block after the other.
-pub(crate) fn read<const D: usize, const N: usize, T: Send + 'static>(
+pub(crate) fn read<T: Send + 'static>(
     py: Python<'_>,
-    run: &Arc<Run<D, N>>,
-    field: fn(&HistoryFile<D, N>, Range<usize>) -> Result<Vec<T>, FileError>,
+    run: &Arc<Run>,
+    field: fn(&HistoryFile, Range<usize>) -> Result<Vec<T>, FileError>,
 ) -> PyResult<Arc<Vec<T>>> {
     let run = run.clone();
     let work = move |watch: Watch| {

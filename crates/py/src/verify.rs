@@ -4,7 +4,6 @@ use crate::options::{Stated, options};
 use crate::problem::ProblemData;
 use crate::simulate::Times;
 use crate::{bridge, errors, time};
-use percute_core::each_dimension;
 use percute_estimator::Options;
 use percute_workflow::Failure;
 use percute_workflow::effort::Long;
@@ -22,7 +21,7 @@ const PROBE: &str = "`probe`";
 /// Refuses probes that do not fit the body of a problem.
 #[pyfunction]
 pub(crate) fn check_probes(py: Python<'_>, problem: &ProblemData, probes: Vec<String>) -> PyResult<()> {
-    let checked = each_dimension!(&problem.problem, problem => parsed(&probes, problem.mesh(), PROBE).map(drop));
+    let checked = parsed(&probes, problem.problem.mesh(), PROBE).map(drop);
     checked.map_err(|error| errors::run(py, &error))
 }
 
@@ -47,7 +46,8 @@ pub(crate) fn verification(
     let (reconstruction, acceleration, every) = stated;
     let options = Options { threads, ..options(py, &reconstruction, acceleration.as_deref(), &every)? };
     let so_far: Arc<Mutex<Option<Verification>>> = Arc::default();
-    let verified = each_dimension!(&problem.problem, problem => {
+    let verified = {
+        let problem = &problem.problem;
         let probes = parsed(&probes, problem.mesh(), PROBE).map_err(|error| errors::run(py, &error))?;
         let (problem, long) = (problem.clone(), Long::asked(long, "`long=True`"));
         let prepared = bridge::blocking(py, None, move |_| prepare(&problem, &times, &options, (levels, long)))?;
@@ -64,7 +64,7 @@ pub(crate) fn verification(
         };
         let done = bridge::blocking(py, progress, work);
         done.and_then(|done| done.map_err(|error: Failure| errors::run(py, &error)))
-    });
+    };
     match verified {
         Ok(verification) => told(py, &verification),
         Err(error) => {

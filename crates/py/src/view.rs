@@ -73,20 +73,3 @@ pub(crate) fn numbers(nodes: &[NodeId]) -> &[u32] {
     // SAFETY: `NodeId` is a transparent `u32`: same size, same alignment, every bit pattern is one.
     unsafe { std::slice::from_raw_parts(nodes.as_ptr().cast::<u32>(), nodes.len()) }
 }
-
-/// Shows a field of vectors: `shape` is that of the rows.
-///
-/// # Errors
-/// As [`view`].
-pub(crate) fn field<'py, const D: usize, O, S>(
-    py: Python<'py>,
-    owner: &Arc<O>,
-    rows: S,
-    shape: &[usize],
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>>
-where
-    O: Any + Send + Sync,
-    S: for<'a> FnOnce(&'a O) -> &'a [[f64; D]],
-{
-    view(py, owner, |o| rows(o).as_flattened(), &[shape, &[D]].concat())
-}

@@ -3,7 +3,6 @@
 use crate::key::replace;
 use crate::name::names;
 use crate::values::Values;
-use percute_core::each_dimension;
 use percute_io::is_named_pipe;
 use percute_workflow::Failure;
 use percute_workflow::case::{Source, parse};
@@ -127,9 +126,7 @@ impl Plan {
 
 /// Finds mistakes before any case is run.
 fn check(name: &str, text: &str, folder: &Path, long: Long) -> Result<(), Failure> {
-    let case = parse(Source::new(name, text).in_folder(folder))?;
-    each_dimension!(&case, case => case.check_run(true, long))?;
-    Ok(())
+    Ok(parse(Source::new(name, text).in_folder(folder))?.check_run(true, long)?)
 }
 
 /// Refuses a pipe, which would wait for its writer.

@@ -102,7 +102,7 @@ impl Roof {
         Ok(TriangleProblem::builder(self.mesh(&mesh)?)
             .material(aluminium()?)
             .initial_velocity(velocity)
-            .interface(Interface::sliding::<2>("roof.bottom", "plate.top", FRICTION)?))
+            .interface(Interface::sliding(2, "roof.bottom", "plate.top", FRICTION)?))
     }
 
     fn mesh(&self, mesh: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
@@ -115,9 +115,9 @@ impl Roof {
     }
 
     /// The support of a group on the line of symmetry.
-    fn held(&self, group: &str) -> Support<2> {
+    fn held(&self, group: &str) -> Support {
         let along = self.quarters.is_multiple_of(2);
-        Support { group: group.to_string(), components: [along, !along], velocity: None }
+        Support { group: group.to_string(), components: [along, !along, false], velocity: None }
     }
 }
 

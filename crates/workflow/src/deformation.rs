@@ -6,8 +6,8 @@ use percute_core::element_state::ElementState;
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::ids::ElementId;
 use percute_core::material::Elastic;
-use percute_core::mesh::Mesh;
-use percute_core::problem::{Problem, RigidMotion};
+use percute_core::mesh::AnyMesh;
+use percute_core::problem::{AnyProblem, RigidMotion};
 use serde::Serialize;
 
 /// Instants from one that is looked at to the next one. Stress behind a front stays for longer, and the work is a few
@@ -99,19 +99,19 @@ impl Deformation {
 
 /// Follows the deformation in the steps that it takes.
 #[derive(Clone, Debug)]
-pub(crate) struct DeformationRecorder<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+pub(crate) struct DeformationRecorder<'p> {
+    problem: &'p AnyProblem,
     last: usize,
-    rigid: RigidMotion<D>,
+    rigid: RigidMotion,
     body_of_element: Vec<usize>,
     /// Whether the stress in an element was above its yield stress.
     yielded: Vec<bool>,
     found: Deformation,
 }
 
-impl<'p, const D: usize, const N: usize> DeformationRecorder<'p, D, N> {
+impl<'p> DeformationRecorder<'p> {
     /// That of a run of so many steps.
-    pub(crate) fn new(problem: &'p Problem<D, N>, steps: usize) -> Self {
+    pub(crate) fn new(problem: &'p AnyProblem, steps: usize) -> Self {
         let mesh = problem.mesh();
         let of_node = mesh.part_numbers();
         let body = |name| BodyDeformation {
@@ -121,7 +121,7 @@ impl<'p, const D: usize, const N: usize> DeformationRecorder<'p, D, N> {
             angular_velocity: 0.0,
             strain: Extreme::default(),
         };
-        let stated = &problem.statement().materials;
+        let stated = &problem.conditions().materials;
         let material = |(at, law): (usize, &Elastic)| MaterialStress {
             group: stated.get(at).and_then(|(group, _)| group.clone()),
             young: law.young(),
@@ -138,14 +138,14 @@ impl<'p, const D: usize, const N: usize> DeformationRecorder<'p, D, N> {
             problem,
             last: steps,
             rigid: RigidMotion::new(problem),
-            body_of_element: mesh.cells().iter().map(|nodes| of_node[nodes[0].index()]).collect(),
+            body_of_element: mesh.cells().map(|nodes| of_node[nodes[0].index()]).collect(),
             yielded: vec![false; if yields { mesh.element_count() } else { 0 }],
             found,
         }
     }
 
     /// What was found, with elements as `number` calls them, those of `mesh`.
-    pub(crate) fn finish(mut self, mesh: &Mesh<D, N>, number: impl Fn(usize) -> usize) -> Deformation {
+    pub(crate) fn finish(mut self, mesh: &AnyMesh, number: impl Fn(usize) -> usize) -> Deformation {
         let materials = self.problem.element_material();
         let mut volumes = vec![[0.0; 2]; self.found.materials.len()];
         for (element, yielded) in self.yielded.iter().enumerate() {
@@ -165,19 +165,19 @@ impl<'p, const D: usize, const N: usize> DeformationRecorder<'p, D, N> {
     }
 
     /// The bodies in the order of a mesh, with its names.
-    fn bodies_of(&self, mesh: &Mesh<D, N>, number: impl Fn(usize) -> usize) -> Vec<BodyDeformation> {
+    fn bodies_of(&self, mesh: &AnyMesh, number: impl Fn(usize) -> usize) -> Vec<BodyDeformation> {
         let (of_node, mut bodies) = (mesh.part_numbers(), self.found.bodies.clone());
         for (own, found) in self.found.bodies.iter().enumerate() {
             // Each body has an element: nodes without one are refused.
             if let Some(element) = self.body_of_element.iter().position(|&body| body == own) {
-                bodies[of_node[mesh.cells()[number(element)][0].index()]].clone_from(found);
+                bodies[of_node[mesh.cell(ElementId::new(number(element)))[0].index()]].clone_from(found);
             }
         }
         bodies.iter_mut().zip(mesh.part_names()).for_each(|(body, name)| body.name = name);
         bodies
     }
 
-    fn rotations(&mut self, displacement: &[[f64; D]], time: f64) {
+    fn rotations(&mut self, displacement: &[f64], time: f64) {
         for (body, rotation) in self.found.bodies.iter_mut().zip(self.rigid.rotations(displacement)) {
             if rotation.abs() > body.rotation.abs() {
                 (body.rotation, body.time_of_rotation) = (rotation, time);
@@ -186,7 +186,7 @@ impl<'p, const D: usize, const N: usize> DeformationRecorder<'p, D, N> {
     }
 
     /// The angular velocity of each body and, at the last instant, what would follow.
-    fn turning(&mut self, state: &State<'_, D>) {
+    fn turning(&mut self, state: &State<'_>) {
         let (step, velocity) = (state.step(), state.velocity());
         for (body, spin) in self.found.bodies.iter_mut().zip(self.rigid.rotations(&velocity)) {
             body.angular_velocity = spin;
@@ -196,7 +196,7 @@ impl<'p, const D: usize, const N: usize> DeformationRecorder<'p, D, N> {
         }
     }
 
-    fn elements(&mut self, displacement: &[[f64; D]], time: f64) {
+    fn elements(&mut self, displacement: &[f64], time: f64) {
         let materials = self.problem.element_material();
         for element in 0..self.body_of_element.len() {
             let state = ElementState::new(self.problem, ElementId::new(element), displacement);
@@ -213,8 +213,8 @@ impl<'p, const D: usize, const N: usize> DeformationRecorder<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> StateSink<D> for DeformationRecorder<'_, D, N> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl StateSink for DeformationRecorder<'_> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         let step = state.step();
         if step.index.is_multiple_of(EVERY) || step.index == self.last {
             self.rotations(step.displacement, step.time);

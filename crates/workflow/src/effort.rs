@@ -1,7 +1,7 @@
 //! The work of a run and its probable duration, before it begins.
 
 use crate::message::{counted, short, trimmed};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Sampling;
 
@@ -58,7 +58,7 @@ pub struct Effort {
 impl Effort {
     /// That of a problem over these steps, with its error sampled so.
     #[must_use]
-    pub fn of<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, every: Sampling) -> Self {
+    pub fn of(problem: &AnyProblem, times: &TimeGrid, every: Sampling) -> Self {
         let (elements, steps) = (problem.mesh().element_count(), times.step_count());
         let element_steps = (elements as u64).saturating_mul(steps as u64);
         let run = BETWEEN + SAMPLE / every.spacing(elements, steps) as f64;

@@ -1,6 +1,8 @@
 //! The flight of a body after its last contact: whether its turning brings a point to a plane again.
 
-use percute_core::problem::{Problem, RigidMotion};
+use percute_core::border::{Vector, row};
+use percute_core::contact::AnyObstacle;
+use percute_core::problem::{AnyProblem, RigidMotion};
 use serde::Serialize;
 use std::array::from_fn;
 use std::f64::consts::TAU;
@@ -25,28 +27,30 @@ pub struct NextTouch {
 
 /// The first node of a plane body in free flight that reaches a plane within one turn, without loads: the motion is
 /// that of the rigid body which fits displacements and velocities at an instant. None of several bodies.
-pub(crate) fn next_touch<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    rigid: &RigidMotion<D>,
+pub(crate) fn next_touch(
+    problem: &AnyProblem,
+    rigid: &RigidMotion,
     now: f64,
-    [displacement, velocity]: [&[[f64; D]]; 2],
+    [displacement, velocity]: [&[f64]; 2],
 ) -> Option<NextTouch> {
     let (speeds, spins) = (rigid.means(velocity), rigid.rotations(velocity));
     let ([speed], [spin]) = (&speeds[..], &spins[..]) else { return None };
     let size = problem.mesh().size();
-    if D != 2 || spin.abs() * size <= STILL * speed.iter().fold(0.0_f64, |most, v| most.max(v.abs())) {
+    if problem.dimension() != 2 || spin.abs() * size <= STILL * speed.iter().fold(0.0_f64, |most, v| most.max(v.abs()))
+    {
         return None;
     }
-    let places: Vec<[f64; D]> =
-        (problem.mesh().points().iter().zip(displacement)).map(|(point, by)| from_fn(|c| point[c] + by[c])).collect();
+    let places: Vec<f64> = problem.mesh().points().iter().zip(displacement).map(|(x, u)| x + u).collect();
     let centre = *rigid.means(&places).first()?;
-    let nodes = problem.surface().nodes();
+    let nodes = problem.contact_nodes();
+    let planes: Vec<AnyObstacle> = problem.obstacles().collect();
     let gap = |at: usize, time: f64| {
-        let arm: [f64; D] = from_fn(|c| places[nodes[at].node.index()][c] - centre[c]);
+        let place = row(&places, nodes[at].node.index(), 2);
+        let arm: Vector = from_fn(|c| place[c] - centre[c]);
         let (sine, cosine) = (spin * time).sin_cos();
-        let across = [-arm[D - 1], arm[0]];
+        let across = [-arm[1], arm[0], 0.0];
         let place = from_fn(|c| centre[c] + speed[c] * time + cosine * arm[c] + sine * across[c]);
-        problem.obstacles()[nodes[at].obstacle].as_plane().map_or(f64::INFINITY, |plane| plane.gap(&place))
+        planes[nodes[at].obstacle].gap(&place).unwrap_or(f64::INFINITY)
     };
     let look = |k: u32| TAU / spin.abs() * f64::from(k) / f64::from(LOOKS);
     // Nodes that are at the plane now leave it first.
@@ -81,7 +85,7 @@ mod tests {
     use percute_core::contact::Obstacle;
     use percute_core::material::Elastic;
     use percute_core::mesh::TriangleMesh;
-    use percute_core::problem::TriangleProblem;
+    use percute_core::problem::{AnyProblem, TriangleProblem};
 
     /// A square of 1 m, 0.3 m above a plane, turns about its middle: its corner is at ½ − √½·sin(π/4 + ωt).
     #[test]
@@ -91,15 +95,16 @@ mod tests {
                 .material(Elastic::plane_strain(1.0, 0.2, 2.0, 1.0).unwrap())
                 .obstacle(Obstacle::plane([0.0, -gap], [0.0, 1.0], 0.0, None).unwrap())
                 .build()
+                .map(AnyProblem::from)
                 .unwrap()
         };
         let at = |gap: f64, rise: f64, spin: f64| {
             let problem = build(gap);
             let rigid = RigidMotion::new(&problem);
             let means = rigid.means(problem.mesh().points());
-            let turning = |p: &[f64; 2]| [-spin * (p[1] - means[0][1]), rise + spin * (p[0] - means[0][0])];
-            let velocity: Vec<_> = problem.mesh().points().iter().map(turning).collect();
-            let still = vec![[0.0; 2]; velocity.len()];
+            let turning = |p: Vector| [-spin * (p[1] - means[0][1]), rise + spin * (p[0] - means[0][0])];
+            let velocity: Vec<_> = problem.mesh().places().flat_map(turning).collect();
+            let still = vec![0.0; velocity.len()];
             next_touch(&problem, &rigid, 5.0, [&still, &velocity])
         };
         // The mean of the nodal masses is not the middle: by symmetry of the diagonals it is on the diagonal, at ½.

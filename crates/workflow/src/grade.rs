@@ -7,15 +7,15 @@ use crate::run::{self, Analysis, Results};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, StepSource};
 use percute_core::observer::Observer;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{Request, RunError};
 
 /// The results for a history.
 #[derive(Clone, Debug)]
-pub struct Graded<const D: usize> {
+pub struct Graded {
     /// Those of the estimate.
-    pub results: Results<D>,
+    pub results: Results,
     /// The instants that were estimated.
     pub times: TimeGrid,
     /// What was found before; none for a history of percute.
@@ -27,13 +27,13 @@ pub struct Graded<const D: usize> {
 ///
 /// # Errors
 /// An inconsistent history; as [`run::estimate`].
-pub fn estimate<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    source: &dyn StepSource<D>,
+pub fn estimate(
+    problem: &AnyProblem,
+    source: &dyn StepSource,
     origin: &Origin,
     analysis: &Analysis,
     observer: &mut dyn Observer,
-) -> Result<Graded<D>, Failure> {
+) -> Result<Graded, Failure> {
     let critical = critical_time_step(problem);
     let refuse = |refusal| refused(refusal, origin);
     let unfit = first_look(problem, source, critical, origin).map_err(refuse)?;
@@ -46,7 +46,7 @@ pub fn estimate<const D: usize, const N: usize>(
     let mut checked =
         Checked { program, derived, left_out: complete.left_out(), consistency, samples, shifted, contradiction };
     let last = complete.times().step_count();
-    let between = samples.map(|_| Between::new(&complete, critical)).transpose();
+    let between = samples.map(|_| Between::new(&complete, problem.dimension(), critical)).transpose();
     let between = between.map_err(|error| unread(error.into()))?.filter(|all| all.times().step_count() > last);
     let Some(between) = between else {
         let analysis = &requested(analysis, |step| step.min(last));

@@ -8,10 +8,8 @@ use crate::report::Subject;
 use crate::run::{self, Analysis};
 use percute_core::contact::{ContactRecorder, ContactResults};
 use percute_core::dynamics::{Balance, critical_time_step};
-use percute_core::map_dimension;
 use percute_core::observer::Observer;
-use percute_core::problem::Problem;
-use percute_core::simplex::ByDimension;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{EstimateError, Options, RunError};
 use percute_io::Case;
@@ -23,13 +21,13 @@ use std::path::Path;
 ///
 /// # Errors
 /// A problem that the language of the case files cannot say.
-pub fn plan<'p, const D: usize, const N: usize>(
-    problem: &'p Problem<D, N>,
+pub fn plan<'p>(
+    problem: &'p AnyProblem,
     times: &'p TimeGrid,
     options: &Options,
     case: Option<&Source>,
     keep: &Keep,
-) -> Result<Plan<'p, D, N>, NotRepresentable> {
+) -> Result<Plan<'p>, NotRepresentable> {
     let case = case.map(stored_case);
     Ok(Plan::new(problem, times, &statement(problem, Some(options))?, case.as_ref()).keeping(keep.of(times)))
 }
@@ -42,31 +40,28 @@ pub fn stored_case(source: &Source) -> Case {
 
 /// A history in a file, with its problem.
 #[derive(Clone, Debug)]
-pub struct Stored<const D: usize, const N: usize> {
+pub struct Stored {
     /// The file.
-    pub file: HistoryFile<D, N>,
+    pub file: HistoryFile,
     /// The problem that was simulated.
-    pub problem: Problem<D, N>,
+    pub problem: AnyProblem,
     /// Options of the estimate, from the same statement.
     pub options: Options,
     /// The name of the file, as it was given.
     pub name: String,
 }
 
-/// A history of either dimension.
-pub type AnyStored = ByDimension<Box<Stored<1, 2>>, Box<Stored<2, 3>>>;
-
 /// Opens a history and reads the statement of its problem. Its steps stay in the file.
 ///
 /// # Errors
 /// A file that is no history or is damaged; a statement with a mistake, with its line.
-pub fn open(path: &Path) -> Result<AnyStored, Failure> {
-    Ok(map_dimension!(percute_io::history::open(path)?, file => Box::new(Stored::new(file, path)?)))
+pub fn open(path: &Path) -> Result<Stored, Failure> {
+    Stored::new(percute_io::history::open(path)?, path)
 }
 
 /// The fields that a thinned history lacks; none for one with all steps, from which all fields follow.
 #[must_use]
-pub fn lacks<const D: usize, const N: usize>(file: &HistoryFile<D, N>) -> Option<Vec<&'static str>> {
+pub fn lacks(file: &HistoryFile) -> Option<Vec<&'static str>> {
     file.kept()?;
     let [velocity, acceleration] = file.stored();
     let there = [("velocity", velocity), ("acceleration", acceleration), ("reaction", !file.lacks_reactions())];
@@ -74,26 +69,26 @@ pub fn lacks<const D: usize, const N: usize>(file: &HistoryFile<D, N>) -> Option
 }
 
 /// Whether the end of a history of another program fits its initial velocity, backwards.
-fn backwards<const D: usize, const N: usize>(file: &HistoryFile<D, N>) -> bool {
-    let (count, nodes) = (file.count(), file.mesh().node_count());
+fn backwards(file: &HistoryFile) -> bool {
+    let (count, nodal) = (file.count(), file.dimension() * file.mesh().node_count());
     if !file.is_foreign() || count < 2 {
         return false;
     }
     let dt = file.times().step(count - 2);
     let last = file.displacement(count - 2..count);
-    last.is_ok_and(|last| runs_backwards([&last[..nodes], &last[nodes..]], dt, file.initial_velocity()))
+    last.is_ok_and(|last| runs_backwards([&last[..nodal], &last[nodal..]], dt, file.initial_velocity()))
 }
 
 fn reversed(error: CaseError) -> CaseError {
     CaseError { message: format!("{}. Likely cause: {REVERSED}", error.message), ..error }
 }
 
-impl<const D: usize, const N: usize> Stored<D, N> {
-    pub(crate) fn new(file: HistoryFile<D, N>, path: &Path) -> Result<Self, Failure> {
+impl Stored {
+    pub(crate) fn new(file: HistoryFile, path: &Path) -> Result<Self, Failure> {
         let name = path.display().to_string();
         let source = Source::new(format!("{name}, statement of the problem"), file.statement());
         let (u, v) = (file.initial_displacement().to_vec(), file.initial_velocity().to_vec());
-        let read = problem_from(&source, file.mesh().clone(), u, v);
+        let read = problem_from(&source, file.mesh(), u, v);
         let (problem, options) = read.map_err(|error| if backwards(&file) { reversed(error) } else { error })?;
         Ok(Self { file, problem, options, name })
     }
@@ -114,7 +109,7 @@ impl<const D: usize, const N: usize> Stored<D, N> {
     /// What a report on it is about: computes the critical step, which takes a while on a large mesh and
     /// which only reports need.
     #[must_use]
-    pub fn subject(&self) -> Subject<'_, D, N> {
+    pub fn subject(&self) -> Subject<'_> {
         let Self { file, problem, name, .. } = self;
         let critical_step = critical_time_step(problem);
         let (times, held) = (file.times(), Some(file.count()));
@@ -125,7 +120,7 @@ impl<const D: usize, const N: usize> Stored<D, N> {
     ///
     /// # Errors
     /// A step that cannot be read or does not fit.
-    pub fn results(&self) -> Result<(ContactResults<D>, Vec<Balance>), Failure> {
+    pub fn results(&self) -> Result<(ContactResults, Vec<Balance>), Failure> {
         let source = self.file.source(&self.problem)?;
         let unread = |cause| Failure::from_sink(cause, RunError::Source);
         let contact = ContactRecorder::new(&self.problem, self.file.times()).replay(&source).map_err(unread)?;
@@ -137,12 +132,7 @@ impl<const D: usize, const N: usize> Stored<D, N> {
     ///
     /// # Errors
     /// As [`grade::estimate`].
-    pub fn estimate(
-        &self,
-        analysis: &Analysis,
-        accept: bool,
-        observer: &mut dyn Observer,
-    ) -> Result<Graded<D>, Failure> {
+    pub fn estimate(&self, analysis: &Analysis, accept: bool, observer: &mut dyn Observer) -> Result<Graded, Failure> {
         self.file.expect_all()?;
         let source = self.file.source(&self.problem)?;
         let origin = self.origin().map(|origin| Origin { accept, ..origin });

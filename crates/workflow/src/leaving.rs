@@ -1,8 +1,9 @@
 //! When all contact has ended: bodies have left their planes and each other.
 
+use percute_core::border::row;
 use percute_core::contact::Frame;
 use percute_core::history::{SinkError, State, StateSink};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Bodies that stay at rest to each other after an impact, as the first ones of a cradle, still approach each other by
@@ -10,8 +11,8 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 const SLOW: f64 = 1e-2;
 
 /// Two bodies, or a body and a plane, that may touch: the normal points to the first body.
-struct Meeting<const D: usize> {
-    frame: Frame<D>,
+struct Meeting {
+    frame: Frame<3>,
     body: usize,
     other: Option<usize>,
 }
@@ -29,11 +30,11 @@ pub(crate) enum GoingOn {
 }
 
 /// Sees when all contact has ended.
-pub(crate) struct Leaving<'a, const D: usize, const N: usize> {
-    problem: &'a Problem<D, N>,
+pub(crate) struct Leaving<'a> {
+    problem: &'a AnyProblem,
     after: f64,
     body_of_node: Vec<usize>,
-    meetings: Vec<Meeting<D>>,
+    meetings: Vec<Meeting>,
     /// The largest speed at which bodies met (m/s).
     fastest: f64,
     /// Last instant with a contact force (s).
@@ -47,8 +48,8 @@ pub(crate) struct Leaving<'a, const D: usize, const N: usize> {
     seen: &'a AtomicBool,
 }
 
-impl<'a, const D: usize, const N: usize> Leaving<'a, D, N> {
-    pub(crate) fn new(problem: &'a Problem<D, N>, after: f64, seen: &'a AtomicBool) -> Self {
+impl<'a> Leaving<'a> {
+    pub(crate) fn new(problem: &'a AnyProblem, after: f64, seen: &'a AtomicBool) -> Self {
         let body_of_node = problem.mesh().part_numbers();
         let meetings = meetings(problem, &body_of_node);
         Self {
@@ -80,17 +81,18 @@ impl<'a, const D: usize, const N: usize> Leaving<'a, D, N> {
     }
 
     /// How fast the centres of mass of each two that may touch move away from each other (m/s).
-    fn away(&self, state: &State<'_, D>) -> Vec<f64> {
+    fn away(&self, state: &State<'_>) -> Vec<f64> {
         let bodies = self.body_of_node.iter().max().map_or(0, |last| last + 1);
-        let (mut mass, mut momentum) = (vec![0.0; bodies], vec![[0.0; D]; bodies]);
+        let (mut mass, mut momentum) = (vec![0.0; bodies], vec![[0.0; 3]; bodies]);
+        let (velocities, d) = (state.velocity(), self.problem.dimension());
         for (node, (&body, m)) in self.body_of_node.iter().zip(self.problem.mass()).enumerate() {
-            let velocity = state.velocity_of(node);
+            let velocity = row(&velocities, node, d);
             mass[body] += m;
-            (0..D).for_each(|c| momentum[body][c] += m * velocity[c]);
+            (0..3).for_each(|c| momentum[body][c] += m * velocity[c]);
         }
         let velocity = |body: usize| momentum[body].map(|p| p / mass[body]);
-        let away = |Meeting { frame, body, other }: &Meeting<D>| {
-            let (own, other) = (velocity(*body), other.map_or([0.0; D], velocity));
+        let away = |Meeting { frame, body, other }: &Meeting| {
+            let (own, other) = (velocity(*body), other.map_or([0.0; 3], velocity));
             frame.split(&std::array::from_fn(|c| own[c] - other[c])).0
         };
         self.meetings.iter().map(away).collect()
@@ -98,16 +100,16 @@ impl<'a, const D: usize, const N: usize> Leaving<'a, D, N> {
 }
 
 /// The bodies of each obstacle, each with the body whose surface it is.
-fn meetings<const D: usize, const N: usize>(problem: &Problem<D, N>, body_of_node: &[usize]) -> Vec<Meeting<D>> {
-    let mut bodies = vec![Vec::new(); problem.obstacles().len()];
-    for contact in problem.surface().nodes() {
+fn meetings(problem: &AnyProblem, body_of_node: &[usize]) -> Vec<Meeting> {
+    let mut bodies = vec![Vec::new(); problem.obstacle_count()];
+    for contact in problem.contact_nodes() {
         let body = body_of_node[contact.node.index()];
         if !bodies[contact.obstacle].contains(&body) {
             bodies[contact.obstacle].push(body);
         }
     }
     let of_obstacle = |(at, of): (usize, &Vec<usize>)| {
-        let (opposite, frame) = (problem.opposite_obstacle(at), problem.obstacles()[at].flat_frame());
+        let (opposite, frame) = (problem.opposite_obstacle(at), problem.obstacle(at).frame());
         let others: Vec<Option<usize>> =
             opposite.map_or(vec![None], |opposite| bodies[opposite].iter().copied().map(Some).collect());
         let first = opposite.is_none_or(|opposite| at < opposite);
@@ -117,11 +119,11 @@ fn meetings<const D: usize, const N: usize>(problem: &Problem<D, N>, body_of_nod
     bodies.iter().enumerate().flat_map(of_obstacle).collect()
 }
 
-impl<const D: usize, const N: usize> StateSink<D> for Leaving<'_, D, N> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl StateSink for Leaving<'_> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         let step = state.step();
         self.now = step.time;
-        let touches = step.reaction.iter().any(|force| *force != [0.0; D]);
+        let touches = step.reaction.iter().any(|force| *force != 0.0);
         if step.index == 0 || (touches && self.last.is_none()) {
             self.fastest = self.away(state).into_iter().fold(self.fastest, |most, away| most.max(away.abs()));
         }

@@ -10,34 +10,34 @@ use percute_core::dynamics::SimulationError;
 use percute_core::history::{Checkpoint, SinkError, Step, StepError, StepSource};
 use percute_core::ids::NodeId;
 use percute_core::mesh::Numbering;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::ReferenceError;
 use percute_estimator::{Estimate, EstimateError, RunError};
 
 /// Takes steps in the numbers of the problem that was stated.
-pub type TakeStep<'s, const D: usize> = dyn FnMut(&Step<'_, D>) -> Result<(), SinkError> + Send + 's;
+pub type TakeStep<'s> = dyn FnMut(&Step<'_>) -> Result<(), SinkError> + Send + 's;
 
 /// A problem in the order in which it is solved.
-pub(crate) struct Ordered<'p, const D: usize, const N: usize> {
-    stated: &'p Problem<D, N>,
-    local: Option<(Problem<D, N>, Numbering)>,
+pub(crate) struct Ordered<'p> {
+    stated: &'p AnyProblem,
+    local: Option<(AnyProblem, Numbering)>,
 }
 
-impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
+impl<'p> Ordered<'p> {
     /// Orders a problem, unless its order is local.
-    pub(crate) fn new(stated: &'p Problem<D, N>) -> Self {
+    pub(crate) fn new(stated: &'p AnyProblem) -> Self {
         let local = stated.mesh().local_numbering().map(|numbering| (stated.renumbered(&numbering), numbering));
         Self { stated, local }
     }
 
     /// The problem to be solved.
-    pub(crate) fn problem(&self) -> &Problem<D, N> {
+    pub(crate) fn problem(&self) -> &AnyProblem {
         self.local.as_ref().map_or(self.stated, |(problem, _)| problem)
     }
 
     /// The problem that was stated.
-    pub(crate) fn stated_problem(&self) -> &'p Problem<D, N> {
+    pub(crate) fn stated_problem(&self) -> &'p AnyProblem {
         self.stated
     }
 
@@ -46,24 +46,24 @@ impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
     }
 
     /// The steps of a history in the order of the problem to be solved.
-    pub(crate) fn source<'s>(&'s self, source: &'s dyn StepSource<D>) -> OrderedSource<'s, D> {
-        OrderedSource { source, numbering: self.numbering() }
+    pub(crate) fn source<'s>(&'s self, source: &'s dyn StepSource) -> OrderedSource<'s> {
+        OrderedSource { source, numbering: self.numbering(), dimension: self.stated.dimension() }
     }
 
     /// A step in the numbers of the user.
-    pub(crate) fn stated_step<'s>(&self, step: &Step<'s, D>, fields: &'s mut Fields<D>) -> Step<'s, D> {
+    pub(crate) fn stated_step<'s>(&self, step: &Step<'s>, fields: &'s mut Fields) -> Step<'s> {
         let Some(numbering) = self.numbering() else { return *step };
         fields.reordered(step, |new, old| numbering.restore_nodal(new, old))
     }
 
     /// A checkpoint in the numbers of the user.
-    pub(crate) fn stated(&self, checkpoint: Checkpoint<D>) -> Checkpoint<D> {
+    pub(crate) fn stated(&self, checkpoint: Checkpoint) -> Checkpoint {
         let Checkpoint { displacement, half_step, .. } = checkpoint;
         Checkpoint { displacement: self.nodal(displacement), half_step: self.nodal(half_step), ..checkpoint }
     }
 
     /// A checkpoint in the numbers of the problem to be solved.
-    pub(crate) fn local(&self, mut checkpoint: Checkpoint<D>) -> Checkpoint<D> {
+    pub(crate) fn local(&self, mut checkpoint: Checkpoint) -> Checkpoint {
         let Some(numbering) = self.numbering() else { return checkpoint };
         for field in [&mut checkpoint.displacement, &mut checkpoint.half_step] {
             let mut local = Vec::new();
@@ -74,7 +74,7 @@ impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
     }
 
     /// A nodal field in the numbers of the user.
-    pub(crate) fn nodal<T: Copy>(&self, field: Vec<T>) -> Vec<T> {
+    pub(crate) fn nodal(&self, field: Vec<f64>) -> Vec<f64> {
         let Some(numbering) = self.numbering() else { return field };
         let mut restored = Vec::new();
         numbering.restore_nodal(&field, &mut restored);
@@ -82,7 +82,7 @@ impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
     }
 
     /// An estimate in the numbers of the user.
-    pub(crate) fn estimate(&self, mut estimate: Estimate<D>) -> Estimate<D> {
+    pub(crate) fn estimate(&self, mut estimate: Estimate) -> Estimate {
         let Some(numbering) = self.numbering() else { return estimate };
         estimate.by_element = numbering.restore_elemental(&estimate.by_element);
         for map in &mut estimate.maps {
@@ -104,7 +104,7 @@ impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
     }
 
     /// Contact results with the numbers of the user; their order is that of the contact surface, the same for both.
-    pub(crate) fn contact(&self, mut results: ContactResults<D>) -> ContactResults<D> {
+    pub(crate) fn contact(&self, mut results: ContactResults) -> ContactResults {
         results.nodes.iter_mut().for_each(|point| point.node = NodeId::new(self.node(point.node.index())));
         results
     }
@@ -178,18 +178,18 @@ impl<'p, const D: usize, const N: usize> Ordered<'p, D, N> {
 
 /// The nodal fields of a step in another order; their memory is used again.
 #[derive(Debug, Default)]
-pub(crate) struct Fields<const D: usize> {
-    displacement: Vec<[f64; D]>,
-    velocity: Vec<[f64; D]>,
-    acceleration: Vec<[f64; D]>,
+pub(crate) struct Fields {
+    displacement: Vec<f64>,
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
 }
 
-impl<const D: usize> Fields<D> {
+impl Fields {
     /// A step whose fields `order` has reordered.
-    fn reordered<'s>(&'s mut self, step: &Step<'s, D>, order: impl Fn(&[[f64; D]], &mut Vec<[f64; D]>)) -> Step<'s, D> {
+    fn reordered<'s>(&'s mut self, step: &Step<'s>, order: impl Fn(&[f64], &mut Vec<f64>)) -> Step<'s> {
         let Self { displacement, velocity, acceleration } = self;
         order(step.displacement, displacement);
-        let given = |field: Option<&[[f64; D]]>, to: &'s mut Vec<[f64; D]>| {
+        let given = |field: Option<&[f64]>, to: &'s mut Vec<f64>| {
             field.map(|field| {
                 order(field, to);
                 &to[..]
@@ -205,12 +205,13 @@ impl<const D: usize> Fields<D> {
 }
 
 /// A history in the order of the problem that is solved.
-pub(crate) struct OrderedSource<'s, const D: usize> {
-    source: &'s dyn StepSource<D>,
+pub(crate) struct OrderedSource<'s> {
+    source: &'s dyn StepSource,
     numbering: Option<&'s Numbering>,
+    dimension: usize,
 }
 
-impl<const D: usize> StepSource<D> for OrderedSource<'_, D> {
+impl StepSource for OrderedSource<'_> {
     fn times(&self) -> &TimeGrid {
         self.source.times()
     }
@@ -219,10 +220,10 @@ impl<const D: usize> StepSource<D> for OrderedSource<'_, D> {
         self.source.count()
     }
 
-    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError> {
         let Some(numbering) = self.numbering else { return self.source.replay(take) };
         let mut fields = Fields::default();
-        let fits = |field: &[[f64; D]]| field.len() == numbering.nodes().len();
+        let fits = |field: &[f64]| field.len() == self.dimension * numbering.nodes().len();
         self.source.replay(&mut |step| {
             if fits(step.displacement) && step.velocity.is_none_or(fits) && step.acceleration.is_none_or(fits) {
                 take(&fields.reordered(step, |old, new| numbering.order_nodal(old, new)))

@@ -2,7 +2,9 @@
 
 use crate::case::{NotRepresentable, statement};
 use crate::difference::Sides;
-use percute_core::problem::Problem;
+use percute_core::border::Vector;
+use percute_core::ids::NodeId;
+use percute_core::problem::AnyProblem;
 use toml::{Table, Value};
 
 /// Both, and what rounding may do to numbers that were computed for each mesh anew.
@@ -17,10 +19,7 @@ const OF_THE_MESH: [&str; 2] = ["groups", "matching"];
 ///
 /// # Errors
 /// A problem that the language of the case files cannot say.
-pub(crate) fn difference<const D: usize, const N: usize>(
-    history: &Problem<D, N>,
-    reference: &Problem<D, N>,
-) -> Result<Option<String>, NotRepresentable> {
+pub(crate) fn difference(history: &AnyProblem, reference: &AnyProblem) -> Result<Option<String>, NotRepresentable> {
     let (one, other) = (stated(history)?, stated(reference)?);
     let fields = || {
         let displacement = [history.initial_displacement(), reference.initial_displacement()];
@@ -32,7 +31,7 @@ pub(crate) fn difference<const D: usize, const N: usize>(
 }
 
 /// The statement of a problem without what its mesh determines.
-fn stated<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<Table, NotRepresentable> {
+fn stated(problem: &AnyProblem) -> Result<Table, NotRepresentable> {
     let mut stated = statement(problem, None)?.parse::<Table>().unwrap_or_default();
     if let Some(Value::Array(contacts)) = stated.get_mut("contact") {
         for contact in contacts.iter_mut().filter_map(Value::as_table_mut) {
@@ -45,32 +44,33 @@ fn stated<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<Tab
 }
 
 /// The first body in which two uniform fields differ.
-fn of_field<const D: usize, const N: usize>(
-    [one, other]: [&Problem<D, N>; 2],
-    name: &str,
-    unit: &str,
-    [field, fine]: [&[[f64; D]]; 2],
-) -> Option<String> {
-    let largest = field.iter().chain(fine).flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
-    let same = |a: &[f64; D], b: &[f64; D]| a.iter().zip(b).all(|(a, b)| SIDES.same(*a, *b, largest));
-    let uniform = |problem: &Problem<D, N>, field: &[[f64; D]]| {
+fn of_field([one, other]: [&AnyProblem; 2], name: &str, unit: &str, [field, fine]: [&[f64]; 2]) -> Option<String> {
+    let largest = field.iter().chain(fine).fold(0.0_f64, |most, x| most.max(x.abs()));
+    let (d, of_other) = (one.dimension(), other.dimension());
+    if d != of_other {
+        return None;
+    }
+    let same = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| SIDES.same(*a, *b, largest));
+    let row = |field: &[f64], node: usize| field[d * node..d * (node + 1)].to_vec();
+    let uniform = |problem: &AnyProblem, field: &[f64]| {
         let part = problem.mesh().part_of_nodes();
-        part.iter().zip(field).all(|(first, value)| same(value, &field[first.index()]))
+        part.iter().zip(field.chunks_exact(d)).all(|(first, value)| same(value, &row(field, first.index())))
     };
     if !uniform(one, field) || !uniform(other, fine) {
         return None;
     }
-    let (points, near) = (one.mesh().points(), ONE_POINT * one.mesh().size());
+    let near = ONE_POINT * one.mesh().size();
     let bodies = one.mesh().part_of_nodes().into_iter().enumerate().filter(|(node, first)| first.index() == *node);
     bodies.map(|(node, _)| node).find_map(|node| {
         // Nodes of two bodies may lie at one place.
-        let at = |point: &[f64; D]| point.iter().zip(&points[node]).all(|(a, b)| (a - b).abs() <= near);
-        let places = other.mesh().points().iter().zip(fine).filter(|(point, _)| at(point));
-        let values: Vec<&[f64; D]> = places.map(|(_, value)| value).collect();
-        let first = values.first().filter(|_| !values.iter().any(|value| same(value, &field[node])))?;
-        let shown = |value: &[f64; D]| format!("{value:?} {unit}");
+        let (place, own) = (one.mesh().point(NodeId::new(node)), row(field, node));
+        let at = |point: &Vector| point.iter().zip(&place).all(|(a, b)| (a - b).abs() <= near);
+        let places = other.mesh().places().zip(fine.chunks_exact(d)).filter(|(point, _)| at(point));
+        let values: Vec<&[f64]> = places.map(|(_, value)| value).collect();
+        let first = values.first().filter(|_| !values.iter().any(|value| same(value, &own)))?;
+        let shown = |value: &[f64]| format!("{value:?} {unit}");
         let what = format!("the initial `{name}` of node {node}");
-        Some(SIDES.differ(&what, &shown(&field[node]), &shown(first)))
+        Some(SIDES.differ(&what, &shown(&own), &shown(first)))
     })
 }
 
@@ -91,14 +91,14 @@ mod tests {
 
     const BLOCK: Block = Block { young: 70e9, velocity: [0.0, -10.0], gap: 1e-5, cells: 4 };
 
-    fn problem(block: &Block) -> TriangleProblem {
+    fn problem(block: &Block) -> AnyProblem {
         let mesh = TriangleMesh::rectangle(0.05, 0.04, block.cells, block.cells).unwrap();
-        Problem::builder(mesh)
+        let built = TriangleProblem::builder(mesh)
             .material(Elastic::plane_stress(block.young, 0.3, 2700.0, 1.0).unwrap())
             .initial_velocity(Initial::Uniform(block.velocity))
             .obstacle(Obstacle::plane([0.0, -block.gap], [0.0, 1.0], 0.2, None).unwrap())
-            .build()
-            .unwrap()
+            .build();
+        built.unwrap().into()
     }
 
     #[test]
@@ -132,7 +132,8 @@ mod tests {
             let mesh = TriangleMesh::rectangle(0.05, 0.04, cells, cells).unwrap();
             let velocity = mesh.points().iter().map(|point| [factor * point[0], -10.0]).collect();
             let law = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
-            Problem::builder(mesh).material(law).initial_velocity(Initial::Nodal(velocity)).build().unwrap()
+            let built = TriangleProblem::builder(mesh).material(law).initial_velocity(Initial::Nodal(velocity)).build();
+            AnyProblem::from(built.unwrap())
         };
         assert_eq!(difference(&varying(4, 1.0), &varying(8, 1.01)).unwrap(), None);
     }

@@ -2,22 +2,22 @@
 
 use crate::case::{Source, problem_from, statement};
 use crate::failure::Failure;
-use percute_core::mesh::{Locator, Mesh};
-use percute_core::problem::Problem;
+use percute_core::mesh::{AnyLocator, AnyMesh};
+use percute_core::problem::AnyProblem;
 
 /// A problem as a statement beside its mesh, to be read again on other meshes.
 #[derive(Clone, Debug)]
-pub struct Restated<const D: usize, const N: usize> {
-    problem: Problem<D, N>,
+pub struct Restated {
+    problem: AnyProblem,
     statement: Source,
 }
 
-impl<const D: usize, const N: usize> Restated<D, N> {
+impl Restated {
     /// States a problem.
     ///
     /// # Errors
     /// A problem that the case language cannot say.
-    pub fn new(problem: &Problem<D, N>) -> Result<Self, Failure> {
+    pub fn new(problem: &AnyProblem) -> Result<Self, Failure> {
         Ok(Self {
             problem: problem.clone(),
             statement: Source::new("the problem on another mesh", statement(problem, None)?),
@@ -26,7 +26,7 @@ impl<const D: usize, const N: usize> Restated<D, N> {
 
     /// The problem on its own mesh.
     #[must_use]
-    pub fn problem(&self) -> &Problem<D, N> {
+    pub fn problem(&self) -> &AnyProblem {
         &self.problem
     }
 
@@ -34,34 +34,31 @@ impl<const D: usize, const N: usize> Restated<D, N> {
     ///
     /// # Errors
     /// A mesh that lacks a group of the problem, or on which it is not consistent.
-    pub fn on(&self, mesh: Mesh<D, N>) -> Result<Problem<D, N>, Failure> {
+    pub fn on(&self, mesh: &AnyMesh) -> Result<AnyProblem, Failure> {
         let fields = [self.problem.initial_displacement(), self.problem.initial_velocity()];
-        let [displacement, velocity] = fields.map(|field| match field {
+        let d = mesh.dimension();
+        let [displacement, velocity] = fields.map(|field| match field.split_at(d.min(field.len())) {
             // Rounding must not make a uniform field vary.
-            [first, others @ ..] if others.iter().all(|other| other == first) => vec![*first; mesh.node_count()],
-            _ => self.values_at_nodes(field, &mesh),
+            (first, others) if others.chunks_exact(d).all(|other| other == first) => first.repeat(mesh.node_count()),
+            _ => self.values_at_nodes(field, mesh),
         });
         self.with(mesh, displacement, velocity)
     }
 
     /// A nodal field at the nodes of a mesh, each in its own body: nodes of two bodies may be at one place.
-    fn values_at_nodes(&self, field: &[[f64; D]], mesh: &Mesh<D, N>) -> Vec<[f64; D]> {
-        let bodies = Locator::of_bodies(self.problem.mesh());
-        let body = Locator::matching(&bodies, mesh);
-        let value = |(point, part): (&[f64; D], usize)| bodies[body[part]].values_at(field, &[*point])[0];
-        mesh.points().iter().zip(mesh.part_numbers()).map(value).collect()
+    fn values_at_nodes(&self, field: &[f64], mesh: &AnyMesh) -> Vec<f64> {
+        let own = self.problem.mesh();
+        let bodies = AnyLocator::of_bodies(own);
+        let body = own.matching_parts(mesh).unwrap_or_default();
+        let nodes = mesh.points().chunks_exact(mesh.dimension()).zip(mesh.part_numbers());
+        nodes.flat_map(|(point, part)| bodies[body[part]].values_at(field, point)).collect()
     }
 
-    /// The problem on a mesh with initial displacement (m) and velocity (m/s) at its nodes.
+    /// The problem on a mesh with initial displacement (m) and velocity (m/s) at its nodes, in rows.
     ///
     /// # Errors
     /// As [`Restated::on`].
-    pub fn with(
-        &self,
-        mesh: Mesh<D, N>,
-        displacement: Vec<[f64; D]>,
-        velocity: Vec<[f64; D]>,
-    ) -> Result<Problem<D, N>, Failure> {
+    pub fn with(&self, mesh: &AnyMesh, displacement: Vec<f64>, velocity: Vec<f64>) -> Result<AnyProblem, Failure> {
         let (problem, _) = problem_from(&self.statement, mesh, displacement, velocity)?;
         Ok(problem)
     }

@@ -2,7 +2,7 @@
 
 mod numbers;
 
-use crate::case::{CaseOf, TIME_KEYS, statement};
+use crate::case::{Case, TIME_KEYS, statement};
 use crate::difference::{self, OF_RUN};
 use crate::failure::Failure;
 use crate::history::Stored;
@@ -11,22 +11,18 @@ use crate::storing::{Outcome, Storage, drive};
 use percute_core::dynamics::Simulation;
 use percute_core::history::Discard;
 use percute_core::observer::Observer;
-use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
-use percute_io::history::{HistoryFile, Kept, Unended};
+use percute_io::history::{Kept, Unended};
 use std::any::Any;
 use std::path::Path;
 
-impl<const D: usize, const N: usize> Stored<D, N>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+impl Stored {
     /// Opens the history of the run of a case, which is to go on; `estimated` if the error is estimated then.
     ///
     /// # Errors
     /// As [`open`](crate::history::open), and the history of another case.
-    pub fn of_case(case: &CaseOf<D, N>, file: &Path, estimated: bool) -> Result<Self, Failure> {
-        let stored = Self::new(HistoryFile::of(file)?, file)?;
+    pub fn of_case(case: &Case, file: &Path, estimated: bool) -> Result<Self, Failure> {
+        let stored = Self::new(percute_io::history::open(file)?, file)?;
         match stored.difference(case, estimated)? {
             None => Ok(stored),
             Some(what) => Err(Failure::Argument(format!(
@@ -38,12 +34,12 @@ where
     }
 
     /// The first difference between the run of this history and that of a case.
-    fn difference(&self, case: &CaseOf<D, N>, estimated: bool) -> Result<Option<String>, Failure> {
+    fn difference(&self, case: &Case, estimated: bool) -> Result<Option<String>, Failure> {
         let (file, times) = (&self.file, self.file.run_times());
         let problem = &case.problem;
         let kept = |kept: Option<Kept>| {
             let kept = kept.unwrap_or_else(|| all(times));
-            let reaction = kept.reaction || problem.surface().nodes().is_empty();
+            let reaction = kept.reaction || problem.contact_nodes().is_empty();
             Kept { reaction, ..kept }
         };
         if file.is_foreign() {
@@ -52,8 +48,11 @@ where
         let stated = OF_RUN.of_statements(&statement(problem, Some(&case.options))?, file.statement(), estimated);
         let start = || {
             let (displacement, velocity) = (problem.initial_displacement(), problem.initial_velocity());
-            let first = numbers::of_starts("displacement", "m", displacement, file.initial_displacement());
-            first.or_else(|| numbers::of_starts("velocity", "m/s", velocity, file.initial_velocity()))
+            let first =
+                numbers::of_starts("displacement", "m", [displacement, file.initial_displacement()], file.dimension());
+            first.or_else(|| {
+                numbers::of_starts("velocity", "m/s", [velocity, file.initial_velocity()], file.dimension())
+            })
         };
         let output = || {
             let differs = numbers::of_kept(&kept(case.output.keep.of(times)), &kept(file.keeps()))?;
@@ -65,7 +64,7 @@ where
 
     /// The first difference between the instants that the case asks for and those of the file. Those of a run that ends
     /// with the rebound follow from its simulation: its statement must be that of the case in the file.
-    fn of_times(&self, case: &CaseOf<D, N>) -> Option<String> {
+    fn of_times(&self, case: &Case) -> Option<String> {
         let stated = || self.of_texts(case, "time", &TIME_KEYS);
         if case.until.is_none() {
             let differs = numbers::of_instants(&case.times, self.file.run_times())?;
@@ -78,7 +77,7 @@ where
     }
 
     /// The first difference between keys of a table in the texts of both cases.
-    fn of_texts(&self, case: &CaseOf<D, N>, table: &str, keys: &[&str]) -> Option<String> {
+    fn of_texts(&self, case: &Case, table: &str, keys: &[&str]) -> Option<String> {
         difference::of_cases(case.source.text(), self.file.case().map(|case| case.text.as_str()), table, keys)
     }
 

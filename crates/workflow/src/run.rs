@@ -2,7 +2,7 @@
 //! command and Python use the same functions. If the observer breaks, the results are those of the steps done. The
 //! problem is solved in a local order of its own; all results have the numbers of the problem that was stated.
 
-use crate::case::CaseOf;
+use crate::case::Case;
 use crate::deformation::{Deformation, DeformationRecorder};
 use crate::failure::Failure;
 use crate::info::memory;
@@ -18,7 +18,7 @@ use percute_core::contact::{ContactMemoryError, ContactRecorder, ContactResults}
 use percute_core::dynamics::{Balance, Balancing, Simulation, replay, simulate_threaded};
 use percute_core::history::{Discard, SinkError, State, StateSink, Step, StepSource};
 use percute_core::observer::Observer;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::{TimeError, TimeGrid};
 use percute_estimator::reference::{Comparison, Motion, TrueError};
 use percute_estimator::{Estimate, EstimateError, Estimator, Options, Request, RunError};
@@ -37,23 +37,23 @@ pub struct Analysis {
 
 /// The results of an estimated run or history.
 #[derive(Clone, Debug)]
-pub struct Results<const D: usize> {
+pub struct Results {
     /// Balance and number of the steps.
     pub simulation: Simulation,
     /// The estimate of the error.
-    pub estimate: Estimate<D>,
+    pub estimate: Estimate,
     /// The contact results.
-    pub contact: ContactResults<D>,
+    pub contact: ContactResults,
     /// The deformation and the stress.
     pub deformation: Deformation,
     /// The outline of a plane body at the last step.
     pub outline: Option<Outline>,
 }
 
-impl<const D: usize> Results<D> {
+impl Results {
     /// What a report is made of.
     #[must_use]
-    pub fn findings(&self) -> Findings<'_, D> {
+    pub fn findings(&self) -> Findings<'_> {
         let Self { simulation, estimate, contact, deformation, outline } = self;
         Findings { simulation, estimate, contact, deformation, outline: outline.as_ref() }
     }
@@ -66,11 +66,11 @@ impl<const D: usize> Results<D> {
 }
 
 impl Analysis {
-    fn recorder<'p, const D: usize, const N: usize>(
+    fn recorder<'p>(
         &self,
-        problem: &'p Problem<D, N>,
+        problem: &'p AnyProblem,
         times: &'p TimeGrid,
-    ) -> Result<ContactRecorder<'p, D, N>, ContactMemoryError> {
+    ) -> Result<ContactRecorder<'p>, ContactMemoryError> {
         let recorder = ContactRecorder::new(problem, times);
         if self.contact_steps { recorder.keeping_steps() } else { Ok(recorder) }
     }
@@ -81,10 +81,10 @@ impl Analysis {
 /// # Errors
 /// A start that the simulation refuses (its history file is removed), an unstable run, a step that cannot be stored;
 /// after these the file holds the steps done.
-pub fn simulate<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub fn simulate(
+    problem: &AnyProblem,
     times: &TimeGrid,
-    storage: Storage<'_, D>,
+    storage: Storage<'_>,
     observer: &mut dyn Observer,
 ) -> Result<Outcome<Simulation>, Failure> {
     drive(&Ordered::new(problem), times, (None, None), storage, &mut Discard, observer)
@@ -95,11 +95,7 @@ pub fn simulate<const D: usize, const N: usize>(
 ///
 /// # Errors
 /// As [`simulate`].
-pub fn rebound<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    until: &Until,
-    observer: &mut dyn Observer,
-) -> Result<Option<Found>, Failure> {
+pub fn rebound(problem: &AnyProblem, until: &Until, observer: &mut dyn Observer) -> Result<Option<Found>, Failure> {
     let refused = |error: TimeError| Failure::Argument(error.to_string());
     let (ordered, times, seen) = (Ordered::new(problem), until.times().map_err(refused)?, AtomicBool::new(false));
     let mut leaving = Leaving::new(ordered.problem(), until.after, &seen);
@@ -119,38 +115,35 @@ pub fn rebound<const D: usize, const N: usize>(
 ///
 /// # Errors
 /// As [`simulate`].
-pub fn resolved<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
-    observer: &mut dyn Observer,
-) -> Result<Option<CaseOf<D, N>>, Failure> {
+pub fn resolved(case: &Case, observer: &mut dyn Observer) -> Result<Option<Case>, Failure> {
     let Some(until) = &case.until else { return Ok(Some(case.clone())) };
     let found = rebound(&case.problem, until, observer)?;
-    Ok(found.map(|Found { times, warning }| CaseOf { times, until: None, unended: warning, ..case.clone() }))
+    Ok(found.map(|Found { times, warning }| Case { times, until: None, unended: warning, ..case.clone() }))
 }
 
 /// Simulates a problem and analyses the steps beside the run.
 ///
 /// # Errors
 /// As [`simulate`], and as [`estimate`].
-pub fn run<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub fn run(
+    problem: &AnyProblem,
     times: &TimeGrid,
     analysis: &Analysis,
-    storage: Storage<'_, D>,
+    storage: Storage<'_>,
     observer: &mut dyn Observer,
-) -> Result<Outcome<Results<D>>, Failure> {
+) -> Result<Outcome<Results>, Failure> {
     beside(&Ordered::new(problem), times, analysis, storage, &mut Discard, observer)
 }
 
 /// Does the same for a problem in its order, and hands each state to `sink`, too.
-pub(crate) fn beside<const D: usize, const N: usize>(
-    ordered: &Ordered<'_, D, N>,
+pub(crate) fn beside(
+    ordered: &Ordered<'_>,
     times: &TimeGrid,
     analysis: &Analysis,
-    storage: Storage<'_, D>,
-    sink: &mut dyn StateSink<D>,
+    storage: Storage<'_>,
+    sink: &mut dyn StateSink,
     observer: &mut dyn Observer,
-) -> Result<Outcome<Results<D>>, Failure> {
+) -> Result<Outcome<Results>, Failure> {
     let mut contact = analysis.recorder(ordered.problem(), times)?;
     let estimator =
         Estimator::new(ordered.problem(), times, analysis.options).and_then(|e| e.keeping(&analysis.request));
@@ -165,13 +158,13 @@ pub(crate) fn beside<const D: usize, const N: usize>(
 }
 
 /// The results of a whole run that is not stored; none if the observer broke.
-pub(crate) fn whole<const D: usize, const N: usize>(
-    ordered: &Ordered<'_, D, N>,
+pub(crate) fn whole(
+    ordered: &Ordered<'_>,
     times: &TimeGrid,
     options: Options,
-    sink: &mut dyn StateSink<D>,
+    sink: &mut dyn StateSink,
     observer: &mut dyn Observer,
-) -> Result<Option<Results<D>>, Failure> {
+) -> Result<Option<Results>, Failure> {
     let (analysis, nowhere) = (Analysis { options, ..Analysis::default() }, Storage::default());
     match beside(ordered, times, &analysis, nowhere, sink, observer).and_then(Outcome::stored) {
         Ok(results) => Ok(Some(results).filter(|results| !results.interrupted())),
@@ -185,12 +178,12 @@ pub(crate) fn whole<const D: usize, const N: usize>(
 ///
 /// # Errors
 /// Steps that cannot be read or do not fit the problem, options out of range, no memory for all contact results.
-pub fn estimate<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    source: &dyn StepSource<D>,
+pub fn estimate(
+    problem: &AnyProblem,
+    source: &dyn StepSource,
     analysis: &Analysis,
     observer: &mut dyn Observer,
-) -> Result<Results<D>, Failure> {
+) -> Result<Results, Failure> {
     let Analysis { options, request, .. } = analysis;
     let needed = memory::of_run(problem, source.times()).saturating_add(percute_estimator::memory(
         problem,
@@ -212,21 +205,21 @@ pub fn estimate<const D: usize, const N: usize>(
 }
 
 /// What a report shows beside contact and error, of the steps of a problem in its order.
-type Beside<'o, const D: usize, const N: usize> = (DeformationRecorder<'o, D, N>, LastOutline<D>);
+type Beside<'o> = (DeformationRecorder<'o>, LastOutline);
 
-fn shown<'o, const D: usize, const N: usize>(ordered: &'o Ordered<'_, D, N>, times: &TimeGrid) -> Beside<'o, D, N> {
+fn shown<'o>(ordered: &'o Ordered<'_>, times: &TimeGrid) -> Beside<'o> {
     let problem = ordered.problem();
     (DeformationRecorder::new(problem, times.step_count()), LastOutline::new(problem.mesh()))
 }
 
 /// The results in the numbers of the problem that was stated.
-fn results<const D: usize, const N: usize>(
-    ordered: &Ordered<'_, D, N>,
+fn results(
+    ordered: &Ordered<'_>,
     simulation: Simulation,
-    estimate: Estimate<D>,
-    contact: ContactResults<D>,
-    (deformation, outline): Beside<'_, D, N>,
-) -> Results<D> {
+    estimate: Estimate,
+    contact: ContactResults,
+    (deformation, outline): Beside<'_>,
+) -> Results {
     let mut deformation = deformation.finish(ordered.stated_problem().mesh(), |element| ordered.element(element));
     if let Some(touch) = &mut deformation.next_touch {
         touch.node = ordered.node(touch.node);
@@ -250,10 +243,10 @@ pub enum Meshes {
 /// # Errors
 /// A reference that simulates another problem, meshes that are not nested, a reference that ends early, steps that
 /// cannot be read; as [`simulate`].
-pub fn true_errors<'p, const D: usize, const N: usize>(
-    runs: &[(&'p Problem<D, N>, &'p dyn StepSource<D>)],
-    (fine, times): (&'p Problem<D, N>, &'p TimeGrid),
-    steps: Option<&dyn StepSource<D>>,
+pub fn true_errors<'p>(
+    runs: &[(&'p AnyProblem, &'p dyn StepSource)],
+    (fine, times): (&'p AnyProblem, &'p TimeGrid),
+    steps: Option<&dyn StepSource>,
     meshes: Meshes,
     observer: &mut dyn Observer,
 ) -> Result<(Vec<TrueError>, Option<Simulation>), Failure> {
@@ -266,7 +259,7 @@ pub fn true_errors<'p, const D: usize, const N: usize>(
         }
     }
     let unread = |cause| Failure::from_sink(cause, RunError::Source);
-    let ordered: Vec<_> = runs.iter().map(|(problem, _)| Ordered::new(*problem)).collect();
+    let ordered: Vec<_> = runs.iter().map(|(problem, _)| Ordered::new(problem)).collect();
     let mut motions = Vec::new();
     for (ordered, (_, steps)) in ordered.iter().zip(runs) {
         let mut motion = Motion::default();
@@ -297,10 +290,7 @@ pub fn true_errors<'p, const D: usize, const N: usize>(
 ///
 /// # Errors
 /// A step that cannot be read or does not fit.
-pub fn balance<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    source: &dyn StepSource<D>,
-) -> Result<Vec<Balance>, SinkError> {
+pub fn balance(problem: &AnyProblem, source: &dyn StepSource) -> Result<Vec<Balance>, SinkError> {
     let ordered = Ordered::new(problem);
     let mut balancing = Balancing::new(ordered.problem(), source.times());
     replay(ordered.problem(), &ordered.source(source), &mut balancing).map_err(|cause| ordered.refused(cause))?;
@@ -312,10 +302,10 @@ pub fn balance<const D: usize, const N: usize>(
 ///
 /// # Errors
 /// A step that cannot be read or does not fit.
-pub fn motion<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    source: &dyn StepSource<D>,
-    take: impl FnMut(Vec<[f64; D]>, Vec<[f64; D]>) + Send,
+pub fn motion(
+    problem: &AnyProblem,
+    source: &dyn StepSource,
+    take: impl FnMut(Vec<f64>, Vec<f64>) + Send,
 ) -> Result<(), SinkError> {
     let ordered = Ordered::new(problem);
     let mut motion = NodalMotion { ordered: &ordered, take };
@@ -323,15 +313,13 @@ pub fn motion<const D: usize, const N: usize>(
 }
 
 /// Hands velocities and accelerations on.
-struct NodalMotion<'o, 'p, F, const D: usize, const N: usize> {
-    ordered: &'o Ordered<'p, D, N>,
+struct NodalMotion<'o, 'p, F> {
+    ordered: &'o Ordered<'p>,
     take: F,
 }
 
-impl<F: FnMut(Vec<[f64; D]>, Vec<[f64; D]>) + Send, const D: usize, const N: usize> StateSink<D>
-    for NodalMotion<'_, '_, F, D, N>
-{
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl<F: FnMut(Vec<f64>, Vec<f64>) + Send> StateSink for NodalMotion<'_, '_, F> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         (self.take)(self.ordered.nodal(state.velocity()), self.ordered.nodal(state.acceleration()));
         Ok(())
     }
@@ -342,12 +330,12 @@ impl<F: FnMut(Vec<[f64; D]>, Vec<[f64; D]>) + Send, const D: usize, const N: usi
 ///
 /// # Errors
 /// A step that cannot be read or does not fit, or what `take` returns.
-pub fn chosen<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    source: &dyn StepSource<D>,
+pub fn chosen(
+    problem: &AnyProblem,
+    source: &dyn StepSource,
     steps: &[usize],
     motion: bool,
-    take: &mut TakeStep<'_, D>,
+    take: &mut TakeStep<'_>,
 ) -> Result<(), SinkError> {
     let wanted = |step: usize| steps.binary_search(&step).is_ok();
     if !motion {
@@ -359,14 +347,14 @@ pub fn chosen<const D: usize, const N: usize>(
 }
 
 /// Hands chosen states on with their motion.
-struct ChosenStates<'o, 'p, 't, 's, const D: usize, const N: usize> {
-    ordered: &'o Ordered<'p, D, N>,
+struct ChosenStates<'o, 'p, 't, 's> {
+    ordered: &'o Ordered<'p>,
     steps: &'o [usize],
-    take: &'t mut TakeStep<'s, D>,
+    take: &'t mut TakeStep<'s>,
 }
 
-impl<const D: usize, const N: usize> StateSink<D> for ChosenStates<'_, '_, '_, '_, D, N> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl StateSink for ChosenStates<'_, '_, '_, '_> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         let step = state.step();
         if self.steps.binary_search(&step.index).is_err() {
             return Ok(());
@@ -380,7 +368,7 @@ impl<const D: usize, const N: usize> StateSink<D> for ChosenStates<'_, '_, '_, '
 
 /// The failure of the run of a case: a refused start is a mistake in the case, with its line.
 #[must_use]
-pub fn located<const D: usize, const N: usize>(case: &CaseOf<D, N>, failure: Failure) -> Failure {
+pub fn located(case: &Case, failure: Failure) -> Failure {
     match failure {
         Failure::Run(RunError::Simulation(error)) => {
             case.refused_start(&error).map_or_else(|| error.into(), Failure::from)

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::foreign::Origin;
 use crate::history::plan;
 use percute_core::history::StepSource;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_estimator::{Options, RunError};
 use percute_io::Overwrite;
 use percute_io::history::Elsewhere;
@@ -13,11 +13,11 @@ use std::path::Path;
 
 /// A whole history with all that its file has beside the steps.
 #[derive(Clone, Copy)]
-pub struct Whole<'a, const D: usize, const N: usize> {
+pub struct Whole<'a> {
     /// The problem that it solves.
-    pub problem: &'a Problem<D, N>,
+    pub problem: &'a AnyProblem,
     /// The steps.
-    pub steps: &'a dyn StepSource<D>,
+    pub steps: &'a dyn StepSource,
     /// Whether these have their own velocities and accelerations.
     pub given: [bool; 2],
     /// Options that its estimate takes unless told otherwise.
@@ -28,7 +28,7 @@ pub struct Whole<'a, const D: usize, const N: usize> {
     pub origin: Option<&'a Origin>,
 }
 
-impl<const D: usize, const N: usize> Whole<'_, D, N> {
+impl Whole<'_> {
     /// Writes the file: that of a run that was stored from its start, byte by byte, or that of another program's
     /// simulation, from which `percute estimate` gives the same estimate. It has its name, and replaces another file,
     /// once it is complete.
@@ -59,14 +59,13 @@ mod tests {
     use percute_core::dynamics::simulate;
     use percute_core::history::{History, SinkError, Step};
     use percute_core::observer::Unobserved;
-    use percute_core::simplex::ByDimension;
     use percute_core::time::TimeGrid;
     use percute_io::history::open;
 
     /// A history that breaks off behind some steps.
-    struct Broken<'h>(&'h History<1>, usize);
+    struct Broken<'h>(&'h History, usize);
 
-    impl StepSource<1> for Broken<'_> {
+    impl StepSource for Broken<'_> {
         fn times(&self) -> &TimeGrid {
             self.0.times()
         }
@@ -75,7 +74,7 @@ mod tests {
             self.0.count()
         }
 
-        fn replay(&self, take: &mut dyn FnMut(&Step<'_, 1>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+        fn replay(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError> {
             self.0.replay(&mut |step| if step.index < self.1 { take(step) } else { Err("stopped".into()) })
         }
     }
@@ -83,7 +82,7 @@ mod tests {
     /// A body at rest, of which three instants were computed.
     struct Stopped(TimeGrid, usize);
 
-    impl StepSource<1> for Stopped {
+    impl StepSource for Stopped {
         fn times(&self) -> &TimeGrid {
             &self.0
         }
@@ -92,8 +91,8 @@ mod tests {
             3
         }
 
-        fn replay(&self, take: &mut dyn FnMut(&Step<'_, 1>) -> Result<(), SinkError>) -> Result<(), SinkError> {
-            let (displacement, reaction, touching) = (&vec![[0.0]; self.1][..], &[[0.0]][..], &[false][..]);
+        fn replay(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+            let (displacement, reaction, touching) = (&vec![0.0; self.1][..], &[0.0][..], &[false][..]);
             self.0.instants().iter().enumerate().take(self.count()).try_for_each(|(index, &time)| {
                 take(&Step { index, time, displacement, reaction, touching, velocity: None, acceleration: None })
             })
@@ -103,12 +102,12 @@ mod tests {
     #[test]
     fn a_file_is_replaced_by_a_whole_history_only() {
         let text = include_str!("../../../examples/bar.toml");
-        let ByDimension::Bar(case) = parse(Source::new("bar.toml", text)).unwrap() else { panic!("triangles") };
+        let case = parse(Source::new("bar.toml", text)).unwrap();
         let mut history = History::new(&case.times);
         simulate(&case.problem, &case.times, &mut history, &mut Unobserved).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.vtkhdf");
-        let write = |steps: &dyn StepSource<1>| {
+        let write = |steps: &dyn StepSource| {
             let (problem, options) = (&case.problem, &case.options);
             Whole { problem, steps, given: [false; 2], options, case: None, origin: None }
                 .write(&path, Overwrite::Replace)
@@ -121,7 +120,7 @@ mod tests {
             assert!(std::fs::read(&path).unwrap() == b"dear" && files() == 1, "{count} steps");
         }
         write(&history).unwrap();
-        let ByDimension::Bar(stored) = open(&path).unwrap() else { panic!("triangles") };
+        let stored = open(&path).unwrap();
         assert!(stored.has_ended() && stored.count() == history.count() && files() == 1);
     }
 
@@ -130,7 +129,7 @@ mod tests {
     fn steps_that_were_never_computed_take_no_room() {
         let text = include_str!("../../../examples/bar.toml");
         let text = text.replace("elements = 100 ", "elements = 100000 ").replace("end = 50e-6", "end = 1e-9");
-        let ByDimension::Bar(case) = parse(Source::new("bar.toml", text)).unwrap() else { panic!("triangles") };
+        let case = parse(Source::new("bar.toml", text)).unwrap();
         let steps = &Stopped(TimeGrid::uniform(1e-3, 1_000_000).unwrap(), case.problem.mesh().node_count());
         let folder = tempfile::tempdir().unwrap();
         let (problem, options) = (&case.problem, &case.options);
@@ -140,7 +139,7 @@ mod tests {
         let path = folder.path().join("stopped.vtkhdf");
         let whole = Whole { problem, steps, given: [false; 2], options, case: None, origin: None };
         whole.write(&path, Overwrite::Refuse).unwrap();
-        let ByDimension::Bar(stored) = open(&path).unwrap() else { panic!("triangles") };
+        let stored = open(&path).unwrap();
         assert!(stored.count() == 3 && !stored.has_ended());
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::numbering::{Fields, Ordered, TakeStep};
-use percute_core::dynamics::{MissedContact, Simulation, SimulationError, resume, simulate_threaded};
+use percute_core::dynamics::{Simulation, SimulationError, missed_contact, resume, simulate_threaded};
 use percute_core::history::{Checkpoint, SinkError, State, StateSink, Step};
 use percute_core::observer::Observer;
 use percute_core::time::TimeGrid;
@@ -35,26 +35,26 @@ impl<T> Outcome<T> {
 
 /// The places of the history of a run; each is optional.
 #[derive(Default)]
-pub struct Storage<'s, const D: usize> {
+pub struct Storage<'s> {
     /// A file.
-    pub file: Option<Writer<D>>,
+    pub file: Option<Writer>,
     /// Memory.
-    pub memory: Option<&'s mut TakeStep<'s, D>>,
+    pub memory: Option<&'s mut TakeStep<'s>>,
     /// Dropped as soon as the file is closed.
     pub open: Option<Box<dyn Any + Send>>,
 }
 
 /// Stores steps in the numbers of the user.
-struct Storing<'o, 'p, 's, const D: usize, const N: usize> {
-    ordered: &'o Ordered<'p, D, N>,
-    file: Option<Writer<D>>,
-    memory: Option<&'s mut TakeStep<'s, D>>,
-    fields: Fields<D>,
+struct Storing<'o, 'p, 's> {
+    ordered: &'o Ordered<'p>,
+    file: Option<Writer>,
+    memory: Option<&'s mut TakeStep<'s>>,
+    fields: Fields,
 }
 
-impl<const D: usize, const N: usize> Storing<'_, '_, '_, D, N> {
+impl Storing<'_, '_, '_> {
     /// Velocities and accelerations by the scheme at a step, as far as the file keeps them.
-    fn motion(&self, state: &State<'_, D>) -> [Option<Vec<[f64; D]>>; 2] {
+    fn motion(&self, state: &State<'_>) -> [Option<Vec<f64>>; 2] {
         let kept = self.file.as_ref().and_then(Writer::kept);
         let kept = kept.filter(|kept| kept.row_of(state.step().index).is_some());
         let has = |has: fn(&Kept) -> bool| kept.is_some_and(has);
@@ -65,8 +65,8 @@ impl<const D: usize, const N: usize> Storing<'_, '_, '_, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> StateSink<D> for Storing<'_, '_, '_, D, N> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl StateSink for Storing<'_, '_, '_> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         let [velocity, acceleration] = self.motion(state);
         let Self { ordered, file, memory, fields } = self;
         let step = Step { velocity: velocity.as_deref(), acceleration: acceleration.as_deref(), ..*state.step() };
@@ -83,12 +83,12 @@ impl<const D: usize, const N: usize> StateSink<D> for Storing<'_, '_, '_, D, N> 
 
 /// Hands every step to the history and then to `beside`, from the start or from a checkpoint on. A run that was stopped
 /// is finished like a complete one; a refused start leaves no file; after any other error the file remains.
-pub(crate) fn drive<const D: usize, const N: usize>(
-    ordered: &Ordered<'_, D, N>,
+pub(crate) fn drive(
+    ordered: &Ordered<'_>,
     times: &TimeGrid,
-    (threads, checkpoint): (Option<usize>, Option<&Checkpoint<D>>),
-    storage: Storage<'_, D>,
-    beside: &mut dyn StateSink<D>,
+    (threads, checkpoint): (Option<usize>, Option<&Checkpoint>),
+    storage: Storage<'_>,
+    beside: &mut dyn StateSink,
     observer: &mut dyn Observer,
 ) -> Result<Outcome<Simulation>, Failure> {
     let Storage { file, memory, open } = storage;
@@ -96,7 +96,7 @@ pub(crate) fn drive<const D: usize, const N: usize>(
     // The history first: a step that cannot be estimated is still stored.
     let storing = stored.then(|| Storing { ordered, file, memory, fields: Fields::default() });
     let problem = ordered.problem();
-    let mut sinks = (storing, (beside, MissedContact::new(problem, times.step_count())));
+    let mut sinks = (storing, (beside, missed_contact(problem, times.step_count())));
     let simulation = match checkpoint {
         None => simulate_threaded(problem, times, threads, &mut sinks, observer),
         Some(checkpoint) => resume(problem, times, threads, checkpoint, &mut sinks, observer),

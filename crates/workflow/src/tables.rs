@@ -3,10 +3,11 @@
 use crate::failure::Failure;
 use crate::outputs::{self, OutputFile};
 use crate::report::{ENERGIES, PARTS};
+use percute_core::border::Vector;
 use percute_core::contact::{ContactResults, Resultant};
 use percute_core::dynamics::Balance;
 use percute_core::ids::ElementId;
-use percute_core::mesh::Mesh;
+use percute_core::mesh::AnyMesh;
 use percute_core::units::Units;
 use percute_estimator::Sample;
 use percute_io::{Overwrite, write_bytes};
@@ -19,13 +20,14 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     units: Units,
+    dimension: usize,
     columns: Vec<(String, Vec<f64>)>,
 }
 
 impl Table {
     /// An empty one.
-    fn new(units: Units) -> Self {
-        Self { units, columns: Vec::new() }
+    fn new(units: Units, dimension: usize) -> Self {
+        Self { units, dimension, columns: Vec::new() }
     }
 
     fn add(&mut self, name: &str, unit: &'static str, values: impl IntoIterator<Item = f64>) {
@@ -34,8 +36,8 @@ impl Table {
         self.columns.push((header, values.into_iter().collect()));
     }
 
-    fn vector<const D: usize>(&mut self, name: &str, unit: &'static str, values: &[[f64; D]]) {
-        (0..D).for_each(|c| self.add(&format!("{name}_{}", AXES[c]), unit, values.iter().map(|v| v[c])));
+    fn vector(&mut self, name: &str, unit: &'static str, values: &[Vector]) {
+        (0..self.dimension).for_each(|c| self.add(&format!("{name}_{}", AXES[c]), unit, values.iter().map(|v| v[c])));
     }
 
     /// Adds its columns to another table, at other rows; empty where there is none.
@@ -63,11 +65,11 @@ impl Table {
 
 /// Results that can be tables; those that are not known are left out.
 #[derive(Clone, Copy, Debug)]
-pub struct Results<'a, const D: usize, const N: usize> {
+pub struct Results<'a> {
     /// The mesh.
-    pub mesh: &'a Mesh<D, N>,
+    pub mesh: &'a AnyMesh,
     /// Contact results.
-    pub contact: Option<&'a ContactResults<D>>,
+    pub contact: Option<&'a ContactResults>,
     /// Units of forces and energies.
     pub units: Units,
     /// Energies and works at each step.
@@ -78,7 +80,12 @@ pub struct Results<'a, const D: usize, const N: usize> {
     pub by_element: &'a [f64],
 }
 
-impl<const D: usize, const N: usize> Results<'_, D, N> {
+impl Results<'_> {
+    /// An empty table.
+    fn table(&self) -> Table {
+        Table::new(self.units, self.mesh.dimension())
+    }
+
     /// Forces, energies and error over time: rows at the steps, and at the samples of the error between them.
     #[must_use]
     pub fn over_time(&self) -> Table {
@@ -86,7 +93,7 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
         let mut rows: Vec<f64> = steps.iter().copied().chain(self.error.iter().map(|sample| sample.time)).collect();
         rows.sort_unstable_by(f64::total_cmp);
         rows.dedup();
-        let mut table = Table::new(self.units);
+        let mut table = self.table();
         table.add("time", "s", rows.iter().copied());
         let place = |times: &[f64], t: f64| times.binary_search_by(|other| other.total_cmp(&t)).ok();
         let at: Vec<Option<usize>> = rows.iter().map(|&t| place(steps, t)).collect();
@@ -102,7 +109,7 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
 
     /// Forces and energies.
     fn at_steps(&self) -> Table {
-        let mut table = Table::new(self.units);
+        let mut table = self.table();
         if let Some(contact) = self.contact.filter(|contact| !contact.obstacles.is_empty()) {
             resultants(&mut table, "", &contact.total);
             if contact.obstacles.len() > 1 {
@@ -119,7 +126,7 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
 
     /// √η, its parts and d.
     fn at_samples(&self) -> Table {
-        let mut table = Table::new(self.units);
+        let mut table = self.table();
         if !self.error.is_empty() {
             table.add("error", "J^(1/2)", self.error.iter().map(|sample| sample.parts.total().sqrt()));
             for (name, of) in PARTS.into_iter().filter(|(name, _)| *name != "time") {
@@ -133,10 +140,10 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
     /// Centroid and error of each element.
     #[must_use]
     pub fn elements(&self) -> Table {
-        let mut table = Table::new(self.units);
+        let mut table = self.table();
         let count = self.mesh.element_count();
         table.add("element", "", (0..count).map(|e| e as f64));
-        let centroids: Vec<[f64; D]> = (0..count).map(|e| self.mesh.centroid(ElementId::new(e))).collect();
+        let centroids: Vec<Vector> = (0..count).map(|e| self.mesh.centroid(ElementId::new(e))).collect();
         table.vector("centroid", "m", &centroids);
         table.add("error", "J^(1/2)", self.by_element.iter().copied());
         table
@@ -145,7 +152,7 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
     /// Summary of each node of the contact surface.
     #[must_use]
     pub fn contact_nodes(&self) -> Table {
-        let mut table = Table::new(self.units);
+        let mut table = self.table();
         let Some(contact) = self.contact else { return table };
         let (nodes, summary) = (&contact.nodes, &contact.summary);
         table.add("node", "", nodes.iter().map(|p| p.node.index() as f64));
@@ -163,7 +170,7 @@ impl<const D: usize, const N: usize> Results<'_, D, N> {
     }
 }
 
-fn resultants<const D: usize>(table: &mut Table, prefix: &str, over_time: &[Resultant<D>]) {
+fn resultants(table: &mut Table, prefix: &str, over_time: &[Resultant]) {
     let name = |name: &str| format!("{prefix}{name}");
     table.vector(&name("force"), "N", &over_time.iter().map(|r| r.force).collect::<Vec<_>>());
     table.add(&name("normal_force"), "N", over_time.iter().map(|r| r.normal_force));
@@ -218,11 +225,7 @@ impl Destination {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn write<const D: usize, const N: usize>(
-        &self,
-        results: &Results<'_, D, N>,
-        overwrite: Overwrite,
-    ) -> Result<(), Failure> {
+    pub fn write(&self, results: &Results<'_>, overwrite: Overwrite) -> Result<(), Failure> {
         let over_time = results.over_time();
         let folder = match self {
             Self::File(file) => return Ok(write_bytes(file, overwrite, over_time.csv().as_bytes())?),
@@ -249,9 +252,9 @@ mod tests {
 
     #[test]
     fn a_table_has_a_header_with_units_and_empty_cells() {
-        let mut table = Table::new(Units::default());
+        let mut table = Table::new(Units::default(), 2);
         table.add("time", "s", [0.0, 1.5e-6]);
-        table.vector("force", "N", &[[1.0, -2.0], [f64::NAN, 1e16]]);
+        table.vector("force", "N", &[[1.0, -2.0, 0.0], [f64::NAN, 1e16, 0.0]]);
         table.add("nodes", "", [0.0, 12.0]);
         assert_eq!(table.csv(), "time (s),force_x (N),force_y (N),nodes\r\n0.0,1.0,-2.0,0\r\n1.5e-6,,1e16,12\r\n");
     }

@@ -4,26 +4,26 @@ use percute_core::history::{SinkError, Step, StepSource};
 use percute_core::time::TimeGrid;
 
 /// Takes the steps of a history.
-pub(crate) type Take<'t, const D: usize> = dyn FnMut(&Step<'_, D>) -> Result<(), SinkError> + 't;
+pub(crate) type Take<'t> = dyn FnMut(&Step<'_>) -> Result<(), SinkError> + 't;
 
 /// A history whose steps go through a function, which hands them on.
-pub(crate) struct Through<'s, F, const D: usize> {
-    source: &'s dyn StepSource<D>,
+pub(crate) struct Through<'s, F> {
+    source: &'s dyn StepSource,
     with: F,
 }
 
-impl<'s, F, const D: usize> Through<'s, F, D>
+impl<'s, F> Through<'s, F>
 where
-    F: Fn(&Step<'_, D>, &mut Take<'_, D>) -> Result<(), SinkError>,
+    F: Fn(&Step<'_>, &mut Take<'_>) -> Result<(), SinkError>,
 {
-    pub(crate) fn new(source: &'s dyn StepSource<D>, with: F) -> Self {
+    pub(crate) fn new(source: &'s dyn StepSource, with: F) -> Self {
         Self { source, with }
     }
 }
 
-impl<F, const D: usize> StepSource<D> for Through<'_, F, D>
+impl<F> StepSource for Through<'_, F>
 where
-    F: Fn(&Step<'_, D>, &mut Take<'_, D>) -> Result<(), SinkError>,
+    F: Fn(&Step<'_>, &mut Take<'_>) -> Result<(), SinkError>,
 {
     fn times(&self) -> &TimeGrid {
         self.source.times()
@@ -33,7 +33,7 @@ where
         self.source.count()
     }
 
-    fn replay(&self, take: &mut Take<'_, D>) -> Result<(), SinkError> {
+    fn replay(&self, take: &mut Take<'_>) -> Result<(), SinkError> {
         self.source.replay(&mut |step| (self.with)(step, take))
     }
 }

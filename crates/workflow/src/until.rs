@@ -5,7 +5,7 @@ use crate::message::{short, trimmed};
 use crate::report::Warning;
 use percute_core::material::Law;
 use percute_core::observer::{Observer, Progress};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::{TimeError, TimeGrid};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -42,14 +42,9 @@ pub struct Found {
 impl Until {
     /// A run with these steps (s); `after` has a default.
     #[must_use]
-    pub fn new<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
-        longest: f64,
-        after: Option<f64>,
-        step: f64,
-    ) -> Self {
+    pub fn new(problem: &AnyProblem, longest: f64, after: Option<f64>, step: f64) -> Self {
         let wave_speed = problem.materials().iter().map(|m| m.wave_speed()).fold(0.0, f64::max);
-        let between_bodies = !problem.statement().interfaces.is_empty();
+        let between_bodies = !problem.conditions().interfaces.is_empty();
         Self { longest, between_bodies, after: after.unwrap_or(AFTER * problem.mesh().size() / wave_speed), step }
     }
 
@@ -119,8 +114,8 @@ impl Until {
 
 /// Why a problem cannot end with a rebound, if it cannot.
 #[must_use]
-pub fn no_rebound<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<&'static str> {
-    let nothing = problem.obstacles().is_empty();
+pub fn no_rebound(problem: &AnyProblem) -> Option<&'static str> {
+    let nothing = problem.obstacle_count() == 0;
     nothing.then_some("\"rebound\" needs a plane or another body that is struck: give one, or an end in s")
 }
 

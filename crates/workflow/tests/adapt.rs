@@ -1,26 +1,24 @@
 //! Adaptations: runs on meshes that follow from the estimate before.
 
+use percute_core::border::cut;
 use percute_core::ids::ElementId;
-use percute_core::mesh::{Generated, Locator, Mesh};
+use percute_core::mesh::{AnyMesh, Locator};
 use percute_core::observer::{Observer, Progress, Unobserved};
-use percute_core::simplex::ByDimension;
+use percute_core::problem::AnyProblem;
 use percute_workflow::adapt::{Adaptation, Adapting, Measure, Mesher, Reason, Wish, adapt, table};
-use percute_workflow::case::{CaseOf, Source, parse};
+use percute_workflow::case::{Case, Source, parse};
 use percute_workflow::plan::{Basis, Branch, Plan};
 use std::ops::ControlFlow;
 
 /// A case of a plane body with this mesh and, beside material and steps, these tables.
-fn plane(mesh: &str, tables: &str) -> CaseOf<2, 3> {
+fn plane(mesh: &str, tables: &str) -> Case {
     let material = "young = 70e9\npoisson = 0.3\ndensity = 2700.0\nplane = \"stress\"";
     let text = format!("[mesh]\n{mesh}\n[material]\n{material}\n{tables}\ncourant = 0.9\n");
-    match parse(Source::new("case", text)).unwrap() {
-        ByDimension::Plane(case) => *case,
-        ByDimension::Bar(_) => panic!("a bar"),
-    }
+    parse(Source::new("case", text)).unwrap()
 }
 
 /// A block whose corner strikes a plane that is inclined by 10°: 1e-4 m away for 400 m/s.
-fn corner(speed: f64) -> CaseOf<2, 3> {
+fn corner(speed: f64) -> Case {
     let [sin, cos] = [0.173_648_177_666_930_33, 0.984_807_753_012_208];
     let gap = 2.5e-7 * speed;
     let tables = format!(
@@ -34,7 +32,7 @@ fn corner(speed: f64) -> CaseOf<2, 3> {
     plane("rectangle = { width = 0.05, height = 0.04, nx = 10, ny = 8 }", &tables)
 }
 
-fn adapted(case: &CaseOf<2, 3>, wish: Wish) -> Adaptation<2, 3> {
+fn adapted(case: &Case, wish: Wish) -> Adaptation {
     let wish = (wish, Mesher::Bisection);
     adapt(&case.problem, &case.times, case.options, wish, &mut Unobserved, &mut |_| ()).unwrap()
 }
@@ -58,7 +56,7 @@ fn corners_get_graded_meshes() {
         }
         // The smallest elements are in the corner, and 4 and more times smaller than the largest.
         let mesh = adaptation.best.as_ref().unwrap().problem.mesh();
-        let sizes: Vec<f64> = (0..mesh.element_count()).map(|e| mesh.cell_geometry(ElementId::new(e)).volume).collect();
+        let sizes: Vec<f64> = (0..mesh.element_count()).map(|e| mesh.volume(ElementId::new(e))).collect();
         let smallest = (0..sizes.len()).min_by(|&a, &b| sizes[a].total_cmp(&sizes[b])).unwrap();
         let near = mesh.cell_points(ElementId::new(smallest)).iter().map(|p| p[0].hypot(p[1])).fold(0.0, f64::max);
         assert!(near < 2e-3, "{near}");
@@ -73,15 +71,16 @@ fn graded_meshes_are_bisections() {
     let wish = Wish { measure: Measure::Sup, ..Wish::new(0.45) };
     let (found, first) = (adapted(&case, wish.clone()), case.problem.mesh());
     let best = found.best.as_ref().unwrap().problem.mesh();
-    let locator = Locator::new(first);
+    let AnyMesh::D2(first_mesh) = first else { panic!("a bar") };
+    let locator = Locator::new(first_mesh);
     for e in (0..best.element_count()).map(ElementId::new) {
         let points = best.cell_points(e);
         let middle = std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / 3.0);
         let parent = locator.element_at(&middle).unwrap();
         // Rounding of barycentric coordinates.
-        assert!(points.iter().all(|p| locator.weights(parent, p).iter().all(|w| *w > -1e-12)));
+        assert!(points.iter().all(|p| locator.weights(parent, &cut(p)).iter().all(|w| *w > -1e-12)));
     }
-    let length = |mesh: &Mesh<2, 3>, name: &str| -> f64 {
+    let length = |mesh: &AnyMesh, name: &str| -> f64 {
         mesh.facet_groups()[name].iter().map(|facet| mesh.facet_normal(*facet).1).sum()
     };
     for name in ["left", "right", "bottom", "top"] {
@@ -129,7 +128,7 @@ fn bars_are_adapted() {
     let text = "[mesh]\nbar = { length = 0.1, elements = 16 }\n[material]\nyoung = 70e9\ndensity = 2700.0\n\
                 section = 0.02\n[initial]\nvelocity = -4.0\n[[obstacle]]\npoint = -1e-5\nnormal = 1.0\n[time]\n\
                 end = 60e-6\ncourant = 0.9\n";
-    let ByDimension::Bar(case) = parse(Source::new("case", text.to_string())).unwrap() else { panic!("a plane body") };
+    let case = parse(Source::new("case", text.to_string())).unwrap();
     let wish = (Wish::new(0.08), Mesher::Bisection);
     let found = adapt(&case.problem, &case.times, case.options, wish, &mut Unobserved, &mut |_| ()).unwrap();
     assert_eq!(found.reason, Some(Reason::Reached), "{}", table(&found));
@@ -149,9 +148,8 @@ fn surfaces_in_pairs_stay_so() {
     let rest = "[[contact]]\nfriction = 0.2\n[[support]]\ngroup = \"lower.bottom\"\ncomponents = [\"x\", \"y\"]\n\
                 [time]\nend = 30e-6\ncourant = 0.9\n";
     let text = bodies + rest;
-    let ByDimension::Plane(case) = parse(Source::new("case", text)).unwrap() else { panic!("a bar") };
-    let pairs =
-        |problem: &percute_core::problem::Problem<2, 3>| problem.facing_nodes().iter().map(Vec::len).sum::<usize>();
+    let case = parse(Source::new("case", text)).unwrap();
+    let pairs = |problem: &AnyProblem| problem.facing_nodes().iter().map(Vec::len).sum::<usize>();
     assert_eq!(pairs(&case.problem), 5);
     let found = adapted(&case, Wish::new(0.25));
     assert_eq!(found.reason, Some(Reason::Reached), "{}", table(&found));

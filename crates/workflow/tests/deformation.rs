@@ -6,7 +6,7 @@ use percute_core::history::History;
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::observer::Unobserved;
-use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem, plausibility_warnings};
+use percute_core::problem::{AnyProblem, BarProblem, Initial, TriangleProblem, plausibility_warnings};
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_workflow::report::{Report, Subject, Trust, summary};
@@ -22,7 +22,7 @@ fn aluminium() -> Elastic {
 }
 
 /// The report of a run of so many steps of 0.9 Δt_c.
-fn report<const D: usize, const N: usize>(problem: &Problem<D, N>, steps: usize) -> Report {
+fn report(problem: &AnyProblem, steps: usize) -> Report {
     let critical_step = critical_time_step(problem);
     let times = TimeGrid::uniform(0.9 * critical_step * steps as f64, steps).unwrap();
     let (options, storage) = (Options::default(), Storage { file: None, memory: None, open: None });
@@ -36,11 +36,11 @@ fn named(report: &Report, name: &str) -> Option<String> {
 }
 
 /// A bar that strikes a wall at once; its strain is −v/c until the wave comes back.
-fn bar(speed: f64, law: Elastic) -> BarProblem {
+fn bar(speed: f64, law: Elastic) -> AnyProblem {
     let mesh = BarMesh::uniform_bar(0.1, 50).unwrap();
     let wall = Obstacle::plane([-1e-7 * speed], [1.0], 0.0, None).unwrap();
-    let builder = Problem::builder(mesh).material(law).initial_velocity(Initial::Uniform([-speed]));
-    builder.obstacle(wall).build().unwrap()
+    let builder = BarProblem::builder(mesh).material(law).initial_velocity(Initial::Uniform([-speed]));
+    builder.obstacle(wall).build().unwrap().into()
 }
 
 fn of_bar() -> Elastic {
@@ -48,13 +48,13 @@ fn of_bar() -> Elastic {
 }
 
 /// A rectangle that spins (rad/s) about its centre and flies, over a plane that it does not reach.
-fn spinning(spin: f64, velocity: [f64; 2]) -> TriangleProblem {
+fn spinning(spin: f64, velocity: [f64; 2]) -> AnyProblem {
     let mesh = TriangleMesh::rectangle(0.05, 0.04, 5, 4).unwrap();
     let motion = |x: &[f64; 2]| [velocity[0] - spin * (x[1] - 0.02), velocity[1] + spin * (x[0] - 0.025)];
     let velocity = mesh.points().iter().map(motion).collect();
     let plane = Obstacle::plane([0.0, -1.0], [0.0, 1.0], 0.0, None).unwrap();
     let builder = TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity));
-    builder.obstacle(plane).build().unwrap()
+    builder.obstacle(plane).build().unwrap().into()
 }
 
 /// The strain of a bar is that of the exact solution: oscillations behind a front of lumped elements have a tenth of it
@@ -111,7 +111,7 @@ fn one_of_two_bodies_turns() {
     let motion = |x: &[f64; 2]| if x[0] < 0.05 { [0.0; 2] } else { [-3000.0 * (x[1] - 0.01), 3000.0 * (x[0] - 0.11)] };
     let velocity = mesh.points().iter().map(motion).collect();
     let builder = TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity));
-    let found = report(&builder.build().unwrap(), 100);
+    let found = report(&builder.build().unwrap().into(), 100);
     let [left, right] = &found.deformation.bodies[..] else { panic!("two bodies") };
     assert_eq!([&left.name[..], &right.name[..]], ["left", "right"]);
     assert!(left.rotation == 0.0 && right.rotation > 0.05, "{left:?} {right:?}");
@@ -156,7 +156,7 @@ fn nothing_touched_comes_first() {
     let mesh = TriangleMesh::rectangle(0.05, 0.04, 5, 4).unwrap();
     let plane = Obstacle::plane([0.0, -1e-3], [0.0, 1.0], 0.2, None).unwrap();
     let builder = TriangleProblem::builder(mesh).material(aluminium()).obstacle(plane);
-    let found = report(&builder.clone().initial_velocity(Initial::Uniform([0.0, -speed])).build().unwrap(), 100);
+    let found = report(&builder.clone().initial_velocity(Initial::Uniform([0.0, -speed])).build().unwrap().into(), 100);
     let nearest = found.contact.as_ref().and_then(|contact| contact.nearest).unwrap();
     // Displacements of 1e-4 m have rounding of 1e-20 m; a speed from two of them 1e-13 of it.
     assert!((nearest.gap - (1e-3 - speed * found.end)).abs() < 1e-15, "{nearest:?}");
@@ -167,11 +167,11 @@ fn nothing_touched_comes_first() {
     let json: serde_json::Value = serde_json::from_str(&found.verdict_to_json().unwrap()).unwrap();
     assert_eq!(json["contact"]["nearest"]["gap"], nearest.gap);
 
-    let away = report(&builder.clone().initial_velocity(Initial::Uniform([0.0, speed])).build().unwrap(), 100);
+    let away = report(&builder.clone().initial_velocity(Initial::Uniform([0.0, speed])).build().unwrap().into(), 100);
     assert!(away.verdict.text[0].contains("no node approaches"), "{:?}", away.verdict.text);
     // Without planes nothing can touch, and after a touch nothing is left.
     let free = TriangleProblem::builder(TriangleMesh::rectangle(0.05, 0.04, 5, 4).unwrap()).material(aluminium());
-    let free = report(&free.initial_velocity(Initial::Uniform([0.0, -speed])).build().unwrap(), 20);
+    let free = report(&free.initial_velocity(Initial::Uniform([0.0, -speed])).build().unwrap().into(), 20);
     let touched = report(&bar(10.0, of_bar()), 60);
     for found in [free, touched] {
         assert!(!found.verdict.text[0].contains("Nothing touched"), "{:?}", found.verdict.text);
@@ -189,7 +189,7 @@ fn needles_are_named() {
     let mesh = TriangleMesh::new(points, &cells, &Default::default(), &Default::default()).unwrap();
     let plane = Obstacle::plane([0.0, -1e-6], [0.0, 1.0], 0.2, None).unwrap();
     let builder = TriangleProblem::builder(mesh.clone()).material(aluminium()).obstacle(plane);
-    let found = report(&builder.initial_velocity(Initial::Uniform([0.0, -25.0])).build().unwrap(), 200);
+    let found = report(&builder.initial_velocity(Initial::Uniform([0.0, -25.0])).build().unwrap().into(), 200);
     let (poor, total) = (&found.verdict.poor_elements, found.by_element.iter().map(|error| error * error).sum::<f64>());
     assert!(poor.len() == 3 && poor.iter().map(|one| one.share).sum::<f64>() > 0.2, "{poor:?}");
     for one in poor {

@@ -1,8 +1,7 @@
 //! Properties that no case of the evidence has lower the trust, and are named; such cases without them keep theirs.
 
-use percute_core::each_dimension;
 use percute_core::observer::Unobserved;
-use percute_workflow::case::{CaseOf, Source, parse};
+use percute_workflow::case::{Case, Source, parse};
 use percute_workflow::report::{Report, Touches, Trust, Verdict};
 use percute_workflow::run::{Analysis, Storage, run};
 
@@ -13,10 +12,10 @@ const BAR: &str =
 
 fn verdict(text: &str) -> Verdict {
     let case = parse(Source::new("case.toml", text)).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    each_dimension!(case, case => of(&case))
+    of(&case)
 }
 
-fn of<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Verdict {
+fn of(case: &Case) -> Verdict {
     let (analysis, storage) =
         (Analysis { options: case.options, ..Analysis::default() }, Storage { file: None, memory: None, open: None });
     let results = run(&case.problem, &case.times, &analysis, storage, &mut Unobserved).unwrap().results;

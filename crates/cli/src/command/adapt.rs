@@ -5,31 +5,18 @@ use super::{Console, case, resolved};
 use crate::args::AdaptArguments;
 use crate::exit::{DONE, FAILED, INTERRUPTED};
 use crate::progress::Watch;
-use percute_core::each_dimension;
-use percute_core::mesh::{Generated, Mesh};
 use percute_estimator::Options;
 use percute_io::{Overwrite, gmsh};
 use percute_presentation::chart::adaptation as adaptation_chart;
 use percute_presentation::file;
 use percute_workflow::Failure;
 use percute_workflow::adapt::{Adaptation, Geometry, Mesher, Next, Reason, Wish, adapt, announced, table};
-use percute_workflow::case::CaseOf;
 use percute_workflow::effort::Long;
 use percute_workflow::outputs::{self, OutputFile};
 use percute_workflow::run::located;
 
 pub(super) fn command(arguments: &AdaptArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
-    each_dimension!(case(&arguments.case)?, case => adapt_case(&case, arguments, console))
-}
-
-fn adapt_case<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
-    arguments: &AdaptArguments,
-    console: &mut Console<'_>,
-) -> Result<u8, Failure>
-where
-    Mesh<D, N>: Generated,
-{
+    let case = &case(&arguments.case)?;
     let AdaptArguments { target, measure, limit, runs, json, force, threads, quiet, .. } = *arguments;
     let save = arguments.save.as_deref().map(|file| OutputFile { what: "--save", file });
     let picture = arguments.picture.as_deref().map(|file| OutputFile { what: "--picture", file });
@@ -83,7 +70,7 @@ fn mesher(arguments: &AdaptArguments, scale: f64) -> Result<Mesher, Failure> {
     }
 }
 
-fn code<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>) -> u8 {
+fn code(adaptation: &Adaptation) -> u8 {
     match adaptation.reason {
         Some(Reason::Reached) => DONE,
         Some(Reason::Interrupted) => INTERRUPTED,

@@ -6,7 +6,6 @@ use super::result::{Finished, give};
 use super::run::{request, within};
 use crate::args::EstimateArguments;
 use crate::progress::Watch;
-use percute_core::each_dimension;
 use percute_estimator::{EstimateError, Options, Request};
 use percute_workflow::Failure;
 use percute_workflow::grade::Graded;
@@ -24,11 +23,11 @@ pub(super) fn command(arguments: &EstimateArguments, console: &mut Console<'_>) 
     let tables =
         arguments.print.csv.as_deref().map(|path| Destination::check("--csv", path, inputs, arguments.work.force));
     let tables = tables.transpose()?;
-    each_dimension!(open(&arguments.history)?, stored => estimate(&stored, output, tables, arguments, console))
+    estimate(&open(&arguments.history)?, output, tables, arguments, console)
 }
 
-fn estimate<const D: usize, const N: usize>(
-    stored: &Stored<D, N>,
+fn estimate(
+    stored: &Stored,
     output: Option<OutputFile<'_>>,
     tables: Option<Destination>,
     arguments: &EstimateArguments,

@@ -5,26 +5,18 @@ use super::outputs::taken;
 use crate::args::ExportArguments;
 use crate::exit::{DONE, INTERRUPTED};
 use crate::progress::Watch;
-use percute_core::each_dimension;
 use percute_io::{Overwrite, estimate_file};
 use percute_workflow::Failure;
 use percute_workflow::choice::StepChoice;
 use percute_workflow::export::{Export, Names, Request};
-use percute_workflow::history::{Stored, lacks, open};
+use percute_workflow::history::{lacks, open};
 use percute_workflow::message::{counted, trimmed};
 
 /// The most instants whose times are printed.
 const FEW: usize = 6;
 
 pub(super) fn command(arguments: &ExportArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
-    each_dimension!(open(&arguments.history)?, stored => export(&stored, arguments, console))
-}
-
-fn export<const D: usize, const N: usize>(
-    stored: &Stored<D, N>,
-    arguments: &ExportArguments,
-    console: &mut Console<'_>,
-) -> Result<u8, Failure> {
+    let stored = &open(&arguments.history)?;
     let ExportArguments { history, output, estimate, force, quiet, .. } = arguments;
     let error = estimate.as_deref().map(estimate_file::open).transpose()?.map(|file| file.by_element);
     let instants = if arguments.times.is_some() { "--times" } else { "--steps" };

@@ -3,11 +3,9 @@
 use super::{Console, case};
 use crate::args::InfoArguments;
 use crate::exit::DONE;
-use percute_core::each_dimension;
-use percute_core::simplex::ByDimension;
 use percute_io::{Kind, Overwrite, estimate_file, gmsh, kind};
 use percute_workflow::Failure;
-use percute_workflow::case::CaseOf;
+use percute_workflow::case::Case;
 use percute_workflow::history::open;
 use percute_workflow::info::{Info, of_case, of_estimate, of_history, of_mesh};
 use percute_workflow::report::{reported, units_in};
@@ -32,12 +30,12 @@ fn read(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
         Kind::Other if file.extension().is_some_and(|end| end.eq_ignore_ascii_case("msh")) => {
             return of_gmsh(file, console);
         }
-        Kind::Other => return Ok(each_dimension!(case(file)?, case => with_warnings(&case, console)?)),
+        Kind::Other => return with_warnings(&case(file)?, console),
         Kind::Estimate => return Ok(of_estimate(file, &estimate_file::open(file)?)),
         // The reader of histories says what a stranger holds instead.
         Kind::History | Kind::OtherHdf5 => {}
     }
-    Ok(each_dimension!(open(file)?, stored => of_history(&stored)))
+    Ok(of_history(&open(file)?))
 }
 
 /// Writes the tables of a history or an estimate file.
@@ -45,28 +43,19 @@ fn tables(file: &Path, path: &Path, force: bool) -> Result<(), Failure> {
     let place = Destination::check("--csv", path, &[("file to be described", file)], force)?;
     let overwrite = Overwrite::allowed(force);
     match kind(file)? {
-        Kind::History => each_dimension!(open(file)?, stored => {
+        Kind::History => {
+            let stored = open(file)?;
             let (contact, balance) = stored.results()?;
             let (mesh, contact, units) = (stored.problem.mesh(), Some(&contact), stored.problem.units());
             place.write(&Results { mesh, contact, units, balance: &balance, error: &[], by_element: &[] }, overwrite)
-        }),
+        }
         Kind::Estimate => {
             let estimate = estimate_file::open(file)?;
             let (error, by_element) = (&estimate.over_time[..], &estimate.by_element[..]);
             let units = units_in(&estimate.report);
-            match (&estimate.mesh, estimate_file::contact(file)?) {
-                (ByDimension::Bar(mesh), Some(ByDimension::Bar(contact))) => place.write(
-                    &Results { mesh, contact: Some(&contact), units, balance: &[], error, by_element },
-                    overwrite,
-                ),
-                (ByDimension::Plane(mesh), Some(ByDimension::Plane(contact))) => place.write(
-                    &Results { mesh, contact: Some(&contact), units, balance: &[], error, by_element },
-                    overwrite,
-                ),
-                (mesh, _) => each_dimension!(mesh, mesh => {
-                    place.write(&Results { mesh, contact: None, units, balance: &[], error, by_element }, overwrite)
-                }),
-            }
+            let contact = estimate_file::contact(file)?;
+            let (mesh, contact) = (&estimate.mesh, contact.as_ref());
+            place.write(&Results { mesh, contact, units, balance: &[], error, by_element }, overwrite)
         }
         Kind::Other | Kind::OtherHdf5 => {
             let told = "--csv applies to a history or an estimate file; `percute run` makes one of a case";
@@ -84,10 +73,7 @@ fn of_gmsh(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
 }
 
 /// A case, with its warnings on standard error.
-fn with_warnings<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
-    console: &mut Console<'_>,
-) -> Result<Info, Failure> {
+fn with_warnings(case: &Case, console: &mut Console<'_>) -> Result<Info, Failure> {
     console.warn_about(case, false);
     console.warn(&reported(case.problem.mesh()).collect::<Vec<_>>());
     Ok(of_case(case)?)

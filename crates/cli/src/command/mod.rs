@@ -28,7 +28,7 @@ use percute_estimator::EstimateError;
 use percute_io::{FileError, is_hdf5, is_named_pipe};
 use percute_system::is_pipe;
 use percute_workflow::Failure;
-use percute_workflow::case::{Case, CaseOf, Source, parse, stranger};
+use percute_workflow::case::{Case, Source, parse, stranger};
 use percute_workflow::message::hint;
 use percute_workflow::report::Warning;
 use percute_workflow::run::{located, resolved as search};
@@ -167,7 +167,7 @@ impl Console<'_> {
     }
 
     /// Prints the plausibility warnings about a case and returns their names.
-    fn warn_about<const D: usize, const N: usize>(&mut self, case: &CaseOf<D, N>, quiet: bool) -> Vec<&'static str> {
+    fn warn_about(&mut self, case: &Case, quiet: bool) -> Vec<&'static str> {
         let warnings = if quiet { Vec::new() } else { case.plausibility_warnings(false) };
         self.warn(&warnings);
         warnings.iter().map(|warning| warning.name).collect()
@@ -180,11 +180,7 @@ impl Console<'_> {
 }
 
 /// The case with the end of its run; no case if the search for it was stopped.
-fn resolved<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
-    quiet: bool,
-    console: &mut Console<'_>,
-) -> Result<Option<CaseOf<D, N>>, Failure> {
+fn resolved(case: &Case, quiet: bool, console: &mut Console<'_>) -> Result<Option<Case>, Failure> {
     let watch = &mut Watch::new(console.progress && !quiet, console.stop);
     let found = search(case, watch).map_err(|failure| located(case, failure))?;
     watch.clear();

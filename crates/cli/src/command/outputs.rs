@@ -6,7 +6,7 @@ use percute_io::history::Writer;
 use percute_io::{FileCause, FileError, Overwrite};
 use percute_presentation::file;
 use percute_workflow::Failure;
-use percute_workflow::case::CaseOf;
+use percute_workflow::case::Case;
 use percute_workflow::history;
 use percute_workflow::message::bytes;
 use percute_workflow::outputs::{self, OutputFile};
@@ -48,13 +48,13 @@ pub(super) fn taken(error: FileError) -> Failure {
 }
 
 /// Makes the history file of a case and says how large it is.
-pub(super) fn begin_history<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
+pub(super) fn begin_history(
+    case: &Case,
     output: OutputFile<'_>,
     force: bool,
     quiet: bool,
     console: &mut Console<'_>,
-) -> Result<Writer<D>, Failure> {
+) -> Result<Writer, Failure> {
     let plan = history::plan(&case.problem, &case.times, &case.options, Some(&case.source), &case.output.keep)?;
     let writer = plan.create(output.file, Overwrite::allowed(force)).map_err(taken)?;
     if !quiet {

@@ -4,8 +4,7 @@ use super::{Console, case, resolved};
 use crate::args::PlanArguments;
 use crate::exit::{DONE, INTERRUPTED};
 use crate::progress::Watch;
-use percute_core::each_dimension;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_io::{Overwrite, gmsh, is_hdf5, is_vtkhdf_name};
@@ -32,27 +31,25 @@ pub(super) fn command(arguments: &PlanArguments, console: &mut Console<'_>) -> R
     let what = if is_history { "history" } else { "case file" };
     outputs::check(&[(what, file)], &[size_field(arguments)], *force)?;
     if is_history {
-        return each_dimension!(open(file)?, stored => {
-            let options = Options { threads: *threads, ..stored.options };
-            let watch = &mut Watch::new(console.progress && !quiet, console.stop);
-            let analysis = Analysis { options, ..Analysis::default() };
-            let Graded { results, times, .. } = stored.estimate(&analysis, arguments.accept_inconsistent, watch)?;
-            watch.clear();
-            planned(&stored.problem, &times, options, &results, arguments, console)
-        });
-    }
-    each_dimension!(case(file)?, case => {
-        case.check_run(true, Long::asked(*long, "--long"))?;
-        console.warn_about(&case, *quiet);
-        let Some(case) = &resolved(&case, *quiet, console)? else { return Ok(INTERRUPTED) };
-        let options = Options { threads: *threads, ..case.options };
+        let stored = open(file)?;
+        let options = Options { threads: *threads, ..stored.options };
         let watch = &mut Watch::new(console.progress && !quiet, console.stop);
         let analysis = Analysis { options, ..Analysis::default() };
-        let done = run(&case.problem, &case.times, &analysis, Storage::default(), watch);
-        let results = done.map_err(|failure| located(case, failure))?.stored()?;
+        let Graded { results, times, .. } = stored.estimate(&analysis, arguments.accept_inconsistent, watch)?;
         watch.clear();
-        planned(&case.problem, &case.times, options, &results, arguments, console)
-    })
+        return planned(&stored.problem, &times, options, &results, arguments, console);
+    }
+    let case = case(file)?;
+    case.check_run(true, Long::asked(*long, "--long"))?;
+    console.warn_about(&case, *quiet);
+    let Some(case) = &resolved(&case, *quiet, console)? else { return Ok(INTERRUPTED) };
+    let options = Options { threads: *threads, ..case.options };
+    let watch = &mut Watch::new(console.progress && !quiet, console.stop);
+    let analysis = Analysis { options, ..Analysis::default() };
+    let done = run(&case.problem, &case.times, &analysis, Storage::default(), watch);
+    let results = done.map_err(|failure| located(case, failure))?.stored()?;
+    watch.clear();
+    planned(&case.problem, &case.times, options, &results, arguments, console)
 }
 
 fn size_field(arguments: &PlanArguments) -> Option<OutputFile<'_>> {
@@ -60,11 +57,11 @@ fn size_field(arguments: &PlanArguments) -> Option<OutputFile<'_>> {
 }
 
 /// Prints the plan and writes the size field.
-fn planned<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+fn planned(
+    problem: &AnyProblem,
     times: &TimeGrid,
     options: Options,
-    results: &Results<D>,
+    results: &Results,
     arguments: &PlanArguments,
     console: &mut Console<'_>,
 ) -> Result<u8, Failure> {
@@ -90,11 +87,11 @@ fn planned<const D: usize, const N: usize>(
     Ok(DONE)
 }
 
-fn write<const D: usize, const N: usize>(
+fn write(
     file: &Path,
     overwrite: Overwrite,
     scale: f64,
-    field: Result<SizeField<D, N>, percute_core::mesh::MeshError>,
+    field: Result<SizeField, percute_core::mesh::MeshError>,
 ) -> Result<(), Failure> {
     let told = |error: &dyn std::fmt::Display| Failure::Argument(format!("--size-field: {error}"));
     let field = field.map_err(|error| told(&error))?;

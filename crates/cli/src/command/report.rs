@@ -5,7 +5,6 @@ use super::present::{Shown, present};
 use super::{Console, estimate, run};
 use crate::args::{EstimateArguments, PrintArguments, ReportArguments, RunArguments, WorkArguments};
 use crate::exit::DONE;
-use percute_core::each_dimension;
 use percute_io::{Kind, estimate_file, is_hdf5, is_vtkhdf_name, kind};
 use percute_presentation::{About, Body, Document, Surface};
 use percute_workflow::Failure;
@@ -38,9 +37,9 @@ fn stored(file: &Path, print: &PrintArguments, work: &WorkArguments, console: &m
     let unusable = |error| Failure::Argument(format!("{}: {error}", file.display()));
     let document = Document::parse(&found.report).map_err(unusable)?;
     print.about.fits(&document).map_err(Failure::Argument)?;
-    let surfaces = |contact| each_dimension!(&contact, results => Surface::all(results, &document));
+    let surfaces = |contact| Surface::all(&contact, &document);
     let surfaces = contact.map_or_else(Vec::new, surfaces);
-    let (body, statement) = (Body::of(&found.mesh), found.statement);
+    let (body, statement) = (Body::new(&found.mesh), found.statement);
     let shown = Shown { body, document, statement, case: found.case.as_ref(), surfaces };
     present(&shown, print, work, console)?;
     Ok(DONE)

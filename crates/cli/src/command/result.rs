@@ -17,11 +17,11 @@ use percute_workflow::run::Results;
 use percute_workflow::tables::{self, Destination};
 
 /// An estimated run or history, ready for its report.
-pub(super) struct Finished<'a, const D: usize, const N: usize> {
-    pub(super) subject: Subject<'a, D, N>,
+pub(super) struct Finished<'a> {
+    pub(super) subject: Subject<'a>,
     pub(super) options: Options,
     pub(super) case: Option<Case>,
-    pub(super) results: Results<D>,
+    pub(super) results: Results,
     /// Duration of the work (s).
     pub(super) seconds: f64,
     /// Names of the warnings that were printed before the work.
@@ -31,8 +31,8 @@ pub(super) struct Finished<'a, const D: usize, const N: usize> {
 }
 
 /// Makes the report; prints the warnings and the result, draws the picture and stores the estimate file.
-pub(super) fn give<const D: usize, const N: usize>(
-    finished: &Finished<'_, D, N>,
+pub(super) fn give(
+    finished: &Finished<'_>,
     print: &PrintArguments,
     stored: Option<OutputFile<'_>>,
     work: &WorkArguments,
@@ -57,8 +57,8 @@ pub(super) fn give<const D: usize, const N: usize>(
 }
 
 /// Draws the picture and writes the page, as far as they are wanted.
-fn show<const D: usize, const N: usize>(
-    finished: &Finished<'_, D, N>,
+fn show(
+    finished: &Finished<'_>,
     json: &str,
     print: &PrintArguments,
     work: &WorkArguments,
@@ -71,7 +71,7 @@ fn show<const D: usize, const N: usize>(
     let document = Document::parse(json).map_err(|error| Failure::Argument(error.to_string()))?;
     let shown = Shown {
         body: Body::new(subject.problem.mesh()),
-        statement: statement(subject.problem, Some(&options.filled(D)))?,
+        statement: statement(subject.problem, Some(&options.filled(subject.problem.dimension())))?,
         case: case.as_ref(),
         surfaces: Surface::all(&results.contact, &document),
         document,
@@ -80,7 +80,7 @@ fn show<const D: usize, const N: usize>(
 }
 
 /// Writes the tables, if they are wanted.
-fn tabulate<const D: usize, const N: usize>(finished: &Finished<'_, D, N>, force: bool) -> Result<(), Failure> {
+fn tabulate(finished: &Finished<'_>, force: bool) -> Result<(), Failure> {
     let Some(tables) = &finished.tables else { return Ok(()) };
     let Results { simulation, estimate, contact, .. } = &finished.results;
     let problem = finished.subject.problem;
@@ -90,14 +90,9 @@ fn tabulate<const D: usize, const N: usize>(finished: &Finished<'_, D, N>, force
     tables.write(&results, Overwrite::allowed(force))
 }
 
-fn store<const D: usize, const N: usize>(
-    finished: &Finished<'_, D, N>,
-    json: &str,
-    output: OutputFile<'_>,
-    force: bool,
-) -> Result<(), Failure> {
+fn store(finished: &Finished<'_>, json: &str, output: OutputFile<'_>, force: bool) -> Result<(), Failure> {
     let Finished { subject: Subject { problem, .. }, options, case, results, .. } = finished;
-    let statement = statement(problem, Some(&options.filled(D)))?;
+    let statement = statement(problem, Some(&options.filled(problem.dimension())))?;
     let Results { estimate, contact, .. } = results;
     let (case, contact) = (case.as_ref(), Some(contact));
     let contents = EstimateContents { problem, estimate, contact, statement: &statement, case, report: json };

@@ -4,34 +4,30 @@ use super::{Console, resolved};
 use crate::args::RunArguments;
 use crate::progress::Watch;
 use percute_core::dynamics::Simulation;
-use percute_core::simplex::{Element, Simplex};
 use percute_workflow::Failure;
-use percute_workflow::case::CaseOf;
+use percute_workflow::case::Case;
 use percute_workflow::history::Stored;
 use percute_workflow::outputs::OutputFile;
 use percute_workflow::run::{Outcome, located};
 use percute_workflow::until::Until;
 
 /// What a run finds at its start.
-pub(super) enum Left<const D: usize, const N: usize> {
+pub(super) enum Left {
     /// No history: it begins.
     Nothing,
     /// A history to which steps are missing.
-    Begun(Box<Stored<D, N>>),
+    Begun(Box<Stored>),
     /// A history with all that it is to hold.
-    Whole(Box<Stored<D, N>>),
+    Whole(Box<Stored>),
 }
 
 /// Looks for the history that a run of this case left, if it is to go on; `estimated` if its error is estimated.
-pub(super) fn left<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
+pub(super) fn left(
+    case: &Case,
     history: Option<OutputFile<'_>>,
     resume: bool,
     estimated: bool,
-) -> Result<Left<D, N>, Failure>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+) -> Result<Left, Failure> {
     if !resume {
         return Ok(Left::Nothing);
     }
@@ -46,10 +42,7 @@ where
     Ok(if stored.file.has_ended() { Left::Whole(stored) } else { Left::Begun(stored) })
 }
 
-impl<const D: usize, const N: usize> Left<D, N>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+impl Left {
     /// Refuses to begin again, and so to replace a history that keeps a part of its run, unless `--force` is given.
     pub(super) fn refuse_a_part(&self, arguments: &RunArguments) -> Result<(), Failure> {
         let Some(stored) = self.history().filter(|stored| stored.file.expect_all().is_err()) else { return Ok(()) };
@@ -66,21 +59,21 @@ where
     /// The case with the end of its run, which the history knows; no case if the search for it was stopped.
     pub(super) fn resolved(
         &self,
-        case: &CaseOf<D, N>,
+        case: &Case,
         quiet: bool,
         console: &mut Console<'_>,
-    ) -> Result<Option<CaseOf<D, N>>, Failure> {
+    ) -> Result<Option<Case>, Failure> {
         let Some(stored) = self.history() else { return resolved(case, quiet, console) };
         let times = stored.file.run_times().clone();
         let unended = case.until.as_ref().filter(|until| times.end() >= until.longest).map(Until::not_found);
         if !quiet {
             console.warn(&unended);
         }
-        Ok(Some(CaseOf { times, until: None, unended, ..case.clone() }))
+        Ok(Some(Case { times, until: None, unended, ..case.clone() }))
     }
 
     /// The history that is there, which is no new file then.
-    pub(super) fn history(&self) -> Option<&Stored<D, N>> {
+    pub(super) fn history(&self) -> Option<&Stored> {
         match self {
             Self::Nothing => None,
             Self::Begun(stored) | Self::Whole(stored) => Some(stored),
@@ -89,16 +82,13 @@ where
 }
 
 /// Lets the simulation go on to its end.
-pub(super) fn go_on<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
-    stored: &Stored<D, N>,
+pub(super) fn go_on(
+    case: &Case,
+    stored: &Stored,
     threads: Option<usize>,
     quiet: bool,
     console: &mut Console<'_>,
-) -> Result<Outcome<Simulation>, Failure>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+) -> Result<Outcome<Simulation>, Failure> {
     if !quiet {
         let (file, held) = (stored.file.path().display(), stored.file.count());
         let planned = stored.file.times().instants().len();

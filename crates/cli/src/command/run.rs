@@ -7,11 +7,9 @@ use super::{Console, case};
 use crate::args::{MapArguments, RunArguments, WorkArguments};
 use crate::exit::INTERRUPTED;
 use crate::progress::Watch;
-use percute_core::each_dimension;
-use percute_core::simplex::{Element, Simplex};
 use percute_estimator::{EstimateError, Options, Request, RunError};
 use percute_workflow::Failure;
-use percute_workflow::case::{CaseOf, Instants};
+use percute_workflow::case::{Case, Instants};
 use percute_workflow::effort::Long;
 use percute_workflow::history::{Stored, stored_case};
 use percute_workflow::outputs::{OutputFile, chosen};
@@ -22,17 +20,7 @@ use std::ops::ControlFlow::{self, Break, Continue};
 use std::time::Instant;
 
 pub(super) fn command(arguments: &RunArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
-    each_dimension!(case(&arguments.case)?, case => run_case(&case, arguments, console))
-}
-
-fn run_case<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
-    arguments: &RunArguments,
-    console: &mut Console<'_>,
-) -> Result<u8, Failure>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+    let case = &case(&arguments.case)?;
     let RunArguments { maps, print, work, .. } = arguments;
     let [history, stored] = files(case, arguments);
     let left = left(case, history, arguments.resume, true)?;
@@ -70,17 +58,14 @@ where
 }
 
 /// The results of the run, or of the history that it left; an exit code if it was stopped before there were any.
-fn results<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
-    left: Left<D, N>,
+fn results(
+    case: &Case,
+    left: Left,
     analysis: &Analysis,
     history: Option<OutputFile<'_>>,
     work: &WorkArguments,
     console: &mut Console<'_>,
-) -> Result<ControlFlow<u8, Outcome<Results<D>>>, Failure>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+) -> Result<ControlFlow<u8, Outcome<Results>>, Failure> {
     let start = Instant::now();
     let done = match left {
         // The estimate needs all steps.
@@ -122,14 +107,14 @@ where
 }
 
 /// Simulates and estimates beside the run.
-fn begin<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
+fn begin(
+    case: &Case,
     analysis: &Analysis,
     history: Option<OutputFile<'_>>,
     force: bool,
     work: &WorkArguments,
     console: &mut Console<'_>,
-) -> Result<Outcome<Results<D>>, Failure> {
+) -> Result<Outcome<Results>, Failure> {
     let path = history.map(|history| history.file);
     let history = history.map(|file| begin_history(case, file, force, work.quiet, console)).transpose()?;
     let watch = &mut Watch::new(console.progress && !work.quiet, console.stop);
@@ -143,12 +128,12 @@ fn begin<const D: usize, const N: usize>(
 }
 
 /// Estimates the steps of a run that has ended.
-fn again<const D: usize, const N: usize>(
-    stored: &Stored<D, N>,
+fn again(
+    stored: &Stored,
     analysis: &Analysis,
     work: &WorkArguments,
     console: &mut Console<'_>,
-) -> Result<Outcome<Results<D>>, Failure> {
+) -> Result<Outcome<Results>, Failure> {
     let watch = &mut Watch::new(console.progress && !work.quiet, console.stop);
     let done = stored.estimate(analysis, false, watch)?;
     watch.clear();
@@ -156,10 +141,7 @@ fn again<const D: usize, const N: usize>(
 }
 
 /// The files of the history and of the estimate, as far as they are wanted.
-fn files<'a, const D: usize, const N: usize>(
-    case: &'a CaseOf<D, N>,
-    arguments: &'a RunArguments,
-) -> [Option<OutputFile<'a>>; 2] {
+fn files<'a>(case: &'a Case, arguments: &'a RunArguments) -> [Option<OutputFile<'a>>; 2] {
     let RunArguments { history, estimate, .. } = arguments;
     let stated = &case.output;
     [

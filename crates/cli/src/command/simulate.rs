@@ -6,10 +6,7 @@ use super::{Console, case};
 use crate::args::SimulateArguments;
 use crate::exit::{DONE, INTERRUPTED};
 use crate::progress::Watch;
-use percute_core::each_dimension;
-use percute_core::simplex::{Element, Simplex};
 use percute_workflow::Failure;
-use percute_workflow::case::CaseOf;
 use percute_workflow::effort::Long;
 use percute_workflow::outputs::{OutputFile, chosen};
 use percute_workflow::report::{drifted, reported, simulated};
@@ -18,17 +15,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 pub(super) fn command(arguments: &SimulateArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
-    each_dimension!(case(&arguments.case)?, case => simulate(&case, arguments, console))
-}
-
-fn simulate<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
-    arguments: &SimulateArguments,
-    console: &mut Console<'_>,
-) -> Result<u8, Failure>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+    let case = &case(&arguments.case)?;
     let SimulateArguments { force, quiet, long, .. } = *arguments;
     let named = named_after(&arguments.case);
     let keys = ["--history", "[output] history"];

@@ -5,13 +5,11 @@ use super::{Console, case, resolved};
 use crate::args::VerifyArguments;
 use crate::exit::{DONE, INTERRUPTED};
 use crate::progress::Watch;
-use percute_core::each_dimension;
 use percute_estimator::Options;
 use percute_io::Overwrite;
 use percute_presentation::chart::convergence;
 use percute_presentation::file;
 use percute_workflow::Failure;
-use percute_workflow::case::CaseOf;
 use percute_workflow::effort::Long;
 use percute_workflow::outputs::{self, OutputFile};
 use percute_workflow::quantity::probes;
@@ -19,14 +17,7 @@ use percute_workflow::run::located;
 use percute_workflow::verify::{announced, cost, prepare, table, verify};
 
 pub(super) fn command(arguments: &VerifyArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
-    each_dimension!(case(&arguments.case)?, case => verify_case(&case, arguments, console))
-}
-
-fn verify_case<const D: usize, const N: usize>(
-    case: &CaseOf<D, N>,
-    arguments: &VerifyArguments,
-    console: &mut Console<'_>,
-) -> Result<u8, Failure> {
+    let case = &case(&arguments.case)?;
     let VerifyArguments { levels, json, threads, quiet, force, long, .. } = *arguments;
     let picture = arguments.picture.as_deref().map(|file| OutputFile { what: "--picture", file });
     outputs::check(&case.inputs(Some(&arguments.case)), &[picture], force)?;

@@ -2,7 +2,7 @@
 
 use crate::common::{BAR, BLOCK, Bench, stderr, stdout};
 use percute_core::contact::{ContactResults, Status};
-use percute_io::estimate_file::{AnyContact, contact};
+use percute_io::estimate_file::contact;
 use serde_json::Value;
 
 fn json(bench: &Bench, arguments: &[&str]) -> Value {
@@ -11,11 +11,8 @@ fn json(bench: &Bench, arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-fn stored(bench: &Bench, file: &str) -> ContactResults<2> {
-    match contact(bench.path(file)).unwrap() {
-        Some(AnyContact::Plane(results)) => results,
-        other => panic!("{other:?}"),
-    }
+fn stored(bench: &Bench, file: &str) -> ContactResults {
+    contact(bench.path(file)).unwrap().unwrap()
 }
 
 /// Counts all numbers in a document.

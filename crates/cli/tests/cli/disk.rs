@@ -2,15 +2,15 @@
 
 use crate::common::{Bench, stderr};
 use crate::resume::{case, running};
-use percute_io::history::{AnyHistoryFile, open};
+use percute_io::history::open;
 use std::fs::{self, File};
 use std::path::Path;
 use std::process::Command;
 
 /// Displacements and reactions of all steps, bit by bit.
 fn steps(file: &Path) -> [Vec<u64>; 2] {
-    let AnyHistoryFile::Plane(file) = open(file).unwrap() else { panic!("bars") };
-    let (all, bits) = (0..file.count(), |values: Vec<[f64; 2]>| values.iter().flatten().map(|x| x.to_bits()).collect());
+    let file = open(file).unwrap();
+    let (all, bits) = (0..file.count(), |values: Vec<f64>| values.iter().map(|x| x.to_bits()).collect());
     [bits(file.displacement(all.clone()).unwrap()), bits(file.reaction(all).unwrap())]
 }
 

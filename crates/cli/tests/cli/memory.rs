@@ -63,7 +63,7 @@ fn no_command_is_aborted_for_want_of_memory() {
     never_aborts(&bench, "info case.toml", (60_000..=220_000).step_by(40_000), "180000 elements needs about 0.07");
     let mesh = TriangleMesh::rectangle(1.0, 1.0, 250, 250).unwrap();
     let format = Format { version: Version::V41, binary: false };
-    gmsh::write(&bench.path("block.msh"), Overwrite::Refuse, &mesh, format).unwrap();
+    gmsh::write(&bench.path("block.msh"), Overwrite::Refuse, &mesh.into(), format).unwrap();
     never_aborts(&bench, "info block.msh", (50_000..=200_000).step_by(30_000), "which cannot be had");
     let small = Bench::new(&BLOCK.replace("nx = 5, ny = 4", "nx = 40, ny = 40").replace("end = 5e-6", "end = 1e-7"));
     let verify = "verify case.toml --levels 2 --quiet --threads 1 --long";

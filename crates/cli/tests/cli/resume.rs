@@ -2,7 +2,6 @@
 
 use crate::common::{BLOCK, Bench, stderr, stdout};
 use crate::interrupt::{send_interrupt, start};
-use percute_core::each_dimension;
 use percute_io::history::open;
 use serde_json::Value;
 use std::process::{Child, Output};
@@ -16,7 +15,7 @@ pub(crate) fn case() -> String {
 
 /// Starts a command and waits until `count` steps are in its file.
 pub(crate) fn running(bench: &Bench, arguments: &[&str], file: &str, count: usize) -> Child {
-    let written = || each_dimension!(open(bench.path(file)).ok()?, file => Some(file.count()));
+    let written = || Some(open(bench.path(file)).ok()?.count());
     started(bench, arguments, || written() >= Some(count))
 }
 

@@ -7,9 +7,6 @@ pub struct Frame<const D: usize> {
 }
 
 impl<const D: usize> Frame<D> {
-    /// Number of tangential directions.
-    pub(super) const TANGENTS: usize = D - 1;
-
     /// The frame of a unit normal.
     #[inline]
     pub(crate) fn new(normal: [f64; D]) -> Self {

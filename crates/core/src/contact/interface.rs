@@ -18,12 +18,13 @@ impl Interface {
     ///
     /// # Errors
     /// Negative friction, or one that is not finite; friction in 1D.
-    pub fn matching<const D: usize>(
+    pub fn matching(
+        dimension: usize,
         first: impl Into<String>,
         second: impl Into<String>,
         friction: f64,
     ) -> Result<Self, ObstacleError> {
-        Ok(Self { groups: [first.into(), second.into()], law: coulomb::<D>(friction)?, matching: true })
+        Ok(Self { groups: [first.into(), second.into()], law: coulomb(dimension, friction)?, matching: true })
     }
 
     /// The same for two groups of edges of any nodes, which may slide along each other. The slave is the group that
@@ -33,12 +34,13 @@ impl Interface {
     ///
     /// # Errors
     /// As [`Interface::matching`].
-    pub fn sliding<const D: usize>(
+    pub fn sliding(
+        dimension: usize,
         first: impl Into<String>,
         second: impl Into<String>,
         friction: f64,
     ) -> Result<Self, ObstacleError> {
-        Ok(Self { matching: D == 1, ..Self::matching::<D>(first, second, friction)? })
+        Ok(Self { matching: dimension == 1, ..Self::matching(dimension, first, second, friction)? })
     }
 
     /// Whether the nodes face each other in pairs.

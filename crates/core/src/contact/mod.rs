@@ -3,6 +3,7 @@
 //! An [`Obstacle`] gives the gap of a point and the [`Frame`] at it. All other code uses these two only. [`Coulomb`] is
 //! the only implementation of the cone of friction.
 
+mod any;
 mod constraint;
 mod corner;
 mod coulomb;
@@ -17,6 +18,7 @@ mod results;
 mod solve;
 mod surface;
 
+pub use any::{AnyFacing, AnyObstacle, PlaneAt};
 pub(crate) use constraint::Constraints;
 pub(crate) use coulomb::dissipation;
 pub use coulomb::{Coulomb, Status};

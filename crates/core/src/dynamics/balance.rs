@@ -91,7 +91,7 @@ impl<const D: usize> BalanceKeeper<D> {
     pub(super) fn resumed<const N: usize>(
         problem: &Problem<D, N>,
         times: &TimeGrid,
-        now: &State<'_, D>,
+        now: &State<'_>,
         sums: &Sums,
     ) -> Self {
         let mut keeper = Self::new(problem, times);
@@ -165,11 +165,11 @@ impl<const D: usize> BalanceKeeper<D> {
         &mut self,
         problem: &Problem<D, N>,
         times: &TimeGrid,
-        now: &State<'_, D>,
+        now: &State<'_>,
     ) -> bool {
         let total_force = self.advance_works(problem, times, now);
         let b = &mut self.balance;
-        let (kinetic, momentum) = now.energies(problem.mass());
+        let (kinetic, momentum) = now.energies::<D>(problem.mass());
         (b.kinetic, b.strain) = (kinetic, now.strain());
         b.momentum[..D].copy_from_slice(&momentum);
         let energy = b.kinetic + b.strain;
@@ -199,7 +199,7 @@ impl<const D: usize> BalanceKeeper<D> {
         &mut self,
         problem: &Problem<D, N>,
         times: &TimeGrid,
-        now: &State<'_, D>,
+        now: &State<'_>,
     ) -> [f64; D] {
         let first = now.step().index == 0;
         let mut total = [0.0; D];
@@ -214,7 +214,7 @@ impl<const D: usize> BalanceKeeper<D> {
             let given = self.external.iter().zip(now.inverse_mass()).map(|(f, m)| dot(f, f) * m).sum::<f64>();
             self.kick = self.kick.max(0.5 * h * h * given);
             let (mut work, external) = (0.0, &self.external);
-            self.loads.advance(now.step().displacement, |i| external[i], |_, mean, path| work += dot(&mean, &path));
+            self.loads.advance(now.step().displacement(), |i| external[i], |_, mean, path| work += dot(&mean, &path));
             if !first {
                 b.work_of_loads += work;
                 *put_in += work.abs();
@@ -235,13 +235,13 @@ impl<const D: usize> BalanceKeeper<D> {
         };
         self.kick = self.kick.max(problem.prescribed().iter().map(moving).sum());
         let mut work = 0.0;
-        self.supports.advance(now.step().displacement, along, |_, mean, path| work += dot(&mean, &path));
+        self.supports.advance(now.step().displacement(), along, |_, mean, path| work += dot(&mean, &path));
         if !first {
             b.work_of_supports += work;
             *put_in += work.abs();
         }
 
-        now.step().reaction.iter().for_each(&mut add);
+        now.step().reaction().iter().for_each(&mut add);
         let [work, friction] = contact_works(&mut self.contact, problem, now);
         if !first {
             b.work_of_contact += work;
@@ -255,9 +255,9 @@ impl<const D: usize> BalanceKeeper<D> {
 fn contact_works<const D: usize, const N: usize>(
     meter: &mut WorkMeter<D>,
     problem: &Problem<D, N>,
-    now: &State<'_, D>,
+    now: &State<'_>,
 ) -> [f64; 2] {
-    let (surface, u, reaction) = (problem.surface(), now.step().displacement, now.step().reaction);
+    let (surface, u, reaction) = (problem.surface(), now.step().displacement::<D>(), now.step().reaction());
     let (mut work, mut friction) = (0.0, 0.0);
     meter.advance(
         u,

@@ -23,8 +23,8 @@ pub(super) fn simulate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
     threads: Option<usize>,
-    checkpoint: Option<&Checkpoint<D>>,
-    sink: &mut dyn StateSink<D>,
+    checkpoint: Option<&Checkpoint>,
+    sink: &mut dyn StateSink,
     observer: &mut dyn Observer,
 ) -> Result<Simulation, SimulationError> {
     let mut dynamics = Dynamics::new(problem, times);
@@ -44,8 +44,8 @@ pub(super) fn simulate<const D: usize, const N: usize>(
 /// The loop over the steps.
 fn run<const D: usize, const N: usize>(
     dynamics: &Dynamics<'_, D, N>,
-    checkpoint: Option<&Checkpoint<D>>,
-    sink: &mut dyn StateSink<D>,
+    checkpoint: Option<&Checkpoint>,
+    sink: &mut dyn StateSink,
     observer: &mut dyn Observer,
 ) -> Result<Simulation, SimulationError> {
     let Dynamics { problem, times, .. } = *dynamics;
@@ -71,8 +71,8 @@ fn run<const D: usize, const N: usize>(
         let step = Step {
             index: n,
             time: times.instants()[n],
-            displacement: &body.displacement,
-            reaction: &contact.reaction,
+            displacement: body.displacement.as_flattened(),
+            reaction: contact.reaction.as_flattened(),
             touching: &contact.touching,
             velocity: None,
             acceleration: None,

@@ -25,8 +25,7 @@ pub(super) fn critical_time_step<const D: usize, const N: usize>(problem: &Probl
 }
 
 /// The same of one element alone with its lumped mass (s).
-#[must_use]
-pub fn time_step_of_element<const D: usize, const N: usize>(problem: &Problem<D, N>, element: ElementId) -> f64 {
+pub(super) fn time_step_of_element<const D: usize, const N: usize>(problem: &Problem<D, N>, element: ElementId) -> f64 {
     2.0 / largest_of_element(problem, element).sqrt()
 }
 

@@ -20,7 +20,7 @@ const BESIDE: f64 = 1e-3;
 type Point = [f64; 2];
 
 /// Looks for nodes inside other bodies.
-pub struct MissedContact<'p, const D: usize, const N: usize> {
+pub(super) struct MissedContact<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     last: usize,
     bodies: Vec<Body>,
@@ -50,8 +50,7 @@ struct Side {
 
 impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
     /// For a run with so many steps; it costs nothing with a single body.
-    #[must_use]
-    pub fn new(problem: &'p Problem<D, N>, steps: usize) -> Self {
+    pub(super) fn new(problem: &'p Problem<D, N>, steps: usize) -> Self {
         let mesh = problem.mesh();
         let mut made =
             Self { problem, last: steps, bodies: Vec::new(), halves: BTreeMap::new(), solved: BTreeMap::new() };
@@ -180,13 +179,13 @@ fn distance(point: &Point, a: &Point, b: &Point) -> f64 {
     (from[0] - part * along[0]).hypot(from[1] - part * along[1])
 }
 
-impl<const D: usize, const N: usize> StateSink<D> for MissedContact<'_, D, N> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl<const D: usize, const N: usize> StateSink for MissedContact<'_, D, N> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         let step = state.step();
         if self.bodies.is_empty() || !(step.index.is_multiple_of(EVERY) || step.index == self.last) {
             return Ok(());
         }
-        let Some((node, bodies, depth)) = self.found(step.displacement) else { return Ok(()) };
+        let Some((node, bodies, depth)) = self.found(step.displacement()) else { return Ok(()) };
         let names = self.problem.mesh().part_names();
         let bodies = bodies.map(|body| names[body].clone());
         let error = SimulationError::Missed { step: step.index, time: step.time, node: node.index(), bodies, depth };

@@ -6,8 +6,8 @@ mod central_difference;
 mod contact;
 mod critical_step;
 mod element_pairs;
+mod entry;
 mod evaluation;
-mod instances;
 mod internal_force;
 mod missed;
 mod moving;
@@ -20,13 +20,15 @@ mod work_meter;
 
 pub use balance::Balance;
 pub use balancing::Balancing;
-pub use critical_step::{element_time_step, rough_field, time_step_of_element};
+pub use critical_step::{element_time_step, rough_field};
+pub use entry::{
+    AnyStiffness, check_start, critical_time_step, missed_contact, replay, resume, simulate, simulate_threaded,
+    time_step_of_element,
+};
 pub use evaluation::Evaluation;
-pub use instances::{critical_time_step, replay, resume, simulate, simulate_threaded};
 pub use internal_force::Stiffness;
-pub use missed::MissedContact;
+use missed::MissedContact;
 pub use simulation::{Simulation, SimulationError};
-pub use start::check_start;
 pub use update::advance;
 
 use crate::problem::Problem;

@@ -5,6 +5,7 @@ use super::contact::Contact;
 use super::moving::MovingBody;
 use super::node_update::Motion;
 use super::{Dynamics, SimulationError};
+use crate::border::vectors;
 use crate::history::{Checkpoint, State, Step};
 use crate::problem::Problem;
 use crate::time::TimeGrid;
@@ -24,29 +25,27 @@ pub(super) fn start<const D: usize, const N: usize>(
 /// The forces and the contact at the step of a checkpoint; its sums are those of the balance.
 pub(super) fn restart<const D: usize, const N: usize>(
     dynamics: &Dynamics<'_, D, N>,
-    checkpoint: &Checkpoint<D>,
+    checkpoint: &Checkpoint,
     body: &mut MovingBody<D>,
     contact: &mut Contact<D>,
 ) -> BalanceKeeper<D> {
     let Dynamics { problem, times, .. } = *dynamics;
     let Checkpoint { step: n, displacement, half_step, sums } = checkpoint;
-    body.displacement.copy_from_slice(displacement);
-    body.velocity.copy_from_slice(half_step);
+    let motion = [vectors(displacement), vectors(half_step)];
+    body.displacement.copy_from_slice(motion[0]);
+    body.velocity.copy_from_slice(motion[1]);
     body.step(dynamics, *n, Motion::Start);
-    contact.react(dynamics, *n, displacement, half_step, &mut body.forces.total);
+    contact.react(dynamics, *n, motion[0], motion[1], &mut body.forces.total);
     body.sum_up(dynamics, *n);
     let (index, time) = (*n, times.instants()[*n]);
-    let (reaction, touching) = (&contact.reaction[..], &contact.touching[..]);
+    let (reaction, touching) = (contact.reaction.as_flattened(), &contact.touching[..]);
     let step = Step { index, time, displacement, reaction, touching, velocity: None, acceleration: None };
     let state = State::new(step, times, &body.forces, &body.velocity, &dynamics.inverse_mass);
     BalanceKeeper::resumed(problem, times, &state, sums)
 }
 
-/// Refuses a start that a simulation refuses, before anything is made for it.
-///
-/// # Errors
-/// [`SimulationError::StartsTooNear`].
-pub fn check_start<const D: usize, const N: usize>(
+/// Refuses a start that a simulation refuses.
+pub(super) fn check_start<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
 ) -> Result<(), SimulationError> {

@@ -80,7 +80,7 @@ impl StepCheck {
         &mut self,
         problem: &Problem<D, N>,
         times: &TimeGrid,
-        step: &Step<'_, D>,
+        step: &Step<'_>,
     ) -> Result<(), StepError> {
         let (n, last) = (step.index, times.step_count());
         if n != self.next || n > last {
@@ -95,9 +95,9 @@ impl StepCheck {
         ];
         for (field, values, needed) in fields {
             let Some(values) = values else { continue };
-            length(n, field, values.len(), needed)?;
-            if let Some(position) = values.iter().position(|v| v.iter().any(|x| !x.is_finite())) {
-                return Err(StepError::NotFinite { step: n, field, position });
+            length(n, field, values.len(), D * needed)?;
+            if let Some(at) = values.iter().position(|x| !x.is_finite()) {
+                return Err(StepError::NotFinite { step: n, field, position: at / D });
             }
         }
         length(n, "touching", step.touching.len(), surface)?;
@@ -120,7 +120,7 @@ impl StepCheck {
     }
 }
 
-fn optional<const D: usize>(step: &Step<'_, D>) -> [(&'static str, bool); 2] {
+fn optional(step: &Step<'_>) -> [(&'static str, bool); 2] {
     [("velocity", step.velocity.is_some()), ("acceleration", step.acceleration.is_some())]
 }
 

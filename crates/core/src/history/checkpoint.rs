@@ -8,13 +8,13 @@ pub const SUMS: usize = 24;
 
 /// All that the scheme needs to go on from t_n; forces and contact at t_n follow from it, bit by bit.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Checkpoint<const D: usize> {
+pub struct Checkpoint {
     /// n.
     pub step: usize,
-    /// u_n at the nodes (m).
-    pub displacement: Vec<[f64; D]>,
-    /// v_{n−½} at the nodes (m/s), at the start v₀.
-    pub half_step: Vec<[f64; D]>,
+    /// u_n at the nodes (m), in rows.
+    pub displacement: Vec<f64>,
+    /// v_{n−½} at the nodes (m/s), at the start v₀, in rows.
+    pub half_step: Vec<f64>,
     /// Sums of the balance.
     pub sums: Sums,
 }

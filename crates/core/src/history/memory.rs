@@ -6,16 +6,18 @@ use thiserror::Error;
 
 /// A history in memory: each field in one array, step after step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct History<const D: usize> {
+pub struct History {
     times: TimeGrid,
     count: usize,
-    nodes: usize,
+    /// Numbers of a nodal field, of a field of the contact surface, and of its nodes.
+    row: usize,
+    contact_row: usize,
     contact_nodes: usize,
-    displacement: Vec<[f64; D]>,
-    reaction: Vec<[f64; D]>,
+    displacement: Vec<f64>,
+    reaction: Vec<f64>,
     touching: Vec<bool>,
-    velocity: Option<Vec<[f64; D]>>,
-    acceleration: Option<Vec<[f64; D]>>,
+    velocity: Option<Vec<f64>>,
+    acceleration: Option<Vec<f64>>,
 }
 
 /// Why a step does not fit into a history in memory.
@@ -23,7 +25,7 @@ pub struct History<const D: usize> {
 pub enum MemoryError {
     /// No room for all steps.
     #[error(
-        "{bytes} bytes for {steps} steps of {nodes} nodes cannot be allocated in memory; store the history in a \
+        "{bytes} bytes for {steps} steps of {numbers} displacements cannot be allocated in memory; store the history in a \
          file, whole or in part (`every`)"
     )]
     Full {
@@ -31,8 +33,8 @@ pub enum MemoryError {
         bytes: usize,
         /// Instants.
         steps: usize,
-        /// Nodes.
-        nodes: usize,
+        /// Displacements of a step.
+        numbers: usize,
     },
     /// A field unlike that of the first step.
     #[error("step {step}: {field} has {given} values, but step 0 had {needed}")]
@@ -48,14 +50,15 @@ pub enum MemoryError {
     },
 }
 
-impl<const D: usize> History<D> {
+impl History {
     /// An empty history over these instants.
     #[must_use]
     pub fn new(times: &TimeGrid) -> Self {
         Self {
             times: times.clone(),
             count: 0,
-            nodes: 0,
+            row: 0,
+            contact_row: 0,
             contact_nodes: 0,
             displacement: Vec::new(),
             reaction: Vec::new(),
@@ -79,13 +82,13 @@ impl<const D: usize> History<D> {
 
     /// u_n (m), node by node and step after step.
     #[must_use]
-    pub fn displacement(&self) -> &[[f64; D]] {
+    pub fn displacement(&self) -> &[f64] {
         &self.displacement
     }
 
     /// R_n (N) on the nodes of the contact surface, node by node and step after step.
     #[must_use]
-    pub fn reaction(&self) -> &[[f64; D]] {
+    pub fn reaction(&self) -> &[f64] {
         &self.reaction
     }
 
@@ -97,44 +100,46 @@ impl<const D: usize> History<D> {
 
     /// The step n.
     #[must_use]
-    pub fn step(&self, n: usize) -> Option<Step<'_, D>> {
+    pub fn step(&self, n: usize) -> Option<Step<'_>> {
         if n >= self.count {
             return None;
         }
-        let (nodes, surface) = (n * self.nodes..(n + 1) * self.nodes, n * self.contact_nodes);
-        let surface = surface..surface + self.contact_nodes;
+        let rows = |row: usize| n * row..(n + 1) * row;
+        let nodes = rows(self.row);
         Some(Step {
             index: n,
             time: *self.times.instants().get(n)?,
             displacement: &self.displacement[nodes.clone()],
-            reaction: &self.reaction[surface.clone()],
-            touching: &self.touching[surface],
+            reaction: &self.reaction[rows(self.contact_row)],
+            touching: &self.touching[rows(self.contact_nodes)],
             velocity: self.velocity.as_ref().map(|v| &v[nodes.clone()]),
             acceleration: self.acceleration.as_ref().map(|a| &a[nodes]),
         })
     }
 
     /// Takes the sizes from the first step and makes room for all: what is not used is never touched.
-    fn begin(&mut self, first: &Step<'_, D>) -> Result<(), MemoryError> {
-        (self.nodes, self.contact_nodes) = (first.displacement.len(), first.touching.len());
+    fn begin(&mut self, first: &Step<'_>) -> Result<(), MemoryError> {
+        (self.row, self.contact_row) = (first.displacement.len(), first.reaction.len());
+        self.contact_nodes = first.touching.len();
         let steps = self.times.step_count() + 1;
-        let (nodes, contact) = (self.nodes.saturating_mul(steps), self.contact_nodes.saturating_mul(steps));
-        let bytes = size_of::<[f64; D]>().saturating_mul(nodes.saturating_add(contact)).saturating_add(contact);
-        let full = |_| MemoryError::Full { bytes, steps, nodes: self.nodes };
-        self.displacement.try_reserve_exact(nodes).map_err(full)?;
+        let [nodal, contact, touching] =
+            [self.row, self.contact_row, self.contact_nodes].map(|row| row.saturating_mul(steps));
+        let bytes = size_of::<f64>().saturating_mul(nodal.saturating_add(contact)).saturating_add(touching);
+        let full = |_| MemoryError::Full { bytes, steps, numbers: self.row };
+        self.displacement.try_reserve_exact(nodal).map_err(full)?;
         self.reaction.try_reserve_exact(contact).map_err(full)?;
-        self.touching.try_reserve_exact(contact).map_err(full)?;
+        self.touching.try_reserve_exact(touching).map_err(full)?;
         self.velocity = first.velocity.map(|_| Vec::new());
         self.acceleration = first.acceleration.map(|_| Vec::new());
         Ok(())
     }
 
-    fn check(&self, step: &Step<'_, D>) -> Result<(), MemoryError> {
-        let optional = |field: Option<&[[f64; D]]>| field.map_or(0, <[_]>::len);
-        let expected = |there: bool| if there { self.nodes } else { 0 };
+    fn check(&self, step: &Step<'_>) -> Result<(), MemoryError> {
+        let optional = |field: Option<&[f64]>| field.map_or(0, <[_]>::len);
+        let expected = |there: bool| if there { self.row } else { 0 };
         let fields = [
-            ("displacement", step.displacement.len(), self.nodes),
-            ("reaction", step.reaction.len(), self.contact_nodes),
+            ("displacement", step.displacement.len(), self.row),
+            ("reaction", step.reaction.len(), self.contact_row),
             ("touching", step.touching.len(), self.contact_nodes),
             ("velocity", optional(step.velocity), expected(self.velocity.is_some())),
             ("acceleration", optional(step.acceleration), expected(self.acceleration.is_some())),
@@ -146,12 +151,12 @@ impl<const D: usize> History<D> {
     }
 }
 
-impl<const D: usize> History<D> {
+impl History {
     /// Appends a step.
     ///
     /// # Errors
     /// A step that does not fit the steps before, or no memory.
-    pub fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
+    pub fn push(&mut self, step: &Step<'_>) -> Result<(), SinkError> {
         if self.count == 0 {
             self.begin(step)?;
         }
@@ -169,13 +174,13 @@ impl<const D: usize> History<D> {
     }
 }
 
-impl<const D: usize> StateSink<D> for History<D> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl StateSink for History {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         self.push(state.step())
     }
 }
 
-impl<const D: usize> StepSource<D> for History<D> {
+impl StepSource for History {
     fn times(&self) -> &TimeGrid {
         &self.times
     }
@@ -184,7 +189,7 @@ impl<const D: usize> StepSource<D> for History<D> {
         self.count
     }
 
-    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError> {
         (0..self.count).filter_map(|n| self.step(n)).try_for_each(|step| take(&step))
     }
 }
@@ -193,14 +198,14 @@ impl<const D: usize> StepSource<D> for History<D> {
 mod tests {
     use super::*;
 
-    const U: [[f64; 2]; 2] = [[1.0, 2.0], [3.0, 4.0]];
+    const U: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
 
-    fn step(index: usize) -> Step<'static, 2> {
+    fn step(index: usize) -> Step<'static> {
         Step {
             index,
             time: index as f64,
             displacement: &U,
-            reaction: &U[..1],
+            reaction: &U[..2],
             touching: &[true],
             velocity: None,
             acceleration: Some(&U),
@@ -211,7 +216,7 @@ mod tests {
     fn steps_come_back_as_they_were() {
         let mut history = History::new(&TimeGrid::uniform(2.0, 2).unwrap());
         (0..3).for_each(|n| history.push(&step(n)).unwrap());
-        assert_eq!((history.len(), history.displacement().len(), history.reaction().len()), (3, 6, 3));
+        assert_eq!((history.len(), history.displacement().len(), history.reaction().len()), (3, 12, 6));
         assert_eq!([0, 1, 2].map(|n| history.step(n)), [0, 1, 2].map(|n| Some(step(n))));
         assert_eq!(history.step(3), None);
         let mut again = History::new(history.times());
@@ -224,7 +229,7 @@ mod tests {
         let mut history = History::new(&TimeGrid::uniform(2.0, 2).unwrap());
         history.push(&step(0)).unwrap();
         for wrong in [
-            Step { displacement: &U[..1], ..step(1) },
+            Step { displacement: &U[..2], ..step(1) },
             Step { touching: &[], ..step(1) },
             Step { velocity: Some(&U), ..step(1) },
             Step { acceleration: None, ..step(1) },
@@ -238,7 +243,7 @@ mod tests {
     fn more_than_memory_can_hold_is_an_error() {
         let mut history = History::new(&TimeGrid::uniform(1.0, 50_000_000).unwrap());
         // 5e7 steps of 2e6 nodes: 1.6e15 bytes, beyond any address space.
-        let u = vec![[0.0; 2]; 2_000_000];
+        let u = vec![0.0; 4_000_000];
         let error = history.push(&Step { displacement: &u, acceleration: None, ..step(0) }).unwrap_err();
         assert!(matches!(error.downcast_ref(), Some(MemoryError::Full { .. })), "{error}");
     }

@@ -12,42 +12,61 @@ pub use memory::{History, MemoryError};
 pub use state::State;
 pub(crate) use state::{StepForces, half_of_last};
 
+use crate::border::vectors;
 use crate::time::TimeGrid;
 
 /// What the integrator hands on at t_n. Velocities and accelerations follow by the scheme, unless a
-/// history of another program gives its own.
+/// history of another program gives its own. Fields are numbers in rows, one for each node, with one number for each
+/// dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step<'a, const D: usize> {
+pub struct Step<'a> {
     /// n.
     pub index: usize,
     /// t_n (s).
     pub time: f64,
     /// u_n at the nodes (m).
-    pub displacement: &'a [[f64; D]],
+    pub displacement: &'a [f64],
     /// Reactions R_n on the nodes of the contact surface (N), global axes.
-    pub reaction: &'a [[f64; D]],
+    pub reaction: &'a [f64],
     /// Touching status at t_n of the nodes of the contact surface.
     pub touching: &'a [bool],
     /// v_n at the nodes (m/s), if the history holds it.
-    pub velocity: Option<&'a [[f64; D]]>,
+    pub velocity: Option<&'a [f64]>,
     /// a_n at the nodes (m/s²), if the history holds it.
-    pub acceleration: Option<&'a [[f64; D]]>,
+    pub acceleration: Option<&'a [f64]>,
+}
+
+/// Fields as vectors of the dimension of the body.
+impl<'a> Step<'a> {
+    /// u_n at the nodes (m).
+    #[inline]
+    #[must_use]
+    pub fn displacement<const D: usize>(&self) -> &'a [[f64; D]] {
+        vectors(self.displacement)
+    }
+
+    /// R_n on the nodes of the contact surface (N).
+    #[inline]
+    #[must_use]
+    pub fn reaction<const D: usize>(&self) -> &'a [[f64; D]] {
+        vectors(self.reaction)
+    }
 }
 
 /// Why a sink could not take a step.
 pub type SinkError = Box<dyn std::error::Error + Send + Sync>;
 
 /// Takes the states of steps in order, from 0 on; with several threads, in one of them.
-pub trait StateSink<const D: usize>: Send {
+pub trait StateSink: Send {
     /// Takes one state.
     ///
     /// # Errors
     /// Whatever keeps the sink from taking it; the run then stops.
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError>;
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError>;
 }
 
 /// Gives steps back in order.
-pub trait StepSource<const D: usize> {
+pub trait StepSource {
     /// The instants of the steps; a history that ended early holds the first of them only.
     fn times(&self) -> &TimeGrid;
 
@@ -58,43 +77,49 @@ pub trait StepSource<const D: usize> {
     ///
     /// # Errors
     /// What the source fails to read or `take` returns.
-    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError>;
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError>;
 }
 
 /// Discards all states.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Discard;
 
-impl<const D: usize> StateSink<D> for Discard {
-    fn accept(&mut self, _: &State<'_, D>) -> Result<(), SinkError> {
+impl StateSink for Discard {
+    fn accept(&mut self, _: &State<'_>) -> Result<(), SinkError> {
         Ok(())
     }
 }
 
 /// Two sinks side by side.
-impl<const D: usize, A: StateSink<D>, B: StateSink<D>> StateSink<D> for (A, B) {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl<A: StateSink, B: StateSink> StateSink for (A, B) {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         self.0.accept(state)?;
         self.1.accept(state)
     }
 }
 
 /// Any number of sinks side by side.
-impl<const D: usize, S: StateSink<D>> StateSink<D> for Vec<S> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl<S: StateSink> StateSink for Vec<S> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         self.iter_mut().try_for_each(|sink| sink.accept(state))
     }
 }
 
 /// A sink that may be left out.
-impl<const D: usize, S: StateSink<D>> StateSink<D> for Option<S> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl<S: StateSink> StateSink for Option<S> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         self.as_mut().map_or(Ok(()), |sink| sink.accept(state))
     }
 }
 
-impl<const D: usize, S: StateSink<D> + ?Sized> StateSink<D> for &mut S {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl<S: StateSink + ?Sized> StateSink for Box<S> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
+        (**self).accept(state)
+    }
+}
+
+impl<S: StateSink + ?Sized> StateSink for &mut S {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         (**self).accept(state)
     }
 }

@@ -1,6 +1,7 @@
 //! A checked step with the fields that follow from it.
 
 use super::{Checkpoint, Step, Sums};
+use crate::border::vectors;
 use crate::contact::ContactSurface;
 use crate::problem::Problem;
 use crate::time::TimeGrid;
@@ -36,10 +37,14 @@ impl<const D: usize> StepForces<D> {
 /// computed once for all sinks; acceleration, velocity and energies follow from them at each call. Velocities or
 /// accelerations that the step brings replace those of the scheme. Only `dynamics` makes states.
 #[derive(Clone, Copy, Debug)]
-pub struct State<'a, const D: usize> {
-    step: Step<'a, D>,
-    forces: &'a StepForces<D>,
-    half_step: &'a [[f64; D]],
+pub struct State<'a> {
+    step: Step<'a>,
+    strain: f64,
+    energies: (f64, &'a [f64]),
+    total: &'a [f64],
+    before_contact: &'a [f64],
+    supports: &'a [f64],
+    half_step: &'a [f64],
     /// ½Δt_{n−1} (s), 0 at the start.
     back: f64,
     inverse_mass: &'a [f64],
@@ -47,16 +52,27 @@ pub struct State<'a, const D: usize> {
     sums: Option<&'a Sums>,
 }
 
-impl<'a, const D: usize> State<'a, D> {
+impl<'a> State<'a> {
     /// The state of a checked step; `half_step` is v_{n−½} (m/s), at the start v₀.
-    pub(crate) fn new(
-        step: Step<'a, D>,
+    pub(crate) fn new<const D: usize>(
+        step: Step<'a>,
         times: &TimeGrid,
         forces: &'a StepForces<D>,
         half_step: &'a [[f64; D]],
         inverse_mass: &'a [f64],
     ) -> Self {
-        Self { step, forces, half_step, back: half_of_last(times, step.index), inverse_mass, sums: None }
+        Self {
+            step,
+            strain: forces.strain,
+            energies: (forces.energies.0, &forces.energies.1),
+            total: forces.total.as_flattened(),
+            before_contact: forces.before_contact.as_flattened(),
+            supports: &forces.supports,
+            half_step: half_step.as_flattened(),
+            back: half_of_last(times, step.index),
+            inverse_mass,
+            sums: None,
+        }
     }
 
     /// The same state with the sums of the balance.
@@ -67,7 +83,7 @@ impl<'a, const D: usize> State<'a, D> {
     /// The state from which a run can go on. None for a step that is replayed: only the integrator has the sums of the
     /// balance.
     #[must_use]
-    pub fn checkpoint(&self) -> Option<Checkpoint<D>> {
+    pub fn checkpoint(&self) -> Option<Checkpoint> {
         let Step { index: step, displacement, .. } = self.step;
         self.sums.map(|sums| Checkpoint {
             step,
@@ -79,25 +95,25 @@ impl<'a, const D: usize> State<'a, D> {
 
     /// The step.
     #[must_use]
-    pub fn step(&self) -> &Step<'a, D> {
+    pub fn step(&self) -> &Step<'a> {
         &self.step
     }
 
     /// Strain energy ½ u_n·K u_n (J).
     #[must_use]
     pub fn strain(&self) -> f64 {
-        self.forces.strain
+        self.strain
     }
 
     /// v_{n−½} (m/s), at the start v₀.
     #[must_use]
-    pub fn half_step(&self) -> &'a [[f64; D]] {
-        self.half_step
+    pub fn half_step<const D: usize>(&self) -> &'a [[f64; D]] {
+        vectors(self.half_step)
     }
 
     /// Reaction of each prescribed component (N).
     pub(crate) fn support_reaction(&self) -> &'a [f64] {
-        &self.forces.supports
+        self.supports
     }
 
     /// ½Δt_{n−1} (s), 0 at the start.
@@ -113,64 +129,69 @@ impl<'a, const D: usize> State<'a, D> {
     /// a_n of a node (m/s²).
     #[inline]
     #[must_use]
-    pub fn acceleration_of(&self, node: usize) -> [f64; D] {
+    pub fn acceleration_of<const D: usize>(&self, node: usize) -> [f64; D] {
         match self.step.acceleration {
-            Some(given) => given[node],
-            None => self.forces.total[node].map(|f| self.inverse_mass[node] * f),
+            Some(given) => vectors(given)[node],
+            None => vectors(self.total)[node].map(|f: f64| self.inverse_mass[node] * f),
         }
-    }
-
-    /// a_n (m/s²).
-    #[must_use]
-    pub fn acceleration(&self) -> Vec<[f64; D]> {
-        (0..self.forces.total.len()).map(|node| self.acceleration_of(node)).collect()
     }
 
     /// v_n of a node (m/s).
     #[inline]
     #[must_use]
-    pub fn velocity_of(&self, node: usize) -> [f64; D] {
+    pub fn velocity_of<const D: usize>(&self, node: usize) -> [f64; D] {
         match self.step.velocity {
-            Some(given) => given[node],
+            Some(given) => vectors(given)[node],
             None => {
-                let acceleration = self.acceleration_of(node);
-                std::array::from_fn(|c| self.half_step[node][c] + self.back * acceleration[c])
+                let acceleration = self.acceleration_of::<D>(node);
+                std::array::from_fn(|c| self.half_step[D * node + c] + self.back * acceleration[c])
             }
         }
     }
 
+    /// a_n (m/s²), in rows.
+    #[must_use]
+    pub fn acceleration(&self) -> Vec<f64> {
+        let components = self.total.len() / self.inverse_mass.len();
+        let by_scheme = || self.total.iter().enumerate().map(|(i, f)| self.inverse_mass[i / components] * f).collect();
+        self.step.acceleration.map_or_else(by_scheme, <[f64]>::to_vec)
+    }
+
+    /// v_n = v_{n−½} + ½Δt_{n−1} a_n (m/s), at the start v₀, in rows.
+    #[must_use]
+    pub fn velocity(&self) -> Vec<f64> {
+        if let Some(given) = self.step.velocity {
+            return given.to_vec();
+        }
+        let by_scheme = self.half_step.iter().zip(self.acceleration());
+        by_scheme.map(|(half_step, acceleration)| half_step + self.back * acceleration).collect()
+    }
+
     /// M a_n by the scheme but for contact, of all nodes (N), as `force`.
-    pub fn write_force_without_contact(&self, surface: &ContactSurface<D>, force: &mut [[f64; D]]) {
-        force.copy_from_slice(&self.forces.total);
-        for (contact, before) in surface.nodes().iter().zip(&self.forces.before_contact) {
+    pub fn write_force_without_contact<const D: usize>(&self, surface: &ContactSurface<D>, force: &mut [[f64; D]]) {
+        force.copy_from_slice(vectors(self.total));
+        for (contact, before) in surface.nodes().iter().zip(vectors(self.before_contact)) {
             force[contact.node.index()] = *before;
         }
     }
 
     /// M a_n by the scheme but for contact (N).
     #[must_use]
-    pub fn force_without_contact(&self, surface: &ContactSurface<D>) -> Vec<[f64; D]> {
-        let mut force = self.forces.total.clone();
-        for (contact, before) in surface.nodes().iter().zip(&self.forces.before_contact) {
-            force[contact.node.index()] = *before;
-        }
+    pub fn force_without_contact<const D: usize>(&self, surface: &ContactSurface<D>) -> Vec<[f64; D]> {
+        let mut force = vec![[0.0; D]; self.inverse_mass.len()];
+        self.write_force_without_contact(surface, &mut force);
         force
-    }
-
-    /// v_n = v_{n−½} + ½Δt_{n−1} a_n (m/s), at the start v₀.
-    #[must_use]
-    pub fn velocity(&self) -> Vec<[f64; D]> {
-        (0..self.forces.total.len()).map(|node| self.velocity_of(node)).collect()
     }
 
     /// Kinetic energy (J) and momentum (kg m/s), with these masses of the nodes (kg).
     #[must_use]
-    pub fn energies(&self, mass: &[f64]) -> (f64, [f64; D]) {
+    pub fn energies<const D: usize>(&self, mass: &[f64]) -> (f64, [f64; D]) {
         if self.step.velocity.is_none() && self.step.acceleration.is_none() {
-            return self.forces.energies;
+            return (self.energies.0, vectors(self.energies.1)[0]);
         }
         let (mut kinetic, mut momentum) = ([0.0; D], [0.0; D]);
-        for (v, mass) in self.velocity().iter().zip(mass) {
+        for (node, mass) in mass.iter().enumerate() {
+            let v = self.velocity_of::<D>(node);
             for c in 0..D {
                 momentum[c] += mass * v[c];
                 kinetic[c] += mass * v[c] * v[c];

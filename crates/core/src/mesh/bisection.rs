@@ -3,6 +3,7 @@
 use super::{Mesh, MeshError};
 use crate::ids::{ElementId, NodeId};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// For each node of an interface the node that it faces.
 pub(super) type Twins = BTreeMap<usize, usize>;
@@ -11,7 +12,7 @@ pub(super) type Twins = BTreeMap<usize, usize>;
 /// faces are cut together, so that they go on facing each other.
 #[derive(Clone, Debug)]
 pub struct Bisection<const D: usize, const N: usize> {
-    mesh: Mesh<D, N>,
+    mesh: Arc<Mesh<D, N>>,
     /// Of each interface.
     twins: Vec<Twins>,
 }
@@ -19,20 +20,20 @@ pub struct Bisection<const D: usize, const N: usize> {
 impl<const D: usize, const N: usize> Bisection<D, N> {
     /// From a mesh and the pairs of nodes that face each other at each interface.
     #[must_use]
-    pub fn new(mesh: Mesh<D, N>, interfaces: &[Vec<[NodeId; 2]>]) -> Self {
+    pub fn new(mesh: Arc<Mesh<D, N>>, interfaces: &[Vec<[NodeId; 2]>]) -> Self {
         let both = |[a, b]: &[NodeId; 2]| [(a.index(), b.index()), (b.index(), a.index())];
         Self { mesh, twins: interfaces.iter().map(|pairs| pairs.iter().flat_map(both).collect()).collect() }
     }
 
     /// The mesh as it is now.
     #[must_use]
-    pub fn mesh(&self) -> &Mesh<D, N> {
+    pub fn mesh(&self) -> &Arc<Mesh<D, N>> {
         &self.mesh
     }
 
     /// The mesh as it is now.
     #[must_use]
-    pub fn into_mesh(self) -> Mesh<D, N> {
+    pub fn into_mesh(self) -> Arc<Mesh<D, N>> {
         self.mesh
     }
 
@@ -50,7 +51,7 @@ impl<const D: usize, const N: usize> Bisection<D, N> {
             let middles: Vec<(usize, usize)> = cuts.edges().iter().filter_map(facing).collect();
             twins.extend(middles);
         }
-        self.mesh = self.mesh.cut(&cuts)?;
+        self.mesh = Arc::new(self.mesh.cut(&cuts)?);
         Ok(())
     }
 }
@@ -83,7 +84,7 @@ mod tests {
     fn surfaces_keep_facing_each_other() {
         let (mesh, pairs) = pair();
         let refined = |interfaces: &[Vec<[NodeId; 2]>]| {
-            let mut bisection = Bisection::new(mesh.clone(), interfaces);
+            let mut bisection = Bisection::new(Arc::new(mesh.clone()), interfaces);
             for _ in 0..4 {
                 let touches = |e: ElementId| {
                     let points = bisection.mesh().cell_points(e);

@@ -3,6 +3,8 @@
 //! `D` is the dimension and `N = D + 1` the number of nodes of an element: [`BarMesh`] and
 //! [`TriangleMesh`] name the two cases.
 
+mod any;
+mod any_search;
 mod bisection;
 mod check;
 mod generated;
@@ -22,6 +24,8 @@ mod star;
 mod strips;
 mod topology;
 
+pub use any::{AnyAround, AnyFacet, AnyMesh, FacetRows};
+pub use any_search::{AnyBisection, AnyLocator};
 pub use bisection::Bisection;
 pub use check::{MeshError, room};
 pub use generated::Generated;
@@ -36,15 +40,13 @@ pub use strips::Strips;
 pub use topology::Facet;
 
 use crate::ids::{ElementId, FacetId, NodeId};
-use crate::simplex::{ByDimension, CellGeometry, Element, Simplex};
+use crate::simplex::{CellGeometry, Element, Simplex};
 use std::collections::BTreeMap;
 
 /// A mesh of 2-node bars.
 pub type BarMesh = Mesh<1, 2>;
 /// A mesh of 3-node triangles.
 pub type TriangleMesh = Mesh<2, 3>;
-/// A mesh of either dimension.
-pub type AnyMesh = ByDimension<BarMesh, TriangleMesh>;
 
 /// Named groups of facets, each facet given by its nodes in any order.
 pub type FacetGroups<const D: usize> = BTreeMap<String, Vec<[usize; D]>>;

@@ -43,26 +43,37 @@ impl Numbering {
         &self.elements
     }
 
-    /// A nodal field in the new order, from that in the old one.
-    pub fn order_nodal<T: Copy>(&self, old: &[T], new: &mut Vec<T>) {
+    /// A nodal field of old numbers, in rows, in the new numbers.
+    pub fn order_nodal(&self, old: &[f64], new: &mut Vec<f64>) {
+        let width = old.len() / self.nodes.len();
         new.clear();
-        new.extend(self.nodes.iter().map(|node| old[node.index()]));
+        self.nodes.iter().for_each(|node| new.extend_from_slice(&old[row(node.index(), width)]));
     }
 
-    /// A nodal field in the old order, from that in the new one.
-    pub fn restore_nodal<T: Copy>(&self, new: &[T], old: &mut Vec<T>) {
+    /// A nodal field of new numbers, in rows, in the old numbers.
+    pub fn restore_nodal(&self, new: &[f64], old: &mut Vec<f64>) {
+        let width = new.len() / self.nodes.len();
         old.clear();
         old.extend_from_slice(new);
-        self.nodes.iter().zip(new).for_each(|(node, value)| old[node.index()] = *value);
+        for (at, node) in self.nodes.iter().enumerate() {
+            old[row(node.index(), width)].copy_from_slice(&new[row(at, width)]);
+        }
     }
 
-    /// Values of the elements in the old order, from those in the new one.
+    /// Values of new elements, in rows, in the old numbers.
     #[must_use]
-    pub fn restore_elemental<T: Copy>(&self, new: &[T]) -> Vec<T> {
-        let mut old = new.to_vec();
-        self.elements.iter().zip(new).for_each(|(element, value)| old[element.index()] = *value);
+    pub fn restore_elemental(&self, new: &[f64]) -> Vec<f64> {
+        let (width, mut old) = (new.len() / self.elements.len(), new.to_vec());
+        for (at, element) in self.elements.iter().enumerate() {
+            old[row(element.index(), width)].copy_from_slice(&new[row(at, width)]);
+        }
         old
     }
+}
+
+/// The place of a row.
+fn row(at: usize, width: usize) -> std::ops::Range<usize> {
+    width * at..width * (at + 1)
 }
 
 impl<const D: usize, const N: usize> Mesh<D, N> {

@@ -1,6 +1,6 @@
 //! Supports and loads, from named groups to facets, nodes and elements.
 
-use super::{BodyLoad, Cause, FacetLoad, GroupOf, HeldBy, InputError, PrescribedComponent, Problem, Statement};
+use super::{BodyLoad, Cause, Conditions, FacetLoad, GroupOf, HeldBy, InputError, PrescribedComponent, Problem};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::{BodyForce, Support, Table, Traction};
 use crate::mesh::Mesh;
@@ -40,7 +40,7 @@ fn group<'m, Id, Other>(
 }
 
 /// The first support or traction on each facet, which then cannot touch a plane.
-pub(super) fn held<const D: usize, const N: usize>(mesh: &Mesh<D, N>, stated: &Statement<D>) -> Vec<Option<HeldBy>> {
+pub(super) fn held<const D: usize, const N: usize>(mesh: &Mesh<D, N>, stated: &Conditions) -> Vec<Option<HeldBy>> {
     let mut held = vec![None; mesh.facets().len()];
     let supports = stated.supports.iter().enumerate().map(|(i, s)| (HeldBy::Support(i), &s.group));
     let tractions = stated.tractions.iter().enumerate().map(|(i, t)| (HeldBy::Traction(i), &t.group));
@@ -61,7 +61,7 @@ fn finite<'v>(numbers: impl IntoIterator<Item = &'v f64>) -> Result<(), Cause> {
 pub(super) struct Supports<const D: usize> {
     pub(super) facets: Vec<[bool; D]>,
     pub(super) prescribed: Vec<PrescribedComponent>,
-    pub(super) motions: Vec<Table<1>>,
+    pub(super) motions: Vec<Table>,
 }
 
 impl<const D: usize> Supports<D> {
@@ -76,15 +76,15 @@ impl<const D: usize> Supports<D> {
 /// Resolves the supports; two may overlap only if they prescribe the same motion.
 pub(super) fn supports<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
-    supports: &[Support<D>],
+    supports: &[Support],
 ) -> Result<Supports<D>, InputError> {
     let mut facets = vec![[false; D]; mesh.facets().len()];
-    let mut motions: Vec<Table<1>> = Vec::new();
+    let mut motions: Vec<Table> = Vec::new();
     let mut by_node: BTreeMap<(NodeId, usize), (usize, Option<usize>)> = BTreeMap::new();
     for (index, support) in supports.iter().enumerate() {
         let fail = |cause: Cause, key| cause.at("support", Some(index), key);
         let members = facet_group(mesh, &support.group).map_err(|c| fail(c, "group"))?;
-        if support.components == [false; D] {
+        if !support.components[..D].contains(&true) {
             return Err(fail(Cause::NoComponent, "components"));
         }
         let velocities = support.velocity.iter().flat_map(|table| table.value().iter().flatten());
@@ -111,7 +111,7 @@ pub(super) fn supports<const D: usize, const N: usize>(
 }
 
 /// Position of a motion among those known, added if it is new.
-fn motion_index(motions: &mut Vec<Table<1>>, motion: Table<1>) -> usize {
+fn motion_index(motions: &mut Vec<Table>, motion: Table) -> usize {
     motions.iter().position(|known| *known == motion).unwrap_or_else(|| {
         motions.push(motion);
         motions.len() - 1
@@ -121,7 +121,7 @@ fn motion_index(motions: &mut Vec<Table<1>>, motion: Table<1>) -> usize {
 /// Tractions facet by facet.
 pub(super) fn tractions<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
-    tractions: &[Traction<D>],
+    tractions: &[Traction],
     supported: &[[bool; D]],
 ) -> Result<Vec<FacetLoad<D>>, InputError> {
     let mut loads = Vec::new();
@@ -147,9 +147,9 @@ pub(super) fn tractions<const D: usize, const N: usize>(
 #[allow(clippy::type_complexity)]
 pub(super) fn body_forces<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
-    forces: &[BodyForce<D>],
+    forces: &[BodyForce],
     volume: impl Fn(ElementId) -> f64,
-) -> Result<(Vec<BodyLoad<D>>, Vec<Vec<u16>>), InputError> {
+) -> Result<(Vec<BodyLoad>, Vec<Vec<u16>>), InputError> {
     let mut loads = Vec::new();
     let mut by_element = vec![Vec::new(); if forces.is_empty() { 0 } else { mesh.element_count() }];
     for (index, force) in forces.iter().enumerate() {

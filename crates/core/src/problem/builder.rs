@@ -12,7 +12,7 @@ use crate::load::{BodyForce, Support, Table, Traction};
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
 use crate::message::axis;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// An initial field.
 #[derive(Clone, Debug)]
@@ -25,37 +25,25 @@ pub enum Initial<const D: usize> {
 
 /// What the user stated, apart from mesh, obstacles and initial fields: from it comes the same
 /// problem again, bit by bit.
-#[derive(Clone, Debug)]
-pub struct Statement<const D: usize> {
+#[derive(Clone, Debug, Default)]
+pub struct Conditions {
     /// Materials, each with its group of elements; `None` means all.
     pub materials: Vec<(Option<String>, Elastic)>,
     /// Supports.
-    pub supports: Vec<Support<D>>,
+    pub supports: Vec<Support>,
     /// Tractions.
-    pub tractions: Vec<Traction<D>>,
+    pub tractions: Vec<Traction>,
     /// Body forces.
-    pub body_forces: Vec<BodyForce<D>>,
+    pub body_forces: Vec<BodyForce>,
     /// Surfaces of different bodies that may touch.
     pub interfaces: Vec<Interface>,
-}
-
-impl<const D: usize> Default for Statement<D> {
-    fn default() -> Self {
-        Self {
-            materials: Vec::new(),
-            supports: Vec::new(),
-            tractions: Vec::new(),
-            body_forces: Vec::new(),
-            interfaces: Vec::new(),
-        }
-    }
 }
 
 /// Collects the parts of a problem; [`Builder::build`] checks them all, in one place.
 #[derive(Clone, Debug)]
 pub struct Builder<const D: usize, const N: usize> {
-    mesh: Mesh<D, N>,
-    stated: Statement<D>,
+    mesh: Arc<Mesh<D, N>>,
+    stated: Conditions,
     displacement: Initial<D>,
     velocity: Initial<D>,
     obstacles: Vec<Obstacle<D>>,
@@ -65,10 +53,10 @@ pub struct Builder<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Builder<D, N> {
-    pub(super) fn new(mesh: Mesh<D, N>) -> Self {
+    pub(super) fn new(mesh: Arc<Mesh<D, N>>) -> Self {
         Self {
             mesh,
-            stated: Statement::default(),
+            stated: Conditions::default(),
             displacement: Initial::Uniform([0.0; D]),
             velocity: Initial::Uniform([0.0; D]),
             obstacles: Vec::new(),
@@ -114,21 +102,21 @@ impl<const D: usize, const N: usize> Builder<D, N> {
 
     /// Adds a support.
     #[must_use]
-    pub fn support(mut self, support: Support<D>) -> Self {
+    pub fn support(mut self, support: Support) -> Self {
         self.stated.supports.push(support);
         self
     }
 
     /// Adds a traction.
     #[must_use]
-    pub fn traction(mut self, traction: Traction<D>) -> Self {
+    pub fn traction(mut self, traction: Traction) -> Self {
         self.stated.tractions.push(traction);
         self
     }
 
     /// Adds a body force.
     #[must_use]
-    pub fn body_force(mut self, force: BodyForce<D>) -> Self {
+    pub fn body_force(mut self, force: BodyForce) -> Self {
         self.stated.body_forces.push(force);
         self
     }
@@ -198,7 +186,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
     /// The first thing that is wrong, with its place.
     pub fn build(mut self) -> Result<Problem<D, N>, InputError> {
         self.check_counts()?;
-        let mesh = &self.mesh;
+        let mesh = &*self.mesh;
         let (materials, element_material) = materials(mesh, &self.stated.materials)?;
         waves(&materials)?;
         let extent = |e: ElementId| materials[usize::from(element_material[e.index()])].extent();
@@ -247,12 +235,20 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             moved_planes: Vec::new(),
             critical_step: OnceLock::new(),
             stated: self.stated,
-            mesh: self.mesh.with_facet_groups(groups),
+            mesh: with_groups(self.mesh, groups),
         };
         start_with_supports(&mut problem)?;
         start_of_contact::check(&problem, self.planes_to_be_moved)?;
         Ok(problem)
     }
+}
+
+/// The mesh with the groups of facets that contact has added.
+fn with_groups<const D: usize, const N: usize>(
+    mesh: Arc<Mesh<D, N>>,
+    groups: Vec<(String, Vec<FacetId>)>,
+) -> Arc<Mesh<D, N>> {
+    if groups.is_empty() { mesh } else { Arc::new(Arc::unwrap_or_clone(mesh).with_facet_groups(groups)) }
 }
 
 /// The mass of each node (kg), from those of the elements.

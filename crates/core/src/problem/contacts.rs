@@ -113,8 +113,8 @@ impl Surfaces {
 
     fn of_groups<const D: usize>(&self, contact: &Contact, groups: &[String; 2]) -> Result<Choice, ObstacleError> {
         let groups = groups.each_ref().map(String::as_str);
-        let otherwise = contact.matching.is_none().then(|| contact.interface::<D>(groups, false)).transpose()?;
-        Ok(Choice { first: contact.interface::<D>(groups, contact.matching != Some(false))?, otherwise })
+        let otherwise = contact.matching.is_none().then(|| contact.interface(D, groups, false)).transpose()?;
+        Ok(Choice { first: contact.interface(D, groups, contact.matching != Some(false))?, otherwise })
     }
 
     /// The interface of two surfaces that are found, if they have edges that face each other.
@@ -129,7 +129,7 @@ impl Surfaces {
         let stays = found.slide <= SLIDES * shortest;
         let mut make = |matching: bool| {
             let groups = self.groups_of(mesh, names, found, matching);
-            groups.map(|groups| contact.interface::<D>(groups.each_ref().map(String::as_str), matching)).transpose()
+            groups.map(|groups| contact.interface(D, groups.each_ref().map(String::as_str), matching)).transpose()
         };
         let (first, otherwise) = match contact.matching.or((!stays).then_some(false)) {
             Some(matching) => (make(matching)?, None),
@@ -188,7 +188,7 @@ impl Surfaces {
         // The sides stay in the order of the first contact.
         let groups = if members[0].common == 0 { [make(true), make(false)] } else { [make(false), make(true)] };
         let contact = proposals[members[0].contact].contact;
-        let first = contact.interface::<D>(groups.each_ref().map(String::as_str), false)?;
+        let first = contact.interface(D, groups.each_ref().map(String::as_str), false)?;
         Ok(Choice { first, otherwise: None })
     }
 

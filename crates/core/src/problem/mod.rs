@@ -1,6 +1,7 @@
 //! The reference problem, eq. \[3\]–\[11\], stated and checked.
 
 mod alignment;
+mod any;
 mod bodies;
 mod boundary;
 mod builder;
@@ -21,16 +22,19 @@ mod roles;
 mod sides;
 mod sliding;
 mod start_of_contact;
+mod statement;
 pub(crate) mod symmetry;
 
+pub use any::{AnyContactFacet, AnyFacetLoad, AnyProblem, ProblemRef};
 pub use bodies::{Between, Contact};
-pub use builder::{Builder, Initial, Statement};
+pub use builder::{Builder, Conditions, Initial};
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
 pub use moved_planes::MovedPlane;
 pub use plausibility::{
     PlausibilityWarning, RefusedStart, SMALL_ROTATION, cause_of_refused_start, plausibility_warnings,
 };
 pub use rigid_motion::RigidMotion;
+pub use statement::Statement;
 
 use crate::contact::{ContactSurface, Facing, Interface, Obstacle};
 use crate::ids::{ElementId, FacetId, NodeId};
@@ -38,7 +42,7 @@ use crate::load::{Profile, Table};
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
 use crate::units::Units;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// One component of a node's motion that is prescribed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,9 +68,9 @@ pub struct FacetLoad<const D: usize> {
 
 /// A body force on part of the mesh.
 #[derive(Clone, Debug)]
-pub struct BodyLoad<const D: usize> {
+pub struct BodyLoad {
     /// Force per volume over time (N/m³).
-    pub value: Table<D>,
+    pub value: Table,
     /// Per node, the volume on which it acts (m³).
     pub nodal_volume: Vec<(NodeId, f64)>,
 }
@@ -74,8 +78,8 @@ pub struct BodyLoad<const D: usize> {
 /// An elastic body that may strike rigid obstacles, with its supports and loads, checked.
 #[derive(Clone, Debug)]
 pub struct Problem<const D: usize, const N: usize> {
-    mesh: Mesh<D, N>,
-    stated: Statement<D>,
+    mesh: Arc<Mesh<D, N>>,
+    stated: Conditions,
     materials: Vec<Elastic>,
     element_material: Vec<u16>,
     mass: Vec<f64>,
@@ -83,10 +87,10 @@ pub struct Problem<const D: usize, const N: usize> {
     initial_velocity: Vec<[f64; D]>,
     supported: Vec<[bool; D]>,
     prescribed: Vec<PrescribedComponent>,
-    motions: Vec<Table<1>>,
+    motions: Vec<Table>,
     facet_loads: Vec<FacetLoad<D>>,
-    traction_tables: Vec<Table<D>>,
-    body_loads: Vec<BodyLoad<D>>,
+    traction_tables: Vec<Table>,
+    body_loads: Vec<BodyLoad>,
     element_body_loads: Vec<Vec<u16>>,
     surface: ContactSurface<D>,
     /// Where each of the interfaces is stated.
@@ -104,8 +108,8 @@ pub type TriangleProblem = Problem<2, 3>;
 impl<const D: usize, const N: usize> Problem<D, N> {
     /// Starts the statement of a problem on a mesh.
     #[must_use]
-    pub fn builder(mesh: Mesh<D, N>) -> Builder<D, N> {
-        Builder::new(mesh)
+    pub fn builder(mesh: impl Into<Arc<Mesh<D, N>>>) -> Builder<D, N> {
+        Builder::new(mesh.into())
     }
 
     /// The mesh.
@@ -116,7 +120,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
 
     /// What was stated, to be written down; mesh, obstacles and initial fields are beside it.
     #[must_use]
-    pub fn statement(&self) -> &Statement<D> {
+    pub fn conditions(&self) -> &Conditions {
         &self.stated
     }
 
@@ -183,7 +187,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
 
     /// Velocity tables of moving supports (m/s).
     #[must_use]
-    pub fn motions(&self) -> &[Table<1>] {
+    pub fn motions(&self) -> &[Table] {
         &self.motions
     }
 
@@ -201,13 +205,13 @@ impl<const D: usize, const N: usize> Problem<D, N> {
 
     /// Tables of the tractions (Pa).
     #[must_use]
-    pub fn traction_tables(&self) -> &[Table<D>] {
+    pub fn traction_tables(&self) -> &[Table] {
         &self.traction_tables
     }
 
     /// Body forces.
     #[must_use]
-    pub fn body_loads(&self) -> &[BodyLoad<D>] {
+    pub fn body_loads(&self) -> &[BodyLoad] {
         &self.body_loads
     }
 
@@ -410,7 +414,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     #[must_use]
     pub fn facet_traction_at(&self, load: &FacetLoad<D>, t: f64) -> [[f64; D]; D] {
         let value = self.traction_tables[load.table].at(t);
-        load.profile.map(|factor| value.map(|v| factor * v))
+        load.profile.map(|factor| std::array::from_fn(|c| factor * value[c]))
     }
 
     /// How far the loads and motions that are solved, with their values at the instants joined by
@@ -423,7 +427,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         motions.chain(tractions).chain(forces).fold(0.0, f64::max)
     }
 
-    fn profile_on(mesh: &Mesh<D, N>, facet: FacetId, profile: &Profile<D>) -> [f64; D] {
+    fn profile_on(mesh: &Mesh<D, N>, facet: FacetId, profile: &Profile) -> [f64; D] {
         mesh.facets()[facet.index()].nodes.map(|node| profile.at(&mesh.points()[node.index()]))
     }
 }

@@ -23,7 +23,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         };
         let mut facet_loads: Vec<_> = self.facet_loads.iter().map(facet_load).collect();
         facet_loads.sort_unstable_by_key(|load| (load.table, load.facet));
-        let body_load = |load: &BodyLoad<D>| {
+        let body_load = |load: &BodyLoad| {
             let mut nodal_volume: Vec<_> = load.nodal_volume.iter().map(|&(node, v)| (new.node(node), v)).collect();
             nodal_volume.sort_unstable_by_key(|(node, _)| *node);
             BodyLoad { value: load.value.clone(), nodal_volume }
@@ -47,7 +47,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
             moved_planes: self.moved_planes.clone(),
             critical_step: self.critical_step.clone(),
             surface: self.surface.renumbered(&self.mesh, &new),
-            mesh,
+            mesh: mesh.into(),
         }
     }
 }

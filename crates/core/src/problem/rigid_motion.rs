@@ -1,16 +1,19 @@
 //! The rigid motion of each body in a nodal field.
 
-use super::Problem;
+use super::{Problem, ProblemRef};
+use crate::border::{Vector, padded};
+use crate::on_problem;
 use std::array::from_fn;
 
 /// What weighs a nodal field for the rigid motion of each body that fits it best: the mean Σmu/Σm, and the rotation
-/// Σm x×u / Σm|x|², x from the centre of mass.
+/// Σm x×u / Σm|x|², x from the centre of mass. Fields are in rows.
 #[derive(Clone, Debug)]
-pub struct RigidMotion<const D: usize> {
+pub struct RigidMotion {
+    dimension: usize,
     /// m of each node (kg).
     masses: Vec<f64>,
     /// x of each node (m).
-    arms: Vec<[f64; D]>,
+    arms: Vec<Vector>,
     /// The body of each node.
     of_node: Vec<usize>,
     /// Σm of each body (kg).
@@ -19,33 +22,39 @@ pub struct RigidMotion<const D: usize> {
     inertia: Vec<f64>,
 }
 
-impl<const D: usize> RigidMotion<D> {
+impl RigidMotion {
     /// That of all bodies of a problem.
     #[must_use]
-    pub fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub fn new<'p>(problem: impl Into<ProblemRef<'p>>) -> Self {
+        on_problem!(problem.into(), problem => Self::of(problem))
+    }
+
+    fn of<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
         let (mesh, masses) = (problem.mesh(), problem.mass().to_vec());
         let (of_node, bodies) = (mesh.part_numbers(), mesh.parts());
-        let (mut mass, mut centre, mut inertia) = (vec![0.0; bodies], vec![[0.0; D]; bodies], vec![0.0; bodies]);
-        for ((&body, x), m) in of_node.iter().zip(mesh.points()).zip(&masses) {
+        let (mut mass, mut centre, mut inertia) = (vec![0.0; bodies], vec![[0.0; 3]; bodies], vec![0.0; bodies]);
+        let points: Vec<Vector> = mesh.points().iter().map(padded).collect();
+        for ((&body, x), m) in of_node.iter().zip(&points).zip(&masses) {
             mass[body] += m;
-            (0..D).for_each(|c| centre[body][c] += m * x[c]);
+            (0..3).for_each(|c| centre[body][c] += m * x[c]);
         }
-        let arm = |(x, &body): (&[f64; D], &usize)| from_fn(|c| x[c] - centre[body][c] / mass[body]);
-        let arms: Vec<[f64; D]> = mesh.points().iter().zip(&of_node).map(arm).collect();
+        let arm = |(x, &body): (&Vector, &usize)| from_fn(|c| x[c] - centre[body][c] / mass[body]);
+        let arms: Vec<Vector> = points.iter().zip(&of_node).map(arm).collect();
         for ((&body, arm), m) in of_node.iter().zip(&arms).zip(&masses) {
             inertia[body] += m * arm.iter().map(|x| x * x).sum::<f64>();
         }
-        Self { masses, arms, of_node, mass, inertia }
+        Self { dimension: D, masses, arms, of_node, mass, inertia }
     }
 
     /// How far each body turns, counterclockwise, in a field of displacements (rad) or of velocities (rad/s); 0 on
     /// bars.
     #[must_use]
-    pub fn rotations(&self, field: &[[f64; D]]) -> Vec<f64> {
+    pub fn rotations(&self, field: &[f64]) -> Vec<f64> {
         let mut turned = vec![0.0; self.mass.len()];
-        if D == 2 {
-            for (((&body, arm), m), u) in self.of_node.iter().zip(&self.arms).zip(&self.masses).zip(field) {
-                turned[body] += m * (arm[0] * u[D - 1] - arm[D - 1] * u[0]) / self.inertia[body];
+        if self.dimension == 2 {
+            let nodes = self.of_node.iter().zip(&self.arms).zip(&self.masses);
+            for (((&body, arm), m), u) in nodes.zip(field.as_chunks::<2>().0) {
+                turned[body] += m * (arm[0] * u[1] - arm[1] * u[0]) / self.inertia[body];
             }
         }
         turned
@@ -53,10 +62,10 @@ impl<const D: usize> RigidMotion<D> {
 
     /// The mean of a field over each body, weighted with the mass.
     #[must_use]
-    pub fn means(&self, field: &[[f64; D]]) -> Vec<[f64; D]> {
-        let mut means = vec![[0.0; D]; self.mass.len()];
-        for ((&body, m), u) in self.of_node.iter().zip(&self.masses).zip(field) {
-            (0..D).for_each(|c| means[body][c] += m * u[c] / self.mass[body]);
+    pub fn means(&self, field: &[f64]) -> Vec<Vector> {
+        let mut means = vec![[0.0; 3]; self.mass.len()];
+        for ((&body, m), u) in self.of_node.iter().zip(&self.masses).zip(field.chunks_exact(self.dimension)) {
+            u.iter().zip(&mut means[body]).for_each(|(u, mean)| *mean += m * u / self.mass[body]);
         }
         means
     }
@@ -64,13 +73,13 @@ impl<const D: usize> RigidMotion<D> {
     /// The kinetic energy of velocities relative to the rigid motion of each body (J). The motion is subtracted before
     /// the sum: a large common velocity leaves no rounding of its energy.
     #[must_use]
-    pub fn relative_kinetic_energy(&self, velocity: &[[f64; D]]) -> f64 {
+    pub fn relative_kinetic_energy(&self, velocity: &[f64]) -> f64 {
         let (means, turning) = (self.means(velocity), self.rotations(velocity));
-        let nodes = self.of_node.iter().zip(&self.arms).zip(&self.masses).zip(velocity);
+        let nodes = self.of_node.iter().zip(&self.arms).zip(&self.masses).zip(velocity.chunks_exact(self.dimension));
         let twice = nodes.map(|(((&body, arm), m), v)| {
-            let across = |c: usize| if c == 0 { -arm[D - 1] } else { arm[0] };
-            let relative = |c: usize| v[c] - means[body][c] - turning[body] * across(c);
-            m * (0..D).map(|c| relative(c).powi(2)).sum::<f64>()
+            let across = [-arm[1], arm[0]];
+            let relative = |(c, v): (usize, &f64)| v - means[body][c] - turning[body] * across[c];
+            m * v.iter().enumerate().map(|component| relative(component).powi(2)).sum::<f64>()
         });
         0.5 * twice.sum::<f64>()
     }
@@ -103,7 +112,7 @@ mod tests {
         let [spin, stretch] = [3.0, 1e-3];
         let field: Vec<[f64; 2]> = (0..problem.mesh().node_count())
             .map(|i| {
-                let ([x, y], first) = (rigid.arms[i], rigid.of_node[i] == 0);
+                let ([x, y, _], first) = (rigid.arms[i], rigid.of_node[i] == 0);
                 if first {
                     [400.0 - spin * y, 2.0 + spin * x]
                 } else {
@@ -115,11 +124,11 @@ mod tests {
             .filter(|&i| rigid.of_node[i] == 1)
             .map(|i| 0.5 * problem.mass()[i] * stretch.powi(2) * rigid.arms[i].iter().map(|x| x * x).sum::<f64>())
             .sum();
-        let found = rigid.relative_kinetic_energy(&field);
+        let found = rigid.relative_kinetic_energy(field.as_flattened());
         // Rounding of 400 m/s, 1e-13, squared and beside 1e-3.
         assert!((found - expected).abs() < 1e-9 * expected, "{found} for {expected}");
-        assert!((rigid.rotations(&field)[0] - spin).abs() < 1e-12);
-        assert!((rigid.rotations(&field)[1] + 5.0).abs() < 1e-12);
+        assert!((rigid.rotations(field.as_flattened())[0] - spin).abs() < 1e-12);
+        assert!((rigid.rotations(field.as_flattened())[1] + 5.0).abs() < 1e-12);
     }
 
     #[test]
@@ -129,7 +138,7 @@ mod tests {
         let rigid = RigidMotion::new(&problem);
         let field: Vec<[f64; 1]> = problem.mesh().points().iter().map(|[x]| [7.0 + (x - 1.0)]).collect();
         // Masses of ¼, ½, ½, ½, ¼ kg at −1, −½, 0, ½, 1 m.
-        assert!((rigid.relative_kinetic_energy(&field) - 0.375).abs() < 1e-14);
-        assert_eq!(rigid.rotations(&field), [0.0]);
+        assert!((rigid.relative_kinetic_energy(field.as_flattened()) - 0.375).abs() < 1e-14);
+        assert_eq!(rigid.rotations(field.as_flattened()), [0.0]);
     }
 }

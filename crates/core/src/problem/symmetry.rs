@@ -47,7 +47,7 @@ pub(crate) fn node_lines<const D: usize, const N: usize>(
     mesh: &Mesh<D, N>,
     supported: &[[bool; D]],
     prescribed: &[PrescribedComponent],
-    motions: &[Table<1>],
+    motions: &[Table],
 ) -> Vec<NodeLines<D>> {
     let mirrors = mirrors(mesh, supported);
     let mut lines = vec![[None; D]; mesh.node_count()];

@@ -5,12 +5,8 @@
 //! only matches on [`Shape`]; a new shape does not compile before each of these matches has its case.
 
 mod bar;
-mod by_dimension;
-mod instance;
 mod triangle;
 
-pub use by_dimension::ByDimension;
-pub use instance::instance;
 use std::fmt::Debug;
 
 /// The element of dimension `D` with `N` nodes, if [`Simplex`] is written for it.

@@ -34,11 +34,15 @@ fn place(table: &'static str, index: Option<usize>, key: &'static str) -> Place 
     Place { table, index, key }
 }
 
-fn support(group: &str, components: [bool; 2], velocity: Option<[f64; 2]>) -> Support<2> {
-    Support { group: group.to_string(), components, velocity: velocity.map(Table::constant) }
+fn support(group: &str, components: [bool; 2], velocity: Option<[f64; 2]>) -> Support {
+    Support {
+        group: group.to_string(),
+        components: [components[0], components[1], false],
+        velocity: velocity.map(Table::constant),
+    }
 }
 
-fn traction(group: &str, value: [f64; 2]) -> Traction<2> {
+fn traction(group: &str, value: [f64; 2]) -> Traction {
     Traction { group: group.to_string(), value: Table::constant(value), profile: Profile::UNIFORM }
 }
 
@@ -132,8 +136,10 @@ fn loads_that_are_not_finite() {
         at(solid().traction(traction("top", endless))),
         (place("traction", Some(0), "value"), Cause::NotFinite { value: f64::INFINITY })
     );
-    let steep =
-        Traction { profile: Profile { value: 1.0, gradient: [f64::INFINITY, 0.0] }, ..traction("right", [1.0, 0.0]) };
+    let steep = Traction {
+        profile: Profile { value: 1.0, gradient: [f64::INFINITY, 0.0, 0.0] },
+        ..traction("right", [1.0, 0.0])
+    };
     assert_eq!(
         at(solid().traction(steep)),
         (place("traction", Some(0), "profile"), Cause::NotFinite { value: f64::INFINITY })

@@ -14,7 +14,7 @@ fn disc(radius: f64, at: [f64; 2]) -> Mesh<2, 3> {
 /// The groups of all interfaces.
 fn groups(bodies: &[Body<'_>]) -> Vec<[String; 2]> {
     let problem = problem(bodies).build().unwrap();
-    problem.statement().interfaces.iter().map(|interface| interface.groups().map(str::to_string)).collect()
+    problem.conditions().interfaces.iter().map(|interface| interface.groups().map(str::to_string)).collect()
 }
 
 /// A disc meets the corner of a slab. The long side has more weight in the mean normal than the short one, whichever

@@ -26,7 +26,7 @@ fn pulled_block() -> Builder<2, 3> {
         .traction(Traction {
             group: "right".to_string(),
             value: pull,
-            profile: Profile { value: 1.0, gradient: [0.0, 20.0] },
+            profile: Profile { value: 1.0, gradient: [0.0, 20.0, 0.0] },
         })
         .body_force(gravity(2700.0, [0.0, -1e6]))
 }
@@ -97,7 +97,8 @@ fn the_recorded_steps_balance_to_rounding() {
         for (m, w) in problem.mass().iter().zip(&after) {
             work += m * dt * (1e6 * w[0] - 3e6 * w[1]);
         }
-        let (now, next) = (run.history.step(n).unwrap().reaction, run.history.step(n + 1).unwrap().reaction);
+        let (now, next) =
+            (run.history.step(n).unwrap().reaction::<2>(), run.history.step(n + 1).unwrap().reaction::<2>());
         for (at, node) in run.contact_nodes().into_iter().enumerate() {
             (0..2).for_each(|c| work += 0.5 * dt * (now[at][c] + next[at][c]) * after[node][c]);
             touched += usize::from(now[at][1] > 0.0);
@@ -117,7 +118,7 @@ fn momentum_is_the_impulse() {
     let mut expected = [40.0 * mass, -30.0 * mass];
     for n in 0..run.last() {
         let h = if n == 0 { 0.5 * dt } else { dt };
-        let reactions = run.history.step(n).unwrap().reaction;
+        let reactions = run.history.step(n).unwrap().reaction::<2>();
         for c in 0..2 {
             expected[c] += h * (mass * [1e6, -3e6][c] + reactions.iter().map(|r| r[c]).sum::<f64>());
             let found = run.momentum(n)[c];
@@ -155,7 +156,7 @@ fn friction_dissipates() {
     let mut friction = 0.0;
     for n in 0..run.last() {
         let velocity = run.half_velocity(n);
-        let (now, next) = (run.history.step(n).unwrap().reaction, run.history.step(n + 1).unwrap().reaction);
+        let (now, next) = (run.history.step(n).unwrap().reaction(), run.history.step(n + 1).unwrap().reaction());
         for (at, node) in run.contact_nodes().into_iter().enumerate() {
             let tangential = plane.flat_frame().split(&velocity[node]).1;
             let power = |r: &[f64; 2]| -(r[0] * tangential[0] + r[1] * tangential[1]);

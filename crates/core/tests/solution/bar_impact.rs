@@ -24,7 +24,7 @@ fn problem(bar: &BarImpact, elements: usize) -> BarProblem {
 
 /// Contact force at t_n (N).
 fn force(run: &Run<'_, 1, 2>, n: usize) -> f64 {
-    run.history.step(n).unwrap().reaction[0][0]
+    run.history.step(n).unwrap().reaction::<1>()[0][0]
 }
 
 /// With Δt = h/c and a gap of k steps, the scheme is u_i^{n+1} = u_{i−1}^n + u_{i+1}^n − u_i^{n−1},

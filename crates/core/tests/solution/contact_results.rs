@@ -1,6 +1,7 @@
 //! Contact results against exact solutions, the contact law and the balances.
 
 use crate::solution::run::{Run, aluminium, fixed, run, swinging_steps};
+use percute_core::border::vectors;
 use percute_core::contact::Obstacle;
 use percute_core::contact::{ContactRecorder, ContactResults, ContactSteps, Status};
 use percute_core::dynamics::critical_time_step;
@@ -18,11 +19,11 @@ const STILL: f64 = 1e-9;
 const GAP: f64 = 2.7e-4;
 
 /// The contact results of a run, with all nodes at all instants.
-fn results<const D: usize, const N: usize>(run: &Run<'_, D, N>) -> ContactResults<D> {
+fn results<const D: usize, const N: usize>(run: &Run<'_, D, N>) -> ContactResults {
     ContactRecorder::new(run.problem, run.history.times()).keeping_steps().unwrap().replay(&run.history).unwrap()
 }
 
-fn steps<const D: usize>(results: &ContactResults<D>) -> &ContactSteps<D> {
+fn steps(results: &ContactResults) -> &ContactSteps {
     results.steps.as_ref().unwrap()
 }
 
@@ -165,11 +166,11 @@ fn check_status(run: &Run<'_, 2, 3>, what: &str) -> [usize; 3] {
         let (next, velocity) = (run.history.step(n + 1).unwrap(), run.half_velocity(n));
         for (at, &node) in nodes.iter().enumerate() {
             let (row, place) = (n * nodes.len() + at, format!("{what}, step {n}, node {node}"));
-            let (normal, force) = plane.flat_frame().split(&steps.force[row]);
+            let (normal, force) = plane.flat_frame().split(&vectors(&steps.force)[row]);
             let along = plane.flat_frame().split(&velocity[node]).1[0];
             assert_eq!(steps.status[row] != Status::Free, next.touching[at], "{place}");
             seen[steps.status[row] as usize] += 1;
-            let sliding = steps.sliding_velocity[row];
+            let sliding: [f64; 2] = vectors(&steps.sliding_velocity)[row];
             match steps.status[row] {
                 Status::Free => assert!(normal == 0.0 && sliding == [0.0; 2], "{place}"),
                 Status::Stick => assert!(along.abs() < STILL && sliding[0].abs() < STILL, "{place}: {along} m/s"),
@@ -223,7 +224,7 @@ fn a_block_that_cannot_slide_sticks() {
     let results = results(&run(&problem, &equal_steps(&problem, 200)));
     assert!(results.total.iter().all(|t| t.slipping == 0));
     assert!(results.total.iter().map(|t| t.in_contact).sum::<usize>() > 100);
-    assert!(steps(&results).sliding_velocity.iter().all(|v| v[0].abs() < STILL));
+    assert!(vectors::<2>(&steps(&results).sliding_velocity).iter().all(|v| v[0].abs() < STILL));
 }
 
 /// The friction energies of the nodes add up to that of the balance; obstacles add up to the total; the areas to the

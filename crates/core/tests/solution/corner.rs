@@ -83,13 +83,13 @@ fn check(run: &Run<'_, 2, 3>, what: &str) -> usize {
         let mut pressed = vec![0; problem.mesh().node_count()];
         for (at, contact) in surface.nodes().iter().enumerate() {
             let node = contact.node.index();
-            let gap = surface.gap(at, &next.displacement[node]);
+            let gap = surface.gap(at, &next.displacement()[node]);
             assert!(gap >= -depth, "{what}, step {n}: {gap}");
             let obstacle = &problem.obstacles()[contact.obstacle];
-            let (frame, force) = (obstacle.flat_frame(), step.reaction[at]);
+            let (frame, force) = (obstacle.flat_frame(), step.reaction()[at]);
             let (normal, _) = frame.split(&force);
             let before = run.displacement(n - 1)[node];
-            work += 0.5 * (0..2).map(|c| force[c] * (next.displacement[node][c] - before[c])).sum::<f64>();
+            work += 0.5 * (0..2).map(|c| force[c] * (next.displacement::<2>()[node][c] - before[c])).sum::<f64>();
             if normal == 0.0 {
                 assert_eq!(force, [0.0; 2], "{what}, step {n}");
                 continue;

@@ -57,7 +57,11 @@ fn uniform_bars_have_the_steps_of_their_modes() {
             let mesh = BarMesh::uniform_bar(0.1, elements).unwrap();
             let mut builder = BarProblem::builder(mesh).material(Elastic::bar(70e9, 2700.0, 0.02).unwrap());
             for group in supports {
-                builder = builder.support(Support { group: group.to_string(), components: [true], velocity: None });
+                builder = builder.support(Support {
+                    group: group.to_string(),
+                    components: [true, false, false],
+                    velocity: None,
+                });
             }
             let n = elements as f64;
             let h_over_c = 0.1 / n / (70e9_f64 / 2700.0).sqrt();

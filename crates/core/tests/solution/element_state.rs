@@ -60,7 +60,7 @@ fn a_linear_field_has_the_stress_of_three_dimensions() {
         let (von_mises, pressure) = invariants(&expected);
         let tolerance = ROUNDING * von_mises;
         for element in elements(&problem) {
-            let state = ElementState::new(&problem, element, &linear(&mesh));
+            let state = ElementState::new(&problem, element, linear(&mesh).as_flattened());
             for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 assert!((state.stress[a][b] - expected[a][b]).abs() < tolerance, "{element:?}: {state:?}");
                 let symmetric = 0.5 * (GRADIENT[a][b] + GRADIENT[b][a]);
@@ -82,7 +82,7 @@ fn a_linear_field_has_the_stress_of_three_dimensions() {
 fn a_bar_has_stress_along_it_alone() {
     let problem = BarProblem::builder(BarMesh::uniform_bar(0.3, 3).unwrap());
     let problem = problem.material(Elastic::bar(2e11, 7800.0, 1e-4).unwrap()).build().unwrap();
-    let displacement: Vec<[f64; 1]> = problem.mesh().points().iter().map(|p| [-1e-3 * p[0]]).collect();
+    let displacement: Vec<f64> = problem.mesh().points().iter().map(|p| -1e-3 * p[0]).collect();
     for element in elements(&problem) {
         let state = ElementState::new(&problem, element, &displacement);
         assert!((state.stress[0][0] + 2e8).abs() < 1e-6);
@@ -94,12 +94,12 @@ fn a_bar_has_stress_along_it_alone() {
 /// Motion at the last instant.
 #[derive(Default)]
 struct Last {
-    displacement: Vec<[f64; 2]>,
-    velocity: Vec<[f64; 2]>,
+    displacement: Vec<f64>,
+    velocity: Vec<f64>,
 }
 
-impl StateSink<2> for Last {
-    fn accept(&mut self, state: &State<'_, 2>) -> Result<(), SinkError> {
+impl StateSink for Last {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         (self.displacement, self.velocity) = (state.step().displacement.to_vec(), state.velocity());
         Ok(())
     }

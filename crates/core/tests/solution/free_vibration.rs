@@ -34,7 +34,7 @@ fn bar_problem(mode: &BarMode, elements: usize) -> BarProblem {
         .material(Elastic::bar(mode.young, mode.density, mode.section).unwrap())
         .initial_displacement(displacement)
         .initial_velocity(velocity)
-        .support(Support { group: "start".to_string(), components: [true], velocity: None })
+        .support(Support { group: "start".to_string(), components: [true, false, false], velocity: None })
         .build()
         .unwrap()
 }

@@ -12,7 +12,7 @@ use percute_core::time::TimeGrid;
 use percute_testkit::random_rectangle;
 
 /// Zero until 5 µs, then `value` and more.
-fn late(value: [f64; 2]) -> Table<2> {
+fn late(value: [f64; 2]) -> Table {
     Table::new(vec![0.0, 5e-6, 1e-5], vec![[0.0; 2], [0.0; 2], value]).unwrap()
 }
 
@@ -42,7 +42,8 @@ fn a_body_force_that_grows_from_zero_is_no_instability() {
 
 #[test]
 fn a_support_that_starts_late_is_no_instability() {
-    let support = Support { group: "left".to_string(), components: [true, false], velocity: Some(late([10.0, 0.0])) };
+    let support =
+        Support { group: "left".to_string(), components: [true, false, false], velocity: Some(late([10.0, 0.0])) };
     assert!(moves(&block().support(support).build().unwrap()));
 }
 

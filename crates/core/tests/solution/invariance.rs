@@ -49,7 +49,7 @@ impl Throw {
 }
 
 fn reactions(run: &Run<'_, 2, 3>) -> usize {
-    (0..=run.last()).map(|n| run.history.step(n).unwrap().reaction.iter().filter(|r| **r != [0.0; 2]).count()).sum()
+    (0..=run.last()).map(|n| run.history.step(n).unwrap().reaction().iter().filter(|r| **r != [0.0; 2]).count()).sum()
 }
 
 /// Compares two runs at all steps: `map` of the first against the second, whose node of number i is

@@ -71,7 +71,7 @@ fn nodal_forces_keep_resultant_and_moment() {
         .traction(Traction {
             group: "right".to_string(),
             value: Table::new(vec![0.0, 2.0], vec![[0.0, 0.0], [6.0, -2.0]]).unwrap(),
-            profile: Profile { value: -7.0, gradient: [4.0, 4.0] },
+            profile: Profile { value: -7.0, gradient: [4.0, 4.0, 0.0] },
         })
         .body_force(BodyForce { group: None, value: Table::constant([0.0, 10.0]) })
         .build()

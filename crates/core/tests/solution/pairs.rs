@@ -27,7 +27,7 @@ fn blocks(velocities: [[f64; 2]; 2], friction: f64, materials: [Elastic; 2]) -> 
         .material_of("upper", materials[0])
         .material_of("lower", materials[1])
         .initial_velocity(Initial::Nodal(velocity))
-        .interface(Interface::matching::<2>("upper.bottom", "lower.bottom", friction).unwrap())
+        .interface(Interface::matching(2, "upper.bottom", "lower.bottom", friction).unwrap())
         .build()
         .unwrap()
 }
@@ -79,9 +79,9 @@ fn check(run: &Run<'_, 2, 3>) {
         let velocity = run.half_velocity(n);
         for at in (0..surface.nodes().len()).filter(|&at| surface.leads(at)) {
             let opposite = surface.nodes()[at].opposite.unwrap();
-            let force = step.reaction[at];
-            assert_eq!(force.map(|f| -f), step.reaction[opposite], "step {n}");
-            let gap = surface.gap(at, &surface.against_obstacle(at, next.displacement));
+            let force = step.reaction()[at];
+            assert_eq!(force.map(|f| -f), step.reaction()[opposite], "step {n}");
+            let gap = surface.gap(at, &surface.against_obstacle(at, next.displacement()));
             assert!(gap >= -1e-12 * run.problem.mesh().size(), "step {n}: {gap}");
             let obstacle = &run.problem.obstacles()[surface.nodes()[at].obstacle];
             let frame = obstacle.flat_frame();
@@ -146,7 +146,7 @@ fn equal_bars_exchange_their_velocities() {
         let problem = BarProblem::builder(mesh)
             .material(Elastic::bar(70e9, 2700.0, 1e-4).unwrap())
             .initial_velocity(Initial::Nodal(velocity))
-            .interface(Interface::matching::<1>("left.end", "right.start", 0.0).unwrap())
+            .interface(Interface::matching(1, "left.end", "right.start", 0.0).unwrap())
             .build()
             .unwrap();
         let wave = (70e9_f64 / 2700.0).sqrt();
@@ -174,7 +174,7 @@ fn wrong_interfaces_are_refused() {
         let mesh = TriangleMesh::joined(&[("upper", &block()), ("lower", &lower)]).unwrap();
         let problem = TriangleProblem::builder(mesh)
             .material(aluminium())
-            .interface(Interface::matching::<2>(first, second, 0.2).unwrap())
+            .interface(Interface::matching(2, first, second, 0.2).unwrap())
             .build();
         problem.err().map(|error| error.cause)
     };

@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 /// A run and all its steps.
 pub(crate) struct Run<'p, const D: usize, const N: usize> {
     pub(crate) problem: &'p Problem<D, N>,
-    pub(crate) history: History<D>,
+    pub(crate) history: History,
     pub(crate) simulation: Simulation,
 }
 
@@ -44,7 +44,7 @@ impl<const D: usize, const N: usize> Run<'_, D, N> {
 
     /// u_n (m).
     pub(crate) fn displacement(&self, n: usize) -> &[[f64; D]] {
-        self.history.step(n).unwrap().displacement
+        self.history.step(n).unwrap().displacement()
     }
 
     /// v_{n+½} = (u_{n+1} − u_n)/Δt_n (m/s).
@@ -110,12 +110,12 @@ pub(crate) fn aluminium() -> Elastic {
 }
 
 /// A fixed support of some components.
-pub(crate) fn fixed(group: &str, components: [bool; 2]) -> Support<2> {
-    Support { group: group.to_string(), components, velocity: None }
+pub(crate) fn fixed(group: &str, components: [bool; 2]) -> Support {
+    Support { group: group.to_string(), components: [components[0], components[1], false], velocity: None }
 }
 
 /// A uniform body force that gives the acceleration `g` (m/s²).
-pub(crate) fn gravity<const D: usize>(density: f64, g: [f64; D]) -> BodyForce<D> {
+pub(crate) fn gravity<const D: usize>(density: f64, g: [f64; D]) -> BodyForce {
     BodyForce { group: None, value: Table::constant(g.map(|g| density * g)) }
 }
 

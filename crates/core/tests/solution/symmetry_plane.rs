@@ -35,7 +35,7 @@ fn dropped(mesh: TriangleMesh, guide: bool) -> TriangleProblem {
         .material(aluminium())
         .initial_velocity(Initial::Uniform([0.0, -100.0]))
         .obstacle(Obstacle::plane([0.0, -3e-4], [0.0, 1.0], 0.3, None).unwrap());
-    let left = Support { group: "left".to_string(), components: [true, false], velocity: None };
+    let left = Support { group: "left".to_string(), components: [true, false, false], velocity: None };
     if guide { builder.support(left) } else { builder }.build().unwrap()
 }
 
@@ -51,7 +51,7 @@ fn half_a_body_moves_as_the_whole() {
     for n in 0..=60 {
         let (a, b) = (half.history.step(n).unwrap(), whole.history.step(n).unwrap());
         touched |= a.touching.iter().any(|t| *t);
-        for (u, v) in a.displacement.iter().zip(b.displacement) {
+        for (u, v) in a.displacement::<2>().iter().zip(b.displacement::<2>()) {
             // Displacements reach 5 mm; rounding of sums in another order grows over 60 steps.
             assert!((u[0] - v[0]).hypot(u[1] - v[1]) < 1e-14, "step {n}: {u:?} against {v:?}");
         }
@@ -63,7 +63,7 @@ fn half_a_body_moves_as_the_whole() {
 #[test]
 fn a_node_held_along_the_normal_is_no_candidate() {
     let mesh = random_rectangle(0.02, 0.03, 6, 11).unwrap();
-    let held = Support { group: "left".to_string(), components: [true, true], velocity: None };
+    let held = Support { group: "left".to_string(), components: [true, true, false], velocity: None };
     let problem = TriangleProblem::builder(mesh)
         .material(aluminium())
         .support(held)

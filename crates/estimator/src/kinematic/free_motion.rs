@@ -57,7 +57,7 @@ impl<const D: usize> FreeMotion<D> {
         &mut self,
         problem: &Problem<D, N>,
         times: &TimeGrid,
-        state: &State<'_, D>,
+        state: &State<'_>,
     ) -> (Option<NodalField<D>>, NodalMotion<D>) {
         let n = state.step().index;
         if n == 0 {

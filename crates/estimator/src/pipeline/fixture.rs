@@ -27,7 +27,8 @@ fn thrown(velocity: [f64; 2], friction: f64, rollers: &[&str]) -> (TriangleProbl
         .initial_velocity(Initial::Uniform(velocity))
         .obstacle(Obstacle::plane([0.0, -6e-4], [0.0, 1.0], friction, Some("bottom".to_string())).unwrap());
     for group in rollers {
-        builder = builder.support(Support { group: group.to_string(), components: [true, false], velocity: None });
+        builder =
+            builder.support(Support { group: group.to_string(), components: [true, false, false], velocity: None });
     }
     let problem = builder.build().unwrap();
     let times = steps(&problem);
@@ -52,7 +53,7 @@ pub(super) fn guided() -> (TriangleProblem, TimeGrid) {
 /// A block whose top is driven; no plane.
 pub(super) fn driven() -> (TriangleProblem, TimeGrid) {
     let velocity = Table::new(vec![0.0, 5e-6], vec![[0.0, -100.0], [0.0, 30.0]]).unwrap();
-    let top = Support { group: "top".to_string(), components: [false, true], velocity: Some(velocity) };
+    let top = Support { group: "top".to_string(), components: [false, true, false], velocity: Some(velocity) };
     let problem = Problem::builder(random_rectangle(0.05, 0.04, 5, 2).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([0.0, -100.0]))

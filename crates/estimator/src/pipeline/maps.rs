@@ -10,6 +10,7 @@ use crate::options::Acceleration;
 use crate::reconstruction::Concentration;
 use crate::request::{Request, RequestError};
 use crate::traction::{EquilibratedLevel, EquilibratedLevels, Equilibration};
+use percute_core::border::vectors;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::problem::Problem;
@@ -29,16 +30,19 @@ pub(crate) struct Contribution {
 
 /// The request, and the maps of the steps that have come.
 #[derive(Debug)]
-pub(crate) struct Maps<const D: usize> {
+pub(crate) struct Maps {
     request: Request,
-    made: Vec<ElementMap<D>>,
+    made: Vec<ElementMap>,
     /// How many of them have the motion at contact.
     settled: usize,
 }
 
-impl<const D: usize> Maps<D> {
+impl Maps {
     /// Makes sure that memory can hold what is requested.
-    pub(crate) fn new<const N: usize>(request: Request, problem: &Problem<D, N>) -> Result<Self, RequestError> {
+    pub(crate) fn new<const D: usize, const N: usize>(
+        request: Request,
+        problem: &Problem<D, N>,
+    ) -> Result<Self, RequestError> {
         let (nodes, elements) = (problem.mesh().node_count(), problem.mesh().element_count());
         let fields = if request.fields { 2 * D * nodes + (2 * D * D + D) * elements } else { 0 };
         let steps = request.steps.len();
@@ -56,7 +60,7 @@ impl<const D: usize> Maps<D> {
     }
 
     /// Begins the maps of these levels, of which the motion and the tractions are known.
-    pub(crate) fn begin<const N: usize>(
+    pub(crate) fn begin<const D: usize, const N: usize>(
         &mut self,
         instants: &[f64],
         balance: &Balance<'_, D, N>,
@@ -93,7 +97,12 @@ impl<const D: usize> Maps<D> {
     }
 
     /// Puts the motion at contact into the maps of steps up to this one, at which it is at hand.
-    pub(crate) fn settle<const N: usize>(&mut self, problem: &Problem<D, N>, tracks: &[ContactTrack], last: usize) {
+    pub(crate) fn settle<const D: usize, const N: usize>(
+        &mut self,
+        problem: &Problem<D, N>,
+        tracks: &[ContactTrack],
+        last: usize,
+    ) {
         let count = self.made.partition_point(|map| map.step <= last);
         for map in &mut self.made[self.settled..count] {
             let Some(fields) = &mut map.fields else { continue };
@@ -101,32 +110,35 @@ impl<const D: usize> Maps<D> {
             let common = |field: &[[f64; D]]| -> Vec<[f64; D]> {
                 (0..nodes.len()).map(|at| common(problem, at, field)).collect()
             };
-            let (displacement, velocity) = (common(&fields.displacement), common(&fields.velocity));
+            let (displacement, velocity) = (common(vectors(&fields.displacement)), common(vectors(&fields.velocity)));
             for (at, (mut displacement, mut velocity)) in displacement.into_iter().zip(velocity).enumerate() {
                 if problem.surface().first_entry(at) != at {
                     continue;
                 }
                 settle((problem, at), [&mut displacement, &mut velocity], tracks, 2 * map.step);
                 let i = nodes[at].node.index();
-                (fields.displacement[i], fields.velocity[i]) = (displacement, velocity);
+                fields.displacement[D * i..D * (i + 1)].copy_from_slice(&displacement);
+                fields.velocity[D * i..D * (i + 1)].copy_from_slice(&velocity);
             }
         }
         self.settled = count;
     }
 
     /// The maps, once all have the motion at contact.
-    pub(crate) fn finish<const N: usize>(
+    pub(crate) fn finish<const D: usize, const N: usize>(
         mut self,
         problem: &Problem<D, N>,
         elements: &[Element<D, N>],
-    ) -> Vec<ElementMap<D>> {
+    ) -> Vec<ElementMap> {
         for map in &mut self.made {
             let Some(fields) = &mut map.fields else { continue };
-            let displacement = &fields.displacement;
+            let displacement = vectors::<D>(&fields.displacement);
             let compatible = |(e, element): (usize, &Element<D, N>)| {
-                problem.material(ElementId::new(e)).stress(&element.gradient(&element.gather(displacement)))
+                let stress =
+                    problem.material(ElementId::new(e)).stress(&element.gradient(&element.gather(displacement)));
+                stress.into_iter().flatten()
             };
-            fields.compatible_stress = elements.iter().enumerate().map(compatible).collect();
+            fields.compatible_stress = elements.iter().enumerate().flat_map(compatible).collect();
         }
         self.made
     }
@@ -145,7 +157,7 @@ pub(super) struct Balance<'a, const D: usize, const N: usize> {
 fn fields<const D: usize, const N: usize>(
     balance: &Balance<'_, D, N>,
     level: &EquilibratedLevel<'_, D>,
-) -> AdmissibleFields<D> {
+) -> AdmissibleFields {
     let Balance { problem, equilibration, choice, concentration } = *balance;
     let elements = &equilibration.elements;
     let mut means = vec![([[0.0; D]; D], [0.0; D]); elements.len()];
@@ -155,7 +167,7 @@ fn fields<const D: usize, const N: usize>(
             *mean = measure.means(equilibration, level);
         }
     });
-    let (mut stress, acceleration): (Vec<_>, _) = means.into_iter().unzip();
+    let (mut stress, acceleration): (Vec<_>, Vec<_>) = means.into_iter().unzip();
     if let Some(concentration) = concentration {
         concentration.each_element(problem, level.forces().density.hats(), |element, hats| {
             let measure = ElementMeasure::new(problem, &elements[element.index()], element, choice);
@@ -165,10 +177,10 @@ fn fields<const D: usize, const N: usize>(
         });
     }
     AdmissibleFields {
-        displacement: level.forces().now.motion.displacement().to_vec(),
-        velocity: level.forces().now.motion.velocity().to_vec(),
-        stress,
+        displacement: level.forces().now.motion.displacement().as_flattened().to_vec(),
+        velocity: level.forces().now.motion.velocity().as_flattened().to_vec(),
+        stress: stress.into_flattened().into_flattened(),
         compatible_stress: Vec::new(),
-        acceleration,
+        acceleration: acceleration.into_flattened(),
     }
 }

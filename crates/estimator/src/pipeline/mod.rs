@@ -31,7 +31,8 @@ use maps::Maps;
 use near_elements::may_need_a_file;
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::observer::StopFlag;
-use percute_core::problem::Problem;
+use percute_core::on_problem;
+use percute_core::problem::{Problem, ProblemRef};
 use percute_core::time::TimeGrid;
 use prepare::Preparation;
 use rayon::ThreadPool;
@@ -46,7 +47,7 @@ const THREADED: usize = 20_000;
 const STOPPED: usize = 100_000;
 
 /// From steps to an estimate, for any element of a dimension.
-pub(crate) trait Steps<const D: usize>: StateSink<D> + Debug + Send {
+pub(crate) trait Steps: StateSink + Debug + Send {
     /// [`Estimator::keeping`](crate::Estimator::keeping).
     fn keep(&mut self, request: &Request) -> Result<(), EstimateError>;
 
@@ -54,7 +55,16 @@ pub(crate) trait Steps<const D: usize>: StateSink<D> + Debug + Send {
     fn stop_at(&mut self, flag: StopFlag);
 
     /// [`Estimator::finish`](crate::Estimator::finish).
-    fn finish(self: Box<Self>) -> Result<Estimate<D>, EstimateError>;
+    fn finish(self: Box<Self>) -> Result<Estimate, EstimateError>;
+}
+
+/// Begins an estimate, before the first step.
+pub(crate) fn begin<'p>(
+    problem: ProblemRef<'p>,
+    times: &'p TimeGrid,
+    options: Options,
+) -> Result<Box<dyn Steps + 'p>, EstimateError> {
+    Ok(on_problem!(problem, problem => Box::new(Pipeline::new(problem, times, options)?)))
 }
 
 /// The work of an [`Estimator`](crate::Estimator).
@@ -88,7 +98,7 @@ impl<'p, const D: usize, const N: usize> Pipeline<'p, D, N> {
             return Err(EstimateError::TooManyThreads { threads });
         }
         options.acceleration(D).check(options.reconstruction)?;
-        let sliding = problem.statement().interfaces.iter().find(|interface| !interface.is_matching());
+        let sliding = problem.conditions().interfaces.iter().find(|interface| !interface.is_matching());
         if let Some(interface) = sliding.filter(|_| options.reconstruction != Reconstruction::Corrected) {
             return Err(EstimateError::NotMatching { groups: interface.groups().map(str::to_string) });
         }
@@ -115,7 +125,7 @@ impl<'p, const D: usize, const N: usize> Pipeline<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> Steps<D> for Pipeline<'_, D, N> {
+impl<const D: usize, const N: usize> Steps for Pipeline<'_, D, N> {
     fn keep(&mut self, request: &Request) -> Result<(), EstimateError> {
         request.check(self.times, self.every.stride())?;
         if self.every == Sampling::Auto {
@@ -131,7 +141,7 @@ impl<const D: usize, const N: usize> Steps<D> for Pipeline<'_, D, N> {
         }
     }
 
-    fn finish(mut self: Box<Self>) -> Result<Estimate<D>, EstimateError> {
+    fn finish(mut self: Box<Self>) -> Result<Estimate, EstimateError> {
         if self.preparation.count() < 2 {
             return Err(EstimateError::TooFewSteps { count: self.preparation.count() });
         }
@@ -143,8 +153,8 @@ impl<const D: usize, const N: usize> Steps<D> for Pipeline<'_, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> StateSink<D> for Pipeline<'_, D, N> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl<const D: usize, const N: usize> StateSink for Pipeline<'_, D, N> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         self.preparation.check(state.step())?;
         let preparation = &mut self.preparation;
         if self.pool.current_num_threads() > 1 && self.problem.mesh().element_count() >= THREADED {

@@ -138,7 +138,7 @@ impl<const D: usize, const N: usize> NearElements<D, N> {
     }
 
     /// Puts the contributions to maps in their places.
-    pub(super) fn put(&mut self, maps: &mut Maps<D>) {
+    pub(super) fn put(&mut self, maps: &mut Maps) {
         self.all.iter_mut().for_each(|near| maps.put(&std::mem::take(&mut near.kept)));
     }
 

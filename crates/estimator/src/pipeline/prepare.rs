@@ -22,6 +22,7 @@ use crate::scratch_file::{ScratchError, ScratchFile};
 use crate::time_level::{ForcesBefore, ForcesKnown, MotionKnown, SurfaceStep, TimeLevel};
 pub(crate) use impulse::Impulse;
 use impulse::normal_sum;
+use percute_core::border::vectors;
 use percute_core::dynamics::Dynamics;
 use percute_core::history::{State, Step};
 use percute_core::problem::Problem;
@@ -61,7 +62,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     /// Number of steps taken in.
     count: usize,
     given: Given,
-    vibration: Vibration<D>,
+    vibration: Vibration,
     /// The level from whose forces on bodies touch.
     first_contact: Option<usize>,
     pub(crate) impulse: Impulse,
@@ -130,7 +131,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     }
 
     /// The largest energies of deformation and vibration.
-    pub(super) fn vibration(&self) -> &Vibration<D> {
+    pub(super) fn vibration(&self) -> &Vibration {
         &self.vibration
     }
 
@@ -161,7 +162,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     }
 
     /// Refuses a step that does not fit.
-    pub(super) fn check(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
+    pub(super) fn check(&self, step: &Step<'_>) -> Result<(), EstimateError> {
         match step.index {
             0 => self.check_start(step),
             1 => self.check_first_touch(step),
@@ -170,25 +171,27 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     }
 
     /// The first step is the initial state, and a node that touches in it rests on its plane.
-    fn check_start(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
+    fn check_start(&self, step: &Step<'_>) -> Result<(), EstimateError> {
         let problem = self.problem;
         let tolerance = problem.contact_tolerance();
-        for (node, (u, u0)) in step.displacement.iter().zip(problem.initial_displacement()).enumerate() {
+        for (node, (u, u0)) in step.displacement::<D>().iter().zip(problem.initial_displacement()).enumerate() {
             if u.iter().zip(u0).any(|(a, b)| (a - b).abs() > tolerance) {
                 return Err(EstimateError::Start { node });
             }
         }
-        for (node, (v, v0)) in step.velocity.unwrap_or_default().iter().zip(problem.initial_velocity()).enumerate() {
+        for (node, (v, v0)) in
+            vectors::<D>(step.velocity.unwrap_or_default()).iter().zip(problem.initial_velocity()).enumerate()
+        {
             if v.iter().zip(v0).any(|(a, b)| (a - b).abs() > problem.speed_tolerance()) {
                 return Err(EstimateError::StartVelocity { node });
             }
         }
         let surface = problem.surface();
-        let facing = surface.facing(step.displacement);
+        let facing = surface.facing(step.displacement());
         // A node of a master touches where a multiplier acts on it, at any gap of its own.
         let touches = |at: usize| step.touching[at] && facing.has_condition(at);
         for (at, contact) in surface.nodes().iter().enumerate().filter(|&(at, _)| touches(at)) {
-            let (node, gap) = (contact.node.index(), facing.gap(at, step.displacement));
+            let (node, gap) = (contact.node.index(), facing.gap(at, step.displacement()));
             let velocity = facing.relative(at, problem.initial_velocity());
             let speed = problem.obstacles()[contact.obstacle].flat_frame().split(&velocity).0;
             if gap > tolerance || speed.abs() > problem.speed_tolerance() {
@@ -199,7 +202,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     }
 
     /// A node that touches at step 1 must start at least |v_n|Δt₀/4 away, or P_CA has no solution.
-    fn check_first_touch(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
+    fn check_first_touch(&self, step: &Step<'_>) -> Result<(), EstimateError> {
         let Some(start) = &self.current else { return Ok(()) };
         let surface = self.problem.surface();
         let displacement = self.problem.initial_displacement();
@@ -219,7 +222,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     }
 
     /// Takes in one step.
-    pub(super) fn push(&mut self, state: &State<'_, D>) -> Result<(), ScratchError> {
+    pub(super) fn push(&mut self, state: &State<'_>) -> Result<(), ScratchError> {
         let (problem, step, n) = (self.problem, state.step(), state.step().index);
         self.count += 1;
         self.given = Given { velocity: step.velocity.is_some(), acceleration: step.acceleration.is_some() };
@@ -236,9 +239,9 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         let balanced = self.reconstruction.advance(&self.dynamics, &simulated, &self.pool);
         self.unmeasured = None;
         if decision.now {
-            self.reconstruction.differ([step.displacement, now.velocity()]);
+            self.reconstruction.differ([step.displacement(), now.velocity()]);
         } else if self.reconstruction.differences().is_some() {
-            self.unmeasured = Some(self.pool.copy(step.displacement));
+            self.unmeasured = Some(self.pool.copy(step.displacement()));
         }
         let BalancedFields { displacement, inertia, contact, densities, split, smoothed } = balanced;
         if let Some(densities) = &densities {
@@ -250,11 +253,11 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             body_force: problem.body_force_at(self.times.instants()[n]),
             load_moments: self.loaded.moments(self.times.instants()[n]),
             surface: SurfaceStep {
-                reaction: step.reaction.to_vec(),
+                reaction: step.reaction().to_vec(),
                 force: contact,
                 densities,
                 touching: step.touching.to_vec(),
-                gap: problem.surface().gaps(step.displacement),
+                gap: problem.surface().gaps(step.displacement()),
             },
             split,
             smoothed,
@@ -297,7 +300,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             if self.schedule.is_sampled(level.level.index) {
                 level.off_contact = std::mem::take(&mut self.off_contact);
                 level.corner_sliding = std::mem::take(&mut self.corner_sliding);
-                self.vibration.take(level.level.strain_energy, level.now.motion.velocity());
+                self.vibration.take(level.level.strain_energy, level.now.motion.velocity().as_flattened());
                 return Some(level);
             }
         }
@@ -313,8 +316,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     }
 
     /// Which levels a step makes samples; notes the first contact.
-    fn decide(&mut self, step: &Step<'_, D>) -> Decision {
-        let force = normal_sum(self.problem, step.reaction);
+    fn decide(&mut self, step: &Step<'_>) -> Decision {
+        let force = normal_sum(self.problem, step.reaction());
         if force != 0.0 || step.touching.contains(&true) {
             self.first_contact.get_or_insert(step.index);
         }
@@ -324,7 +327,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     /// Hands the normal motion of the candidate nodes to their tracks.
     fn track_contact(
         &mut self,
-        step: &Step<'_, D>,
+        step: &Step<'_>,
         mid_velocity: Option<&[[f64; D]]>,
         now: &NodalMotion<D>,
     ) -> Result<(), ScratchError> {

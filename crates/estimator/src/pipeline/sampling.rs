@@ -170,7 +170,7 @@ pub(super) struct Sampling<'a, 'p, const D: usize, const N: usize> {
     pub(super) times: &'p TimeGrid,
     pub(super) equilibration: &'a Equilibration<'p, D, N>,
     pub(super) choice: Acceleration,
-    pub(super) maps: &'a Maps<D>,
+    pub(super) maps: &'a Maps,
 }
 
 /// The maps of one element, with the data that all share.

@@ -49,8 +49,8 @@ impl<'p> Watched<'p> {
     }
 }
 
-impl StateSink<2> for Watched<'_> {
-    fn accept(&mut self, state: &State<'_, 2>) -> Result<(), SinkError> {
+impl StateSink for Watched<'_> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         self.pipeline.accept(state)?;
         let Pipeline { preparation, window, .. } = &mut self.pipeline;
         self.most = self.most.max(preparation.tracks().held() + window.near_mut().held());
@@ -99,12 +99,7 @@ fn a_file_that_fails_is_an_error() {
 
 /// The estimate of a short run that is stopped once this step was taken in; only a `large` mesh is left in the middle
 /// of its work.
-fn stopped(
-    problem: &TriangleProblem,
-    times: &TimeGrid,
-    step: usize,
-    large: bool,
-) -> Result<Estimate<2>, EstimateError> {
+fn stopped(problem: &TriangleProblem, times: &TimeGrid, step: usize, large: bool) -> Result<Estimate, EstimateError> {
     let options = Options { every: Sampling::Every(1), threads: Some(1), ..Options::default() };
     let flag = StopFlag::default();
     let mut pipeline = Pipeline::new(problem, times, options).unwrap();

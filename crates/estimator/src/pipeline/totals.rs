@@ -18,7 +18,7 @@ pub(super) struct Worked<const D: usize, const N: usize> {
     /// ∫η_E dt of far elements (J s).
     pub(super) integrals: Vec<f64>,
     pub(super) residuals: Residuals,
-    pub(super) maps: Vec<ElementMap<D>>,
+    pub(super) maps: Vec<ElementMap>,
 }
 
 /// The estimate, from everything that was summed.
@@ -27,7 +27,7 @@ pub(super) fn estimate<const D: usize, const N: usize>(
     times: &TimeGrid,
     preparation: &Preparation<'_, D, N>,
     worked: Worked<D, N>,
-) -> Estimate<D> {
+) -> Estimate {
     let Worked { mut intervals, near, integrals: mut integral, mut residuals, mut maps } = worked;
     let mut beside = vec![0.0; problem.surface().sliding().len()];
     // The last step taken in, unless work was stopped before.

@@ -112,14 +112,14 @@ pub(crate) struct LevelWindow<'p, const D: usize, const N: usize> {
     intervals: Vec<SampledInterval>,
     /// Far elements so far.
     courses: Vec<FarCourse<D, N>>,
-    pub(super) maps: Maps<D>,
+    pub(super) maps: Maps,
     residuals: Residuals,
     /// Work was stopped: the levels from then on are not estimated.
     stopped: bool,
 }
 
 impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
-    pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options, maps: Maps<D>) -> Self {
+    pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options, maps: Maps) -> Self {
         let near = NearElements::new(problem, ScratchFile::default());
         let mut is_near = vec![false; problem.mesh().element_count()];
         near.all.iter().for_each(|n| is_near[n.element.index()] = true);
@@ -179,7 +179,7 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
         mut self,
         pool: &ThreadPool,
         preparation: &mut Preparation<'p, D, N>,
-    ) -> Result<Estimate<D>, EstimateError> {
+    ) -> Result<Estimate, EstimateError> {
         pool.install(|| self.work(preparation).and_then(|()| self.catch_up(preparation)))?;
         if self.intervals.is_empty() {
             return Err(EstimateError::Stopped);

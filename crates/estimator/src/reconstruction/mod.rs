@@ -54,7 +54,7 @@ pub(crate) struct StepDensities<const D: usize> {
 /// A step of the simulation with the fields that follow from it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SimulatedStep<'a, const D: usize> {
-    pub(crate) state: &'a State<'a, D>,
+    pub(crate) state: &'a State<'a>,
     /// u̇_CA at the nodes (m/s).
     pub(crate) velocity: &'a [[f64; D]],
 }
@@ -84,7 +84,7 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
     ///
     /// # Errors
     /// A reason that lies in the steps so far.
-    fn check(&self, _step: &Step<'_, D>) -> Result<(), EstimateError> {
+    fn check(&self, _step: &Step<'_>) -> Result<(), EstimateError> {
         Ok(())
     }
 
@@ -97,7 +97,8 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         pool: &FieldPool<D>,
     ) -> BalancedFields<D> {
         let (state, step) = (simulated.state, simulated.state.step());
-        let (displacement, contact, mut force) = (pool.copy(step.displacement), step.reaction.to_vec(), pool.take());
+        let (displacement, contact, mut force) =
+            (pool.copy(step.displacement()), step.reaction().to_vec(), pool.take());
         state.write_force_without_contact(dynamics.problem().surface(), &mut force);
         let inertia = Inertia::Forces(force);
         BalancedFields { displacement, inertia, contact, densities: None, split: None, smoothed: false }

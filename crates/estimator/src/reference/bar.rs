@@ -4,7 +4,7 @@ use super::{Motion, ReferenceError, TrueError, TrueErrorSample};
 use percute_core::contact::Obstacle;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
-use percute_core::problem::BarProblem;
+use percute_core::problem::{BarProblem, ProblemRef};
 use percute_exact::BarImpact;
 
 /// Data of both bars agree to this, relative: they come from the same few numbers.
@@ -19,11 +19,12 @@ const SAME: f64 = 1e-9;
 ///
 /// # Errors
 /// A simulation of another bar, or a motion of another mesh.
-pub fn bar_impact_error(
-    problem: &BarProblem,
-    motion: &Motion<1>,
+pub fn bar_impact_error<'p>(
+    problem: impl Into<ProblemRef<'p>>,
+    motion: &Motion,
     exact: &BarImpact,
 ) -> Result<TrueError, ReferenceError> {
+    let Some(problem) = problem.into().typed() else { return Err(ReferenceError::Dimension) };
     check(problem, exact)?;
     let needed = problem.mesh().node_count();
     for (field, values) in [("displacement", &motion.displacement), ("velocity", &motion.velocity)] {
@@ -67,13 +68,13 @@ fn add_element(
     problem: &BarProblem,
     exact: &BarImpact,
     element: ElementId,
-    u: &[[f64; 1]],
-    v: &[[f64; 1]],
+    u: &[f64],
+    v: &[f64],
     sample: &mut TrueErrorSample,
 ) {
     let nodes = problem.mesh().cells()[element.index()].map(|n| n.index());
     let [x0, x1] = problem.mesh().cell_points(element).map(|p| p[0]);
-    let ([u0, u1], [v0, v1]) = (nodes.map(|n| u[n][0]), nodes.map(|n| v[n][0]));
+    let ([u0, u1], [v0, v1]) = (nodes.map(|n| u[n]), nodes.map(|n| v[n]));
     let law = problem.material(element);
     let force = law.extent() * law.stress(&[[(u1 - u0) / (x1 - x0)]])[0][0];
     let velocity = |x: f64| v0 + (v1 - v0) * (x - x0) / (x1 - x0);
@@ -116,7 +117,7 @@ mod tests {
     /// undeformed misses N = −1.2 on [0, 3] and v = −2 on [3, 6]: 1.2²·3/(2·1.8) and ½·0.2·4·3.
     #[test]
     fn an_element_cut_by_the_front_is_split() {
-        let zero = vec![[0.0]; 4];
+        let zero = vec![0.0; 4];
         let motion = Motion { times: vec![1.5], displacement: vec![zero.clone()], velocity: vec![zero] };
         let error = bar_impact_error(&problem(0.1), &motion, &BAR).unwrap();
         let sample = error.over_time[0];
@@ -128,18 +129,18 @@ mod tests {
     /// is 6, and 9·2 over the third.
     #[test]
     fn velocities_are_linear() {
-        let velocity = vec![[-2.0], [-2.0], [1.0], [1.0]];
-        let motion = Motion { times: vec![0.0], displacement: vec![vec![[0.0]; 4]], velocity: vec![velocity] };
+        let velocity = vec![-2.0, -2.0, 1.0, 1.0];
+        let motion = Motion { times: vec![0.0], displacement: vec![vec![0.0; 4]], velocity: vec![velocity] };
         let error = bar_impact_error(&problem(0.1), &motion, &BAR).unwrap();
         assert!((error.over_time[0].kinetic - 0.5 * 0.2 * 24.0).abs() < 1e-14);
     }
 
     #[test]
     fn another_bar_is_refused() {
-        let motion = Motion { times: vec![0.0], displacement: vec![vec![[0.0]; 4]], velocity: vec![vec![[0.0]; 4]] };
+        let motion = Motion { times: vec![0.0], displacement: vec![vec![0.0; 4]], velocity: vec![vec![0.0; 4]] };
         let error = bar_impact_error(&problem(0.2), &motion, &BAR);
         assert!(matches!(error, Err(ReferenceError::AnotherBar { name: "section", .. })), "{error:?}");
-        let short = Motion { displacement: vec![vec![[0.0]; 3]], ..motion };
+        let short = Motion { displacement: vec![vec![0.0; 3]], ..motion };
         assert!(matches!(bar_impact_error(&problem(0.1), &short, &BAR), Err(ReferenceError::Length { .. })));
     }
 }

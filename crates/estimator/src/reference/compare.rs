@@ -4,12 +4,15 @@ use super::locate::Transfer;
 use super::motion::Motion;
 use super::{ReferenceError, TrueError, TrueErrorSample};
 use crate::inertia::mass_product;
+use percute_core::border::vectors;
 use percute_core::element_state::displacement_gradient;
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::ids::ElementId;
 use percute_core::material::{Law, Tensor};
 use percute_core::mesh::Mesh;
-use percute_core::problem::Problem;
+use percute_core::on_problem;
+use percute_core::problem::{Problem, ProblemRef};
+use std::fmt::Debug;
 
 /// Instants that agree to this, relative, are the same: rounding of N·Δt against T.
 const SAME_INSTANT: f64 = 1e-12;
@@ -21,7 +24,59 @@ const SAME_INSTANT: f64 = 1e-12;
 /// coarse one is nested, both are exact; the mass is the consistent one. In time the reference is interpolated linearly
 /// between its own instants.
 #[derive(Debug)]
-pub struct Comparison<'p, const D: usize, const N: usize> {
+pub struct Comparison<'p>(Box<dyn Compare<'p> + 'p>);
+
+trait Compare<'p>: StateSink + Debug {
+    fn add(&mut self, run: ProblemRef<'p>, motion: &'p Motion, nested: bool) -> Result<(), ReferenceError>;
+    fn finish(self: Box<Self>) -> Result<Vec<TrueError>, ReferenceError>;
+}
+
+impl<'p> Comparison<'p> {
+    /// A comparison with the simulation of `problem`, whose states it must take.
+    #[must_use]
+    pub fn new(problem: impl Into<ProblemRef<'p>>) -> Self {
+        on_problem!(problem.into(), problem => Self(Box::new(Finer { problem, coarse: Vec::new(), before: None })))
+    }
+
+    /// Adds a simulation to compare, before it takes the first state. The results come in the
+    /// order in which they were added.
+    ///
+    /// # Errors
+    /// Meshes that are not nested or cover different bodies, a motion of another problem.
+    pub fn add(&mut self, problem: impl Into<ProblemRef<'p>>, motion: &'p Motion) -> Result<(), ReferenceError> {
+        self.0.add(problem.into(), motion, true)
+    }
+
+    /// As [`Comparison::add`], on a mesh that need not be nested: nodes and centroids are looked for in it.
+    ///
+    /// # Errors
+    /// Meshes of different bodies, a motion of another problem.
+    pub fn add_located(
+        &mut self,
+        problem: impl Into<ProblemRef<'p>>,
+        motion: &'p Motion,
+    ) -> Result<(), ReferenceError> {
+        self.0.add(problem.into(), motion, false)
+    }
+
+    /// The true errors, one for each simulation added.
+    ///
+    /// # Errors
+    /// A reference that ended before a simulation did.
+    pub fn finish(self) -> Result<Vec<TrueError>, ReferenceError> {
+        self.0.finish()
+    }
+}
+
+impl StateSink for Comparison<'_> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
+        self.0.accept(state)
+    }
+}
+
+/// The comparison with a problem of a dimension.
+#[derive(Debug)]
+struct Finer<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     coarse: Vec<Coarse<'p, D, N>>,
     /// The last state of the reference.
@@ -32,7 +87,7 @@ pub struct Comparison<'p, const D: usize, const N: usize> {
 #[derive(Debug)]
 struct Coarse<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
-    motion: &'p Motion<D>,
+    motion: &'p Motion,
     transfer: Transfer<N>,
     samples: Vec<TrueErrorSample>,
 }
@@ -45,39 +100,12 @@ struct Instant<const D: usize> {
     velocity: Vec<[f64; D]>,
 }
 
-impl<'p, const D: usize, const N: usize> Comparison<'p, D, N> {
-    /// A comparison with the simulation of `problem`, whose states it must take.
-    #[must_use]
-    pub fn new(problem: &'p Problem<D, N>) -> Self {
-        Self { problem, coarse: Vec::new(), before: None }
-    }
-
-    /// Adds a simulation to compare, before it takes the first state. The results come in the
-    /// order in which they were added.
-    ///
-    /// # Errors
-    /// Meshes that are not nested or cover different bodies, a motion of another problem.
-    pub fn add(&mut self, problem: &'p Problem<D, N>, motion: &'p Motion<D>) -> Result<(), ReferenceError> {
-        let transfer = Transfer::nested(problem.mesh(), self.problem.mesh())?;
-        self.add_with(transfer, problem, motion)
-    }
-
-    /// As [`Comparison::add`], on a mesh that need not be nested: nodes and centroids are looked for in it.
-    ///
-    /// # Errors
-    /// Meshes of different bodies, a motion of another problem.
-    pub fn add_located(&mut self, problem: &'p Problem<D, N>, motion: &'p Motion<D>) -> Result<(), ReferenceError> {
-        let transfer = Transfer::located(problem.mesh(), self.problem.mesh())?;
-        self.add_with(transfer, problem, motion)
-    }
-
-    fn add_with(
-        &mut self,
-        transfer: Transfer<N>,
-        problem: &'p Problem<D, N>,
-        motion: &'p Motion<D>,
-    ) -> Result<(), ReferenceError> {
-        let needed = problem.mesh().node_count();
+impl<'p, const D: usize, const N: usize> Compare<'p> for Finer<'p, D, N> {
+    fn add(&mut self, run: ProblemRef<'p>, motion: &'p Motion, nested: bool) -> Result<(), ReferenceError> {
+        let Some(problem) = run.typed::<D, N>() else { return Err(ReferenceError::Dimension) };
+        let mesh = (problem.mesh(), self.problem.mesh());
+        let transfer = if nested { Transfer::nested(mesh.0, mesh.1)? } else { Transfer::located(mesh.0, mesh.1)? };
+        let needed = D * problem.mesh().node_count();
         for (field, values) in [("displacement", &motion.displacement), ("velocity", &motion.velocity)] {
             if let Some(values) = values.iter().find(|v| v.len() != needed) {
                 return Err(ReferenceError::Length { field, given: values.len(), needed });
@@ -87,11 +115,7 @@ impl<'p, const D: usize, const N: usize> Comparison<'p, D, N> {
         Ok(())
     }
 
-    /// The true errors, one for each simulation added.
-    ///
-    /// # Errors
-    /// A reference that ended before a simulation did.
-    pub fn finish(self) -> Result<Vec<TrueError>, ReferenceError> {
+    fn finish(self: Box<Self>) -> Result<Vec<TrueError>, ReferenceError> {
         let reference = self.before.map_or(0.0, |s| s.time);
         let error = |coarse: Coarse<'_, D, N>| {
             let end = coarse.motion.times.last().copied().unwrap_or(0.0);
@@ -104,10 +128,10 @@ impl<'p, const D: usize, const N: usize> Comparison<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> StateSink<D> for Comparison<'_, D, N> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
-        let displacement = state.step().displacement.to_vec();
-        let now = Instant { time: state.step().time, displacement, velocity: state.velocity() };
+impl<const D: usize, const N: usize> StateSink for Finer<'_, D, N> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
+        let displacement = state.step().displacement().to_vec();
+        let now = Instant { time: state.step().time, displacement, velocity: vectors(&state.velocity()).to_vec() };
         let before = self.before.replace(now.clone());
         let before = before.as_ref().unwrap_or(&now);
         for coarse in &mut self.coarse {
@@ -131,14 +155,14 @@ impl<const D: usize, const N: usize> Coarse<'_, D, N> {
     fn sample(&self, fine: &Problem<D, N>, before: &Instant<D>, now: &Instant<D>, weight: f64) -> TrueErrorSample {
         let (n, mesh) = (self.samples.len(), self.problem.mesh());
         let between = |a: &[f64; D], b: &[f64; D]| std::array::from_fn(|c| (1.0 - weight) * a[c] + weight * b[c]);
-        let mut velocity = self.transfer.at_nodes(mesh, &self.motion.velocity[n]);
+        let mut velocity = self.transfer.at_nodes(mesh, vectors(&self.motion.velocity[n]));
         for (v, (a, b)) in velocity.iter_mut().zip(before.velocity.iter().zip(&now.velocity)) {
             let reference: [f64; D] = between(a, b);
             (0..D).for_each(|c| v[c] -= reference[c]);
         }
         let reference =
             before.displacement.iter().zip(&now.displacement).map(|(a, b)| between(a, b)).collect::<Vec<_>>();
-        let own = gradients(mesh, &self.motion.displacement[n]);
+        let own = gradients(mesh, vectors(&self.motion.displacement[n]));
         let mut sample = TrueErrorSample { time: self.motion.times[n], ..Default::default() };
         for (e, coarse) in self.transfer.elements().iter().enumerate() {
             let (id, law) = (ElementId::new(e), fine.material(ElementId::new(e)));

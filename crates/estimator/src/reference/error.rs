@@ -34,6 +34,9 @@ pub enum ReferenceError {
     /// Another body.
     #[error("the reference mesh covers {fine:.6e}, the mesh that is compared {coarse:.6e} (m in 1D, m² in 2D)")]
     DifferentBodies { fine: f64, coarse: f64 },
+    /// A bar and a plane body.
+    #[error("the reference has another dimension than the simulation that is compared")]
+    Dimension,
     /// A reference that stops too early.
     #[error("the reference ends at {reference:.6e} s, before the end of the simulation at {end:.6e} s")]
     EndsEarly { reference: f64, end: f64 },

@@ -49,12 +49,12 @@ fn grid(bar: &Bar) -> TimeGrid {
 }
 
 /// The estimate of the program.
-fn estimate(bar: &Bar, options: Options) -> Estimate<1> {
+fn estimate(bar: &Bar, options: Options) -> Estimate {
     beside::run(&problem(bar), &grid(bar), options, &Request::default(), &mut Unobserved).1
 }
 
 /// Estimates with the reconstructions in [`RECONSTRUCTIONS`], and the true error \[60\].
-fn effectivity(bar: &Bar) -> ([Estimate<1>; 3], TrueError) {
+fn effectivity(bar: &Bar) -> ([Estimate; 3], TrueError) {
     let (problem, times) = (problem(bar), grid(bar));
     let estimator = |reconstruction| {
         let options = Options { reconstruction, ..Options::default() };

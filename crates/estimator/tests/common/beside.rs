@@ -13,7 +13,7 @@ pub(crate) fn run<const D: usize, const N: usize>(
     options: Options,
     request: &Request,
     observer: &mut dyn Observer,
-) -> (Simulation, Estimate<D>) {
+) -> (Simulation, Estimate) {
     let mut estimator = Estimator::new(problem, times, options).unwrap().keeping(request).unwrap();
     let simulation = simulate(problem, times, &mut estimator, observer).unwrap();
     (simulation, estimator.finish().unwrap())

@@ -9,7 +9,6 @@ use percute_estimator::{Estimator, Options, Sampling};
 
 /// e_sup/e_ref and e_mean/e_ref of problems on different meshes up to an instant (s), with steps of 0.9 Δt_c.
 pub(crate) fn indices(problems: &[TriangleProblem], fine: &TriangleProblem, end: f64) -> Vec<[f64; 2]> {
-    let mut comparison = Comparison::new(fine);
     let mut reach = end;
     let run = |problem: &TriangleProblem| {
         let times = grid(problem, end);
@@ -21,6 +20,7 @@ pub(crate) fn indices(problems: &[TriangleProblem], fine: &TriangleProblem, end:
         (motion, estimator.finish().unwrap().error)
     };
     let runs: Vec<_> = problems.iter().map(run).collect();
+    let mut comparison = Comparison::new(fine);
     for (problem, (motion, _)) in problems.iter().zip(&runs) {
         comparison.add(problem, motion).unwrap();
     }

@@ -30,7 +30,8 @@ pub(crate) fn bar_in_mode(mode: &BarMode, elements: usize, fixed: &[&str]) -> Ba
         .material(Elastic::bar(mode.young, mode.density, mode.section).unwrap())
         .initial_displacement(Initial::Nodal(displacement));
     for group in fixed {
-        builder = builder.support(Support { group: group.to_string(), components: [true], velocity: None });
+        builder =
+            builder.support(Support { group: group.to_string(), components: [true, false, false], velocity: None });
     }
     builder.build().unwrap()
 }

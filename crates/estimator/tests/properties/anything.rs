@@ -51,7 +51,7 @@ fn problem(mesh: TriangleMesh, tilt: f64, friction: f64, seed: u64) -> (Triangle
     if is_pulled && !is_held {
         let stress = 1e7 * speed;
         let value = Table::new(vec![0.0, 20.0 * step], vec![[stress, -stress], [-stress, 0.0]]).unwrap();
-        let profile = Profile { value: 0.3, gradient: [1.0, -0.5] };
+        let profile = Profile { value: 0.3, gradient: [1.0, -0.5, 0.0] };
         builder = builder.traction(Traction { group: "right".to_string(), value, profile });
     }
     let problem = builder.build().unwrap();

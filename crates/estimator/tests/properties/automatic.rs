@@ -25,7 +25,7 @@ fn all(options: Options) -> Options {
 }
 
 /// The instants of all samples at levels.
-fn sampled(estimate: &Estimate<2>, times: &TimeGrid) -> Vec<usize> {
+fn sampled(estimate: &Estimate, times: &TimeGrid) -> Vec<usize> {
     let mut steps: Vec<usize> =
         estimate.over_time.iter().filter_map(|s| times.instants().iter().position(|t| *t == s.time)).collect();
     steps.dedup();
@@ -75,7 +75,7 @@ fn sums_agree() {
 }
 
 /// The numbers of an estimate.
-fn bits(estimate: &Estimate<2>) -> Vec<u64> {
+fn bits(estimate: &Estimate) -> Vec<u64> {
     let (error, sources) = (&estimate.error, estimate.sources.as_ref());
     let mut numbers = vec![error.sup, error.mean, error.reference_sup, error.reference_mean, estimate.time_of_sup];
     numbers.extend(&estimate.by_element);

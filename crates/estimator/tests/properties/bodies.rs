@@ -52,12 +52,13 @@ pub(crate) fn swinging<const D: usize, const N: usize>(problem: &Problem<D, N>, 
 }
 
 /// A fixed support of some components.
-pub(crate) fn fixed<const D: usize>(group: &str, components: [bool; D]) -> Support<D> {
+pub(crate) fn fixed<const D: usize>(group: &str, components: [bool; D]) -> Support {
+    let components = std::array::from_fn(|c| components.get(c).copied().unwrap_or(false));
     Support { group: group.to_string(), components, velocity: None }
 }
 
 /// A uniform body force that gives aluminium the acceleration `g` (m/s²).
-pub(crate) fn gravity<const D: usize>(g: [f64; D]) -> BodyForce<D> {
+pub(crate) fn gravity<const D: usize>(g: [f64; D]) -> BodyForce {
     BodyForce { group: None, value: Table::constant(g.map(|g| 2700.0 * g)) }
 }
 

@@ -21,7 +21,7 @@ fn runs() -> Vec<(TriangleProblem, TimeGrid)> {
     [fast, tilted, falling].into_iter().zip(times).collect()
 }
 
-fn estimates() -> Vec<(Options, Estimate<2>)> {
+fn estimates() -> Vec<(Options, Estimate)> {
     let mut all = Vec::new();
     for (problem, times) in runs() {
         let history = history(&problem, &times);
@@ -141,7 +141,7 @@ fn a_fall_has_no_error_but_rounding() {
             .unwrap();
         let times = steps(&problem, 0.9, 50);
         let history = history(&problem, &times);
-        let way = history.step(50).unwrap().displacement.iter().flatten().fold(0.0_f64, |m, u| m.max(u.abs()));
+        let way = history.step(50).unwrap().displacement.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         let rounding = (70e9 * 0.05 * 0.04 * tall * tall).sqrt() * f64::EPSILON * way / (0.04 * tall / 6.0);
         for options in all_choices() {
             let estimate = estimate(&problem, &history, options);

@@ -20,19 +20,19 @@ fn of_sources(Separation { at_sup, mean, half_size, half_step, over_time }: &Sep
 }
 
 /// Every number of a map.
-fn of_map<const D: usize>(map: &ElementMap<D>, numbers: &mut Vec<f64>) {
+fn of_map(map: &ElementMap, numbers: &mut Vec<f64>) {
     let ElementMap { step, time, kinetic, elastic, contact, accumulated, fields } = map;
     numbers.extend([*step as f64, *time]);
     [kinetic, elastic, contact, accumulated].into_iter().for_each(|row| numbers.extend(row));
     let Some(AdmissibleFields { displacement, velocity, stress, compatible_stress, acceleration }) = fields else {
         return;
     };
-    [displacement, velocity, acceleration].into_iter().for_each(|field| numbers.extend(field.iter().flatten()));
-    [stress, compatible_stress].into_iter().for_each(|field| numbers.extend(field.iter().flatten().flatten()));
+    let fields = [displacement, velocity, acceleration, stress, compatible_stress];
+    fields.into_iter().for_each(|field| numbers.extend(field));
 }
 
 /// Every number of an estimate; those of its maps come last.
-fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
+fn bits(estimate: &Estimate) -> Vec<u64> {
     let Estimate {
         error,
         time_of_sup,
@@ -76,7 +76,7 @@ fn bits<const D: usize>(estimate: &Estimate<D>) -> Vec<u64> {
 
 fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, times: &TimeGrid) {
     let history = history(problem, times);
-    assert!(reactions(&history) > 3, "{what}");
+    assert!(reactions::<D>(&history) > 3, "{what}");
     // Energies and works that the steps tell are those of the run.
     let none = Request::default();
     let (simulation, _) = run(problem, times, Options::default(), &none, &mut Unobserved);

@@ -96,7 +96,7 @@ fn a_single_element() {
 }
 
 /// The first `count` instants of a history over another grid.
-fn beginning(history: &History<2>, times: &TimeGrid, count: usize) -> History<2> {
+fn beginning(history: &History, times: &TimeGrid, count: usize) -> History {
     let mut part = History::new(times);
     (0..count).for_each(|n| part.push(&history.step(n).unwrap()).unwrap());
     part
@@ -132,7 +132,7 @@ fn an_early_end() {
 #[test]
 fn an_early_end_of_a_driven_body() {
     let velocity = Table::new(vec![0.0, 6e-6, 2e-5], vec![[0.0, 0.0], [0.0, -50.0], [0.0, 90.0]]).unwrap();
-    let top = Support { group: "top".to_string(), components: [false, true], velocity: Some(velocity) };
+    let top = Support { group: "top".to_string(), components: [false, true, false], velocity: Some(velocity) };
     let plane = plane_below(&block(), 0.0, 1e-5, 0.2, None);
     let problem = thrown(block(), [0.0, 0.0], plane).support(top).build().unwrap();
     let long = steps(&problem, 0.9, 40);
@@ -143,7 +143,7 @@ fn an_early_end_of_a_driven_body() {
             let early = estimate(&problem, &beginning(&complete, &long, count + 1), options);
             let shorter = estimate(&problem, &beginning(&complete, &short, count + 1), options);
             assert_admissible(&format!("{count} steps"), &early);
-            let before = |e: &Estimate<2>| {
+            let before = |e: &Estimate| {
                 let start = long.instants()[count - 1];
                 e.over_time.iter().filter(|s| s.time < start).copied().collect::<Vec<_>>()
             };

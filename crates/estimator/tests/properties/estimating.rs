@@ -20,7 +20,7 @@ pub(crate) fn all_choices() -> impl Iterator<Item = Options> {
 }
 
 /// The steps of a problem that must run to its end.
-pub(crate) fn history<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> History<D> {
+pub(crate) fn history<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> History {
     let mut history = History::new(times);
     simulate(problem, times, &mut history, &mut Unobserved).unwrap();
     history
@@ -28,8 +28,8 @@ pub(crate) fn history<const D: usize, const N: usize>(problem: &Problem<D, N>, t
 
 /// An estimator of bare steps.
 pub(crate) struct Evaluated<'p> {
-    evaluation: Evaluation<'p, 2, 3>,
-    pub(crate) estimator: Estimator<'p, 2>,
+    evaluation: Evaluation<'p>,
+    pub(crate) estimator: Estimator<'p>,
 }
 
 impl<'p> Evaluated<'p> {
@@ -38,7 +38,7 @@ impl<'p> Evaluated<'p> {
         Self { evaluation: Evaluation::new(problem, times), estimator }
     }
 
-    pub(crate) fn push(&mut self, step: &Step<'_, 2>) -> Result<(), SinkError> {
+    pub(crate) fn push(&mut self, step: &Step<'_>) -> Result<(), SinkError> {
         self.estimator.accept(&self.evaluation.advance(step)?)
     }
 }
@@ -54,19 +54,19 @@ pub(crate) fn cause(error: SinkError) -> EstimateError {
 /// The estimate of a stored history.
 pub(crate) fn estimate<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
-    history: &History<D>,
+    history: &History,
     options: Options,
-) -> Estimate<D> {
+) -> Estimate {
     estimate_with_maps(problem, history, options, &Request::default())
 }
 
 /// The same with maps.
 pub(crate) fn estimate_with_maps<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
-    history: &History<D>,
+    history: &History,
     options: Options,
     request: &Request,
-) -> Estimate<D> {
+) -> Estimate {
     let mut estimator = Estimator::new(problem, history.times(), options).unwrap().keeping(request).unwrap();
     replay(problem, history, &mut estimator).unwrap();
     estimator.finish().unwrap()
@@ -74,7 +74,7 @@ pub(crate) fn estimate_with_maps<const D: usize, const N: usize>(
 
 /// Every residual is a number and at most 1e-10, the bound of the method: rounding of the longest
 /// sums here leaves some 1e-13.
-pub(crate) fn assert_admissible<const D: usize>(what: &str, estimate: &Estimate<D>) {
+pub(crate) fn assert_admissible(what: &str, estimate: &Estimate) {
     for (name, value) in estimate.residuals.entries() {
         assert!(value <= 1e-10, "{what}: the residual of {name} is {value:e}");
     }
@@ -95,11 +95,11 @@ pub(crate) fn check<const D: usize, const N: usize>(what: &str, problem: &Proble
             assert_admissible(&what, &estimate);
         }
     }
-    reactions(&history)
+    reactions::<D>(&history)
 }
 
 /// Number of reactions, over all steps and nodes.
-pub(crate) fn reactions<const D: usize>(history: &History<D>) -> usize {
-    let count = |n: usize| history.step(n).unwrap().reaction.iter().filter(|r| **r != [0.0; D]).count();
+pub(crate) fn reactions<const D: usize>(history: &History) -> usize {
+    let count = |n: usize| history.step(n).unwrap().reaction().iter().filter(|r| **r != [0.0; D]).count();
     (0..history.len()).map(count).sum()
 }

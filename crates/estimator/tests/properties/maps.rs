@@ -2,6 +2,7 @@
 
 use crate::properties::bodies::{aluminium, bouncing_bar, gravity, plane_below, steps, swinging, thrown};
 use crate::properties::estimating::{all_choices, estimate_with_maps, history};
+use percute_core::border::vectors;
 use percute_core::history::History;
 use percute_core::load::{Profile, Table, Traction};
 use percute_core::material::Law;
@@ -27,7 +28,7 @@ fn all_steps(times: &TimeGrid, every: usize) -> Request {
     Request { fields: true, ..Request::evenly(times, usize::MAX, every) }
 }
 
-fn fields<const D: usize>(map: &ElementMap<D>) -> &AdmissibleFields<D> {
+fn fields(map: &ElementMap) -> &AdmissibleFields {
     map.fields.as_ref().unwrap()
 }
 
@@ -114,9 +115,11 @@ fn fields_belong_to_their_contributions() {
         let (mut sharpest, mut at_rest) = (0.0_f64, 0);
         for map in &estimate.maps {
             let fields = fields(map);
-            for (e, (s, c)) in fields.stress.iter().zip(&fields.compatible_stress).enumerate() {
+            for (e, (s, c)) in
+                vectors::<4>(&fields.stress).iter().zip(vectors::<4>(&fields.compatible_stress)).enumerate()
+            {
                 let id = percute_core::ids::ElementId::new(e);
-                let difference = [0, 1].map(|a| [0, 1].map(|b| s[a][b] - c[a][b]));
+                let difference = [0, 1].map(|a| [0, 1].map(|b| s[2 * a + b] - c[2 * a + b]));
                 let least = problem.volume(id) * problem.material(id).complementary_energy(&difference);
                 let elastic = map.elastic[e];
                 assert!(least <= elastic * (1.0 + 1e-12), "step {}, element {e}: {least} > {elastic}", map.step);
@@ -125,8 +128,8 @@ fn fields_belong_to_their_contributions() {
             let touching = history.step(map.step).unwrap().touching;
             for (at, contact) in problem.surface().nodes().iter().enumerate() {
                 let (i, plane) = (contact.node.index(), &problem.obstacles()[contact.obstacle]);
-                let gap = problem.surface().gap(at, &fields.displacement[i]);
-                let speed = plane.flat_frame().split(&fields.velocity[i]).0;
+                let gap = problem.surface().gap(at, &vectors(&fields.displacement)[i]);
+                let speed = plane.flat_frame().split(&vectors(&fields.velocity)[i]).0;
                 // The admissible penetration of the method, 1e-12 of the body's size, and 1e-12 of 300 m/s.
                 assert!(gap > -2.0 * problem.contact_tolerance(), "step {}: {gap}", map.step);
                 assert!(!touching[at] || (gap < 2.0 * problem.contact_tolerance() && speed.abs() < 3e-10));
@@ -169,14 +172,14 @@ fn a_uniform_stress_is_reproduced() {
             let fields = fields(map);
             // Rounding of strains, 1e-16 of u/h, over twenty steps of free vibration: 1e-13 of the largest.
             let close = |a: f64, b: f64, scale: f64| (a - b).abs() <= 1e-12 * scale;
-            for (s, c) in fields.stress.iter().zip(&fields.compatible_stress) {
-                for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                    assert!(close(s[a][b], given[a][b], 3e8) && close(c[a][b], given[a][b], 3e8), "{options:?}: {s:?}");
+            for (s, c) in vectors::<4>(&fields.stress).iter().zip(vectors::<4>(&fields.compatible_stress)) {
+                for (k, given) in given.iter().flatten().enumerate() {
+                    assert!(close(s[k], *given, 3e8) && close(c[k], *given, 3e8), "{options:?}: {s:?}");
                 }
             }
             // The acceleration that the smallest force would give, σ/(ρh), times rounding.
-            assert!(fields.acceleration.iter().flatten().all(|a| close(*a, 0.0, 3e8 / (2700.0 * 1e-3))));
-            let moved = fields.displacement.iter().zip(&displacement);
+            assert!(fields.acceleration.iter().all(|a| close(*a, 0.0, 3e8 / (2700.0 * 1e-3))));
+            let moved = vectors::<2>(&fields.displacement).iter().zip(&displacement);
             assert!(moved.clone().all(|(a, b)| (0..2).all(|c| close(a[c], b[c], 1e-3))), "{options:?}");
         }
     }
@@ -202,7 +205,8 @@ fn accelerations_balance_the_loads() {
         for map in &estimate.maps {
             let mass = |e: usize| 2700.0 * problem.volume(percute_core::ids::ElementId::new(e));
             for c in 0..2 {
-                let sum: f64 = fields(map).acceleration.iter().enumerate().map(|(e, a)| mass(e) * a[c]).sum();
+                let sum: f64 =
+                    vectors::<2>(&fields(map).acceleration).iter().enumerate().map(|(e, a)| mass(e) * a[c]).sum();
                 let expected = 0.05 * value.at(map.time)[c] + 2700.0 * 0.05 * 0.04 * [2e6, -1e6][c];
                 // Inner forces, of the size of the load, cancel in the sum.
                 assert!((sum - expected).abs() <= 1e-11 * 0.05 * 3e8, "step {}: {sum} for {expected}", map.step);
@@ -252,7 +256,7 @@ fn more_maps_than_memory_are_refused() {
 }
 
 /// The first steps of a history.
-fn beginning(complete: &History<2>, times: &TimeGrid, count: usize) -> History<2> {
+fn beginning(complete: &History, times: &TimeGrid, count: usize) -> History {
     let mut history = History::new(times);
     for n in 0..count {
         history.push(&complete.step(n).unwrap()).unwrap();
@@ -267,7 +271,7 @@ fn an_early_end_has_the_maps_so_far() {
     let (problem, times) = impact();
     let complete = history(&problem, &times);
     let options = Options { every: Sampling::Every(4), threads: Some(1), ..Options::default() };
-    let steps = |e: &Estimate<2>| e.maps.iter().map(|m| m.step).collect::<Vec<_>>();
+    let steps = |e: &Estimate| e.maps.iter().map(|m| m.step).collect::<Vec<_>>();
     for (count, last) in [(30, 28), (29, 28), (28, 24)] {
         let early = beginning(&complete, &times, count);
         let estimate = estimate_with_maps(&problem, &early, options, &all_steps(&times, 4));

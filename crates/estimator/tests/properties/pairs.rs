@@ -2,6 +2,7 @@
 
 use crate::properties::bodies::{aluminium, steps, swinging};
 use crate::properties::estimating::{all_choices, assert_admissible, check, estimate, estimate_with_maps, history};
+use percute_core::border::vectors;
 use percute_core::contact::{Interface, Obstacle};
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};
@@ -62,7 +63,7 @@ impl Blocks {
     }
 
     fn between(&self, groups: [&str; 2]) -> TriangleProblem {
-        let interface = Interface::matching::<2>(groups[0], groups[1], self.friction).unwrap();
+        let interface = Interface::matching(2, groups[0], groups[1], self.friction).unwrap();
         self.builder().interface(interface).build().unwrap()
     }
 }
@@ -85,7 +86,7 @@ fn mirrored_blocks_have_twice_the_error_of_one() {
         let both = TriangleProblem::builder(mesh)
             .material(aluminium())
             .initial_velocity(Initial::Nodal(velocity))
-            .interface(Interface::matching::<2>("upper.bottom", "lower.bottom", 0.0).unwrap())
+            .interface(Interface::matching(2, "upper.bottom", "lower.bottom", 0.0).unwrap())
             .build()
             .unwrap();
         let one = TriangleProblem::builder(upper)
@@ -153,10 +154,10 @@ fn admissible_motions_do_not_penetrate() {
         let fields = map.fields.as_ref().unwrap();
         let touching = history.step(map.step).unwrap().touching;
         for at in (0..surface.nodes().len()).filter(|&at| surface.leads(at)) {
-            let gap = surface.gap(at, &surface.against_obstacle(at, &fields.displacement));
+            let gap = surface.gap(at, &surface.against_obstacle(at, vectors(&fields.displacement)));
             assert!(gap >= -1e-12 * problem.mesh().size(), "step {}: {gap}", map.step);
             if touching[at] {
-                let velocity = surface.against_obstacle(at, &fields.velocity);
+                let velocity = surface.against_obstacle(at, vectors(&fields.velocity));
                 let normal = surface.frame(at, &[0.0; 2]).split(&velocity).0;
                 assert!(gap.abs() <= 1e-12 && normal.abs() <= 1e-11, "step {}: {gap} {normal}", map.step);
                 closed += 1;
@@ -225,7 +226,7 @@ fn bars_are_admissible() {
             .material_of("left", law(sections[0]))
             .material_of("right", law(sections[1]))
             .initial_velocity(Initial::Nodal(velocity))
-            .interface(Interface::matching::<1>("left.end", "right.start", 0.0).unwrap())
+            .interface(Interface::matching(1, "left.end", "right.start", 0.0).unwrap())
             .build()
             .unwrap();
         let times: TimeGrid = steps(&problem, 0.9, 70);

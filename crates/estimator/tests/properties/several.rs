@@ -46,7 +46,7 @@ impl Three {
         let velocity = (0..3).flat_map(|k| vec![self.velocities[k]; blocks[k].node_count()]).collect();
         let contact = |below: &str| {
             let groups = Between::Groups(["upper.bottom".to_string(), below.to_string()]);
-            Contact::new::<2>(groups, self.friction, None).unwrap()
+            Contact::new(2, groups, self.friction, None).unwrap()
         };
         TriangleProblem::builder(TriangleMesh::joined(&named).unwrap())
             .material_of("upper", aluminium())

@@ -2,6 +2,7 @@
 
 use crate::properties::bodies::{aluminium, steps};
 use crate::properties::estimating::{assert_admissible, estimate, estimate_with_maps, history};
+use percute_core::border::vectors;
 use percute_core::contact::{Interface, Side};
 use percute_core::material::Elastic;
 use percute_core::mesh::TriangleMesh;
@@ -71,7 +72,7 @@ impl Blocks {
     }
 
     fn problem(&self) -> TriangleProblem {
-        self.between(Interface::sliding::<2>("upper.bottom", "lower.top", self.friction).unwrap())
+        self.between(Interface::sliding(2, "upper.bottom", "lower.top", self.friction).unwrap())
     }
 }
 
@@ -98,8 +99,8 @@ fn on_matching_surfaces_multipliers_are_pairs() {
                 .unwrap()
         };
         let groups = ["upper.bottom", "lower.bottom"];
-        let pairs = between(Interface::matching::<2>(groups[0], groups[1], 0.2).unwrap());
-        let sliding = between(Interface::sliding::<2>(groups[0], groups[1], 0.2).unwrap());
+        let pairs = between(Interface::matching(2, groups[0], groups[1], 0.2).unwrap());
+        let sliding = between(Interface::sliding(2, groups[0], groups[1], 0.2).unwrap());
         let times = steps(&pairs, 0.9, 90);
         let options = Options { every: Sampling::Every(1), ..Options::default() };
         let [one, other] = [&pairs, &sliding].map(|problem| estimate(problem, &history(problem, &times), options));
@@ -182,7 +183,7 @@ fn admissible_motions_do_not_penetrate() {
         let sliding = &surface.sliding()[0];
         let mut nearest = f64::INFINITY;
         for map in &estimate.maps {
-            let displacement = &map.fields.as_ref().unwrap().displacement;
+            let displacement = vectors::<2>(&map.fields.as_ref().unwrap().displacement);
             let coupling = sliding.coupling(surface, displacement);
             let eta = |side: &Side, node: usize| {
                 let u = displacement[surface.nodes()[side.position(node)].node.index()];
@@ -218,7 +219,7 @@ fn the_frame_and_the_order_do_not_matter() {
         let times = steps(&problem, 0.9, count);
         let error = |problem: &TriangleProblem, options| estimate(problem, &history(problem, &times), options).error;
         let expected = error(&problem, Options::default());
-        let exchanged = Interface::sliding::<2>("lower.top", "upper.bottom", blocks.friction).unwrap();
+        let exchanged = Interface::sliding(2, "lower.top", "upper.bottom", blocks.friction).unwrap();
         for other in [Blocks { angle: 0.7, ..blocks }.problem(), blocks.between(exchanged)] {
             let found = error(&other, Options::default());
             // Rounding, which contact that opens and closes amplifies.
@@ -264,7 +265,7 @@ fn check_images(name: &str, [upper, lower]: [&TriangleMesh; 2], [tip, top]: [&st
         TriangleProblem::builder(mesh.clone())
             .material(aluminium())
             .initial_velocity(Initial::Nodal((0..mesh.node_count()).map(velocity).collect()))
-            .interface(Interface::sliding::<2>(tip, top, 0.2).unwrap())
+            .interface(Interface::sliding(2, tip, top, 0.2).unwrap())
             .build()
             .unwrap()
     };

@@ -13,11 +13,11 @@ fn block(tilt: f64) -> TriangleProblem {
     thrown(mesh, [400.0, -400.0], plane).build().unwrap()
 }
 
-fn separation<const D: usize>(estimate: &Estimate<D>) -> &Separation {
+fn separation(estimate: &Estimate) -> &Separation {
     estimate.sources.as_ref().unwrap()
 }
 
-fn check<const D: usize>(what: &str, estimate: &Estimate<D>) {
+fn check(what: &str, estimate: &Estimate) {
     let sources = separation(estimate);
     assert_eq!(sources.over_time.len(), estimate.over_time.len(), "{what}");
     let square = estimate.error.sup * estimate.error.sup;

@@ -26,7 +26,7 @@ const MODE: BarMode = BarMode {
 };
 const PERIODS: f64 = 3.0;
 
-fn run(elements: usize, courant: f64, acceleration: Acceleration) -> (Motion<1>, Estimate<1>, f64) {
+fn run(elements: usize, courant: f64, acceleration: Acceleration) -> (Motion, Estimate, f64) {
     run_with(
         elements,
         courant,
@@ -34,7 +34,7 @@ fn run(elements: usize, courant: f64, acceleration: Acceleration) -> (Motion<1>,
     )
 }
 
-fn run_with(elements: usize, courant: f64, options: Options) -> (Motion<1>, Estimate<1>, f64) {
+fn run_with(elements: usize, courant: f64, options: Options) -> (Motion, Estimate, f64) {
     let problem = bar_in_mode(&MODE, elements, &["start"]);
     let end = PERIODS * 2.0 * PI / MODE.angular_frequency();
     // Δt_c = h/c on a uniform bar, eq. [33].
@@ -46,7 +46,7 @@ fn run_with(elements: usize, courant: f64, options: Options) -> (Motion<1>, Esti
 
 /// The energy norm of the difference of nodal fields and (N, v) given at each point, at each t_n:
 /// the square root of the largest and of the mean square (J^½).
-fn distance(motion: &Motion<1>, field: impl Fn(f64, f64) -> (f64, f64)) -> (f64, f64) {
+fn distance(motion: &Motion, field: impl Fn(f64, f64) -> (f64, f64)) -> (f64, f64) {
     let elements = motion.displacement[0].len() - 1;
     let h = MODE.length / elements as f64;
     let (stiffness, inertia) = (MODE.young * MODE.section, MODE.density * MODE.section);
@@ -54,11 +54,11 @@ fn distance(motion: &Motion<1>, field: impl Fn(f64, f64) -> (f64, f64)) -> (f64,
     for ((&t, u), v) in motion.times.iter().zip(&motion.displacement).zip(&motion.velocity) {
         let mut square = 0.0;
         for e in 0..elements {
-            let force = stiffness * (u[e + 1][0] - u[e][0]) / h;
+            let force = stiffness * (u[e + 1] - u[e]) / h;
             for (at, weight) in [(-(0.6_f64.sqrt()), 5.0 / 18.0), (0.0, 8.0 / 18.0), (0.6_f64.sqrt(), 5.0 / 18.0)] {
                 let s = 0.5 + 0.5 * at;
                 let (exact_force, exact_velocity) = field(h * (e as f64 + s), t);
-                let velocity = v[e][0] + s * (v[e + 1][0] - v[e][0]);
+                let velocity = v[e] + s * (v[e + 1] - v[e]);
                 let (df, dv) = (force - exact_force, velocity - exact_velocity);
                 square += 0.5 * h * weight * (df * df / stiffness + inertia * dv * dv);
             }

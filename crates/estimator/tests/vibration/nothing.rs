@@ -110,7 +110,7 @@ fn uniform_stress() {
         for (group, normal) in sides {
             let value = Table::constant(stress.map(|s| s[0] * normal[0] + s[1] * normal[1]));
             builder = if held == Some(group) {
-                builder.support(Support { group: group.into(), components: [true, true], velocity: None })
+                builder.support(Support { group: group.into(), components: [true, true, false], velocity: None })
             } else {
                 builder.traction(Traction { group: group.into(), value, profile: Profile::UNIFORM })
             };
@@ -123,7 +123,7 @@ fn uniform_stress() {
     let bar = Problem::builder(mesh)
         .material(bar_law())
         .initial_displacement(Initial::Nodal(displacement))
-        .support(Support { group: "start".into(), components: [true], velocity: None })
+        .support(Support { group: "start".into(), components: [true, false, false], velocity: None })
         .traction(Traction { group: "end".into(), value: Table::constant([70e6]), profile: Profile::UNIFORM })
         .build()
         .unwrap();

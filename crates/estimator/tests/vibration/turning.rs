@@ -50,7 +50,7 @@ fn grid(problem: &TriangleProblem, end: f64) -> TimeGrid {
 }
 
 /// The motion, and the estimates with `closest` and `split`.
-fn run(problem: &TriangleProblem, times: &TimeGrid) -> (Motion<2>, [Estimate<2>; 2]) {
+fn run(problem: &TriangleProblem, times: &TimeGrid) -> (Motion, [Estimate; 2]) {
     let estimator = |acceleration| {
         Estimator::new(problem, times, Options { acceleration: Some(acceleration), ..Options::default() }).unwrap()
     };
@@ -64,7 +64,7 @@ fn run(problem: &TriangleProblem, times: &TimeGrid) -> (Motion<2>, [Estimate<2>;
 }
 
 /// Effectivity indices, largest error and mean, of each estimate.
-fn effectivities(estimates: &[Estimate<2>; 2], sup: f64, mean: f64) -> [[f64; 2]; 2] {
+fn effectivities(estimates: &[Estimate; 2], sup: f64, mean: f64) -> [[f64; 2]; 2] {
     estimates.each_ref().map(|estimate| [estimate.error.sup / sup, estimate.error.mean / mean])
 }
 

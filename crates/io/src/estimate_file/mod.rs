@@ -6,7 +6,7 @@ mod open;
 mod sums;
 mod write;
 
-pub use contact::{AnyContact, contact};
+pub use contact::contact;
 pub use maps::{Field, Maps, maps};
 pub use open::{EstimateFile, open};
 pub use write::{EstimateContents, write};

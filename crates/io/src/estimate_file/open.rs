@@ -7,7 +7,6 @@ use crate::kind::Kind;
 use crate::mesh;
 use crate::read::{Data, Opened, Part, reading};
 use crate::write::{Case, Provenance};
-use percute_core::each_dimension;
 use percute_core::mesh::AnyMesh;
 use percute_estimator::{Parts, Sample};
 use std::path::Path;
@@ -59,13 +58,9 @@ fn contents(opened: &Opened) -> Result<EstimateFile, FileCause> {
     let root = opened.root();
     let (vtk, ours) = (root.group("VTKHDF")?, root.group("percute")?);
     let [dimension, nodes, elements] = size(&vtk, &ours)?;
-    let mesh = match dimension {
-        1 => AnyMesh::Bar(mesh::read(opened)?),
-        _ => AnyMesh::Plane(mesh::read(opened)?),
-    };
-    let count = each_dimension!(&mesh, mesh => mesh.element_count());
+    let mesh = mesh::read(opened, dimension)?;
     let by_element = vtk.group("CellData")?.data("by_element")?;
-    by_element.expect(&[count], "one for each element")?;
+    by_element.expect(&[mesh.element_count()], "one for each element")?;
     let instants = instants(&vtk)?;
     fields(&vtk, [dimension, nodes, elements], instants.len())?;
     let text = |name: &str| -> Result<String, FileCause> {

@@ -11,7 +11,7 @@ use crate::steps::{give_steps, note_steps, write_steps};
 use crate::write::{Case, Texts, attribute, group, numbers, ours, statement, unit};
 use hdf5::Group;
 use percute_core::contact::{ContactResults, ContactSteps};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Sample};
 use std::path::Path;
 
@@ -21,13 +21,13 @@ const PER_GROUP: u64 = 450;
 
 /// The contents of a new estimate file.
 #[derive(Clone, Copy, Debug)]
-pub struct EstimateContents<'a, const D: usize, const N: usize> {
+pub struct EstimateContents<'a> {
     /// The problem.
-    pub problem: &'a Problem<D, N>,
+    pub problem: &'a AnyProblem,
     /// Its estimate.
-    pub estimate: &'a Estimate<D>,
+    pub estimate: &'a Estimate,
     /// Contact results with all nodes at all instants; left out without these.
-    pub contact: Option<&'a ContactResults<D>>,
+    pub contact: Option<&'a ContactResults>,
     /// The problem in the language of the case files.
     pub statement: &'a str,
     /// The case file as given.
@@ -41,11 +41,7 @@ pub struct EstimateContents<'a, const D: usize, const N: usize> {
 ///
 /// # Errors
 /// As for the creation of a history; an estimate of another mesh.
-pub fn write<const D: usize, const N: usize>(
-    path: impl AsRef<Path>,
-    overwrite: Overwrite,
-    contents: &EstimateContents<'_, D, N>,
-) -> Result<(), FileError> {
+pub fn write(path: impl AsRef<Path>, overwrite: Overwrite, contents: &EstimateContents<'_>) -> Result<(), FileError> {
     let path = path.as_ref();
     let written = contents.check().and_then(|()| {
         let (unnamed, ()) = Unnamed::new(path, overwrite, contents.bytes(), |file, texts| contents.fill(file, texts))?;
@@ -57,18 +53,18 @@ pub fn write<const D: usize, const N: usize>(
 }
 
 /// The numbers of one field in a map.
-type Take<'a, const D: usize> = Box<dyn Fn(&ElementMap<D>) -> Vec<f64> + 'a>;
+type Take<'a> = Box<dyn Fn(&ElementMap) -> Vec<f64> + 'a>;
 /// Name, unit, numbers for each node or element, and their source.
-type WrittenField<'a, const D: usize> = (&'static str, &'static str, usize, Take<'a, D>);
+type WrittenField<'a> = (&'static str, &'static str, usize, Take<'a>);
 
-impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
+impl EstimateContents<'_> {
     fn check(&self) -> Result<(), FileCause> {
         let (given, needed) = (self.problem.mesh().element_count(), self.estimate.by_element.len());
         if given != needed {
             return Err(FileCause::Problem { what: "elements", given, needed });
         }
         let Some((contact, _)) = self.contact() else { return Ok(()) };
-        let (given, needed) = (self.problem.surface().nodes().len(), contact.nodes.len());
+        let (given, needed) = (self.problem.contact_nodes().len(), contact.nodes.len());
         if given != needed {
             return Err(FileCause::Problem { what: "contact nodes", given, needed });
         }
@@ -82,7 +78,7 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
     }
 
     /// Contact results, if there are planes and all results are stored.
-    fn contact(&self) -> Option<(&ContactResults<D>, &ContactSteps<D>)> {
+    fn contact(&self) -> Option<(&ContactResults, &ContactSteps)> {
         let results = self.contact.filter(|results| !results.obstacles.is_empty())?;
         Some((results, results.steps.as_ref()?))
     }
@@ -90,11 +86,12 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
     fn bytes(&self) -> u64 {
         let mesh = self.problem.mesh();
         let (nodes, cells, instants) = (mesh.node_count(), mesh.element_count(), self.estimate.maps.len());
-        let fields = if self.has_fields() { 48 * nodes + (16 * D * D + 24) * cells } else { 0 };
-        let grid = 24 * nodes + 8 * (D + 1) * cells + 8 * (cells + 1) + 9 * cells;
+        let d = mesh.dimension();
+        let fields = if self.has_fields() { 48 * nodes + (16 * d * d + 24) * cells } else { 0 };
+        let grid = 24 * nodes + 8 * (d + 1) * cells + 8 * (cells + 1) + 9 * cells;
         let texts =
             self.statement.len() + self.report.len() + self.case.map_or(0, |case| case.name.len() + case.text.len());
-        let facets: usize = mesh.facet_groups().values().map(|members| 8 * D * members.len()).sum();
+        let facets: usize = mesh.facet_groups().values().map(|members| 8 * d * members.len()).sum();
         let elements: usize = mesh.element_groups().values().map(|members| 8 * members.len()).sum();
         let groups = (mesh.facet_groups().len() + mesh.element_groups().len()) as u64;
         let contact = self.contact().map_or(0, |(results, _)| contact::bytes(results, instants, nodes));
@@ -107,7 +104,7 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
         let mesh = self.problem.mesh();
         let vtk = write_grid(file, mesh)?;
         self.maps(&vtk)?;
-        let ours = ours(file, Kind::Estimate, D)?;
+        let ours = ours(file, Kind::Estimate, mesh.dimension())?;
         statement(&ours, texts, self.statement, self.case)?;
         texts.add(&ours, "report", self.report)?;
         write_groups(&ours, mesh)?;
@@ -150,7 +147,7 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
         if self.has_fields() || self.contact().is_some() {
             let data = group(vtk, "PointData")?;
             if self.has_fields() {
-                self.fields(&data, nodes, point_fields(), &mut point_offsets)?;
+                self.fields(&data, nodes, point_fields(mesh.dimension()), &mut point_offsets)?;
             }
             if let Some(contact) = self.contact() {
                 let steps: Vec<usize> = maps.iter().map(|map| map.step).collect();
@@ -167,7 +164,7 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
         &self,
         data: &Group,
         rows: usize,
-        fields: Vec<WrittenField<'_, D>>,
+        fields: Vec<WrittenField<'_>>,
         offsets: &mut Vec<(&'static str, usize)>,
     ) -> Result<(), FileCause> {
         for (name, of, components, take) in fields {
@@ -180,9 +177,9 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
         Ok(())
     }
 
-    fn cell_fields(&self) -> Vec<WrittenField<'_, D>> {
+    fn cell_fields(&self) -> Vec<WrittenField<'_>> {
         let end = self.estimate.end;
-        let mut fields: Vec<WrittenField<'_, D>> = vec![
+        let mut fields: Vec<WrittenField<'_>> = vec![
             ("kinetic", "J", 1, Box::new(|map| map.kinetic.clone())),
             ("elastic", "J", 1, Box::new(|map| map.elastic.clone())),
             ("contact", "J", 1, Box::new(|map| map.contact.clone())),
@@ -190,10 +187,10 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
             ("accumulated", "J^(1/2)", 1, Box::new(move |map| map.error(end))),
         ];
         if self.has_fields() {
-            let tensor = |values: &[[[f64; D]; D]]| values.as_flattened().as_flattened().to_vec();
-            fields.push(("admissible_stress", "Pa", D * D, of_fields(move |f| tensor(&f.stress))));
-            fields.push(("compatible_stress", "Pa", D * D, of_fields(move |f| tensor(&f.compatible_stress))));
-            fields.push(("admissible_acceleration", "m/s2", 3, of_fields(|f| in_space(&f.acceleration))));
+            let d = self.problem.dimension();
+            fields.push(("admissible_stress", "Pa", d * d, of_fields(|f| f.stress.clone())));
+            fields.push(("compatible_stress", "Pa", d * d, of_fields(|f| f.compatible_stress.clone())));
+            fields.push(("admissible_acceleration", "m/s2", 3, of_fields(move |f| in_space(&f.acceleration, d))));
         }
         fields
     }
@@ -233,13 +230,13 @@ impl<const D: usize, const N: usize> EstimateContents<'_, D, N> {
     }
 }
 
-fn point_fields<const D: usize>() -> Vec<WrittenField<'static, D>> {
+fn point_fields(d: usize) -> Vec<WrittenField<'static>> {
     vec![
-        ("admissible_displacement", "m", 3, of_fields(|f| in_space(&f.displacement))),
-        ("admissible_velocity", "m/s", 3, of_fields(|f| in_space(&f.velocity))),
+        ("admissible_displacement", "m", 3, of_fields(move |f| in_space(&f.displacement, d))),
+        ("admissible_velocity", "m/s", 3, of_fields(move |f| in_space(&f.velocity, d))),
     ]
 }
 
-fn of_fields<const D: usize>(take: impl Fn(&AdmissibleFields<D>) -> Vec<f64> + 'static) -> Take<'static, D> {
+fn of_fields(take: impl Fn(&AdmissibleFields) -> Vec<f64> + 'static) -> Take<'static> {
     Box::new(move |map| map.fields.as_ref().map(&take).unwrap_or_default())
 }

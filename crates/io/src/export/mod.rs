@@ -11,7 +11,7 @@ pub use series::{Format, UnknownFormat};
 
 use crate::create::Overwrite;
 use crate::error::FileError;
-use percute_core::mesh::Mesh;
+use percute_core::mesh::AnyMesh;
 use series::Series;
 use std::path::{Path, PathBuf};
 use vtkhdf::Single;
@@ -40,16 +40,16 @@ pub struct ExportField {
 
 /// What an export holds: fields over instants, each a step of the run and its time (s).
 #[derive(Clone, Copy, Debug)]
-pub struct Contents<'a, const D: usize, const N: usize> {
+pub struct Contents<'a> {
     /// The mesh.
-    pub mesh: &'a Mesh<D, N>,
+    pub mesh: &'a AnyMesh,
     /// The fields.
     pub fields: &'a [ExportField],
     /// Steps and times (s), ascending.
     pub instants: &'a [(usize, f64)],
 }
 
-impl<const D: usize, const N: usize> Contents<'_, D, N> {
+impl Contents<'_> {
     fn rows(&self, place: Place) -> usize {
         match place {
             Place::Nodes => self.mesh.node_count(),
@@ -59,24 +59,19 @@ impl<const D: usize, const N: usize> Contents<'_, D, N> {
 }
 
 /// Writes an export, instant after instant. Without [`Writer::finish`] no file remains.
-pub struct Writer<'a, const D: usize, const N: usize>(Kind<'a, D, N>);
+pub struct Writer<'a>(Kind<'a>);
 
-enum Kind<'a, const D: usize, const N: usize> {
-    Single(Single<'a, D, N>),
-    Series(Series<'a, D, N>),
+enum Kind<'a> {
+    Single(Single<'a>),
+    Series(Series<'a>),
 }
 
-impl<'a, const D: usize, const N: usize> Writer<'a, D, N> {
+impl<'a> Writer<'a> {
     /// Begins an export; the ending of the name says its format.
     ///
     /// # Errors
     /// An existing file, a folder that is missing or not writable, a disk without enough space.
-    pub fn new(
-        path: &Path,
-        format: Format,
-        overwrite: Overwrite,
-        contents: Contents<'a, D, N>,
-    ) -> Result<Self, FileError> {
+    pub fn new(path: &Path, format: Format, overwrite: Overwrite, contents: Contents<'a>) -> Result<Self, FileError> {
         Ok(Self(match format {
             Format::Vtkhdf => Kind::Single(Single::new(path, overwrite, contents)?),
             Format::Vtu | Format::Pvd => Kind::Series(Series::new(path, format, overwrite, contents)),

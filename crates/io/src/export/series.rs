@@ -54,8 +54,8 @@ impl Format {
 }
 
 /// An export in several files. Those written are removed if it is not finished.
-pub(super) struct Series<'a, const D: usize, const N: usize> {
-    contents: Contents<'a, D, N>,
+pub(super) struct Series<'a> {
+    contents: Contents<'a>,
     overwrite: Overwrite,
     files: Vec<PathBuf>,
     /// Whether the first file is an index.
@@ -64,8 +64,8 @@ pub(super) struct Series<'a, const D: usize, const N: usize> {
     finished: bool,
 }
 
-impl<'a, const D: usize, const N: usize> Series<'a, D, N> {
-    pub(super) fn new(path: &Path, format: Format, overwrite: Overwrite, contents: Contents<'a, D, N>) -> Self {
+impl<'a> Series<'a> {
+    pub(super) fn new(path: &Path, format: Format, overwrite: Overwrite, contents: Contents<'a>) -> Self {
         let steps: Vec<usize> = contents.instants.iter().map(|(step, _)| *step).collect();
         let files = format.files(path, &steps);
         let index = files.len() > steps.len();
@@ -107,7 +107,7 @@ impl<'a, const D: usize, const N: usize> Series<'a, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> Drop for Series<'_, D, N> {
+impl Drop for Series<'_> {
     fn drop(&mut self) {
         if !self.finished {
             for file in self.each().iter().take(self.written) {

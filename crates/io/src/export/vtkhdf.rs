@@ -15,8 +15,8 @@ use std::path::{Path, PathBuf};
 const LIBRARY: u64 = 24_000;
 
 /// An export whose file has no name yet.
-pub(super) struct Single<'a, const D: usize, const N: usize> {
-    contents: Contents<'a, D, N>,
+pub(super) struct Single<'a> {
+    contents: Contents<'a>,
     path: PathBuf,
     unnamed: Unnamed,
     /// The first byte of each field.
@@ -24,8 +24,8 @@ pub(super) struct Single<'a, const D: usize, const N: usize> {
     written: usize,
 }
 
-impl<'a, const D: usize, const N: usize> Single<'a, D, N> {
-    pub(super) fn new(path: &Path, overwrite: Overwrite, contents: Contents<'a, D, N>) -> Result<Self, FileError> {
+impl<'a> Single<'a> {
+    pub(super) fn new(path: &Path, overwrite: Overwrite, contents: Contents<'a>) -> Result<Self, FileError> {
         let fill = |file: &hdf5::File, _: &mut Texts| fill(file, &contents);
         let made = Unnamed::new(path, overwrite, bytes(&contents), fill);
         let reserved = made.and_then(|made| made.0.reserve().map(|()| made));
@@ -52,19 +52,16 @@ impl<'a, const D: usize, const N: usize> Single<'a, D, N> {
 }
 
 /// Size of the file.
-fn bytes<const D: usize, const N: usize>(contents: &Contents<'_, D, N>) -> u64 {
+fn bytes(contents: &Contents<'_>) -> u64 {
     let (nodes, cells) = (contents.rows(Place::Nodes), contents.rows(Place::Elements));
-    let grid = 24 * nodes + 8 * N * cells + 8 * (cells + 1) + cells;
+    let grid = 24 * nodes + 8 * contents.mesh.nodes_of_element() * cells + 8 * (cells + 1) + cells;
     let fields: usize = contents.fields.iter().map(|field| 8 * field.components * contents.rows(field.place) + 8).sum();
     let instants = contents.instants.len();
     (grid + instants * (fields + 56)) as u64 + LIBRARY + bytes_of_bodies(contents.mesh, instants)
 }
 
 /// Creates the grid, the instants and room for the fields; returns the place of each field.
-fn fill<const D: usize, const N: usize>(
-    file: &hdf5::File,
-    contents: &Contents<'_, D, N>,
-) -> Result<Vec<u64>, FileCause> {
+fn fill(file: &hdf5::File, contents: &Contents<'_>) -> Result<Vec<u64>, FileCause> {
     let vtk = write_grid(file, contents.mesh)?;
     let of = |place: Place| contents.fields.iter().filter(move |field| field.place == place);
     let mut groups: [Option<Group>; 2] = [None, None];

@@ -5,11 +5,7 @@ use super::{Contents, Place};
 use crate::mesh::{BODY, VTK_TYPES, bodies, in_space};
 
 /// The text of a file.
-pub(super) fn text<const D: usize, const N: usize>(
-    contents: &Contents<'_, D, N>,
-    time: f64,
-    values: &[Vec<f64>],
-) -> Vec<u8> {
+pub(super) fn text(contents: &Contents<'_>, time: f64, values: &[Vec<f64>]) -> Vec<u8> {
     let mesh = contents.mesh;
     let (nodes, cells) = (mesh.node_count(), mesh.element_count());
     let mut to = Vec::new();
@@ -21,13 +17,13 @@ pub(super) fn text<const D: usize, const N: usize>(
     line(&mut to, "<UnstructuredGrid>\n<FieldData>");
     array(&mut to, "Float64", "Name=\"TimeValue\" NumberOfTuples=\"1\"", time.to_le_bytes().to_vec());
     line(&mut to, &format!("</FieldData>\n<Piece NumberOfPoints=\"{nodes}\" NumberOfCells=\"{cells}\">\n<Points>"));
-    floats(&mut to, "Points", 3, &in_space(mesh.points()));
+    floats(&mut to, "Points", 3, &in_space(mesh.points(), mesh.dimension()));
     line(&mut to, "</Points>\n<Cells>");
-    let connectivity = mesh.cells().iter().flatten().map(|node| node.index() as i64);
+    let connectivity = mesh.cells().flatten().map(|node| node.index() as i64);
     array(&mut to, "Int64", "Name=\"connectivity\"", connectivity.flat_map(i64::to_le_bytes).collect());
-    let offsets = (1..=cells).map(|e| (e * N) as i64);
+    let offsets = (1..=cells).map(|e| (e * mesh.nodes_of_element()) as i64);
     array(&mut to, "Int64", "Name=\"offsets\"", offsets.flat_map(i64::to_le_bytes).collect());
-    array(&mut to, "UInt8", "Name=\"types\"", vec![VTK_TYPES[D - 1].0; cells]);
+    array(&mut to, "UInt8", "Name=\"types\"", vec![VTK_TYPES[mesh.dimension() - 1].0; cells]);
     line(&mut to, "</Cells>");
     for (place, name) in [(Place::Nodes, "PointData"), (Place::Elements, "CellData")] {
         line(&mut to, &format!("<{name}>"));

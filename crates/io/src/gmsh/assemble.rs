@@ -5,8 +5,8 @@ use super::facets::{Boundary, boundary};
 use super::groups::Sorted;
 use super::nodes::{Kept, Nodes};
 use super::raw::{Element, Raw};
-use super::{MeshFile, MeshOf, import_warnings};
-use percute_core::mesh::{Mesh, MeshError};
+use super::{MeshFile, import_warnings};
+use percute_core::mesh::{AnyMesh, Mesh, MeshError};
 use percute_core::simplex::{self, Simplex};
 use std::mem::take;
 
@@ -16,7 +16,7 @@ pub(super) fn mesh(mut raw: Raw, scale: f64) -> Result<MeshFile, Fault> {
     let (points, lines, triangles) = (take(&mut raw.points), take(&mut raw.lines), take(&mut raw.triangles));
     if !triangles.is_empty() {
         let points = raw.sorted(points)?;
-        return assemble(&raw, &nodes, triangles, lines, Some(&points), scale).map(MeshFile::Plane);
+        return assemble(&raw, &nodes, triangles, lines, Some(&points), scale);
     }
     if lines.is_empty() {
         return Err(GmshCause::NoElements.anywhere());
@@ -24,7 +24,7 @@ pub(super) fn mesh(mut raw: Raw, scale: f64) -> Result<MeshFile, Fault> {
     if raw.surfaces || raw.names.keys().any(|&(dimension, _)| dimension == 2) {
         return Err(GmshCause::NoTriangles.anywhere());
     }
-    assemble(&raw, &nodes, lines, points, None, scale).map(MeshFile::Bar)
+    assemble(&raw, &nodes, lines, points, None, scale)
 }
 
 /// Builds a mesh of `cells`, with boundary groups from `facets`; `points` are not part of it.
@@ -35,9 +35,10 @@ fn assemble<const D: usize, const N: usize>(
     facets: Vec<Element<D>>,
     points: Option<&Sorted<1>>,
     scale: f64,
-) -> Result<MeshOf<D, N>, Fault>
+) -> Result<MeshFile, Fault>
 where
     simplex::Element<D, N>: Simplex<D, N>,
+    AnyMesh: From<Mesh<D, N>>,
 {
     let Sorted { elements, doubled, members } = raw.sorted(cells)?;
     let located = nodes.located(&elements)?;
@@ -58,7 +59,7 @@ where
     let element_tags = elements.iter().map(|element| element.tag).collect();
     let large = import_warnings::large(mesh.size(), scale);
     let mesh = mesh.with_import_warnings(reported.into_iter().chain([large]).flatten().collect());
-    Ok(MeshOf { mesh, node_tags: kept.tags, element_tags })
+    Ok(MeshFile { mesh: mesh.into(), node_tags: kept.tags, element_tags })
 }
 
 /// A mesh error in the tags of the file, with the place of the element.

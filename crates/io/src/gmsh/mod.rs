@@ -31,8 +31,7 @@ pub use write::{Format, write};
 use crate::error::FileCause;
 use cursor::{Cursor, Form};
 use percute_core::memory::can_be_had;
-use percute_core::mesh::Mesh;
-use percute_core::simplex::ByDimension;
+use percute_core::mesh::AnyMesh;
 use std::io::ErrorKind;
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -44,19 +43,16 @@ const SCALES: RangeInclusive<f64> = 1e-12..=1e12;
 /// were measured.
 const RAW: u64 = 6;
 
-/// A mesh from a file. Its import warnings list omitted parts.
+/// A mesh from a file: of lines along x, or of triangles in a plane z = const. Its import warnings list omitted parts.
 #[derive(Clone, Debug)]
-pub struct MeshOf<const D: usize, const N: usize> {
+pub struct MeshFile {
     /// The mesh: nodes and elements in the order of their tags in the file.
-    pub mesh: Mesh<D, N>,
+    pub mesh: AnyMesh,
     /// The tag of each node in the file.
     pub node_tags: Vec<u64>,
     /// The tag of each element in the file.
     pub element_tags: Vec<u64>,
 }
-
-/// A mesh of lines along x, or of triangles in a plane z = const.
-pub type MeshFile = ByDimension<MeshOf<1, 2>, MeshOf<2, 3>>;
 
 /// Reads a mesh. `scale` is metres per unit of length in the file, from 1e-12 to 1e12: 1e-3 for millimetres.
 ///

@@ -1,7 +1,7 @@
 //! The outline of a plane mesh as a geometry of Gmsh (`.geo`): polygons of straight lines, to be meshed again.
 
 use percute_core::ids::{ElementId, FacetId};
-use percute_core::mesh::Mesh;
+use percute_core::mesh::{AnyMesh, TriangleMesh};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
@@ -28,8 +28,9 @@ struct Region {
 /// their places bit by bit, and nodes inside straight lines are left out. None for a bar, and where regions meet in a
 /// node alone.
 #[must_use]
-pub fn outline<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Option<String> {
-    let (region, regions) = regions(mesh)?;
+pub fn outline(mesh: &AnyMesh) -> Option<String> {
+    let AnyMesh::D2(mesh) = mesh else { return None };
+    let (region, regions) = regions(mesh);
     let edges = edges(mesh, &region);
     let curves = curves(mesh, &edges);
     let mut text = String::from("SetFactory(\"Built-in\");\n");
@@ -75,20 +76,16 @@ pub fn outline<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Option<Stri
     Some(text)
 }
 
-fn place<const D: usize, const N: usize>(mesh: &Mesh<D, N>, node: usize) -> [f64; 2] {
-    let point = &mesh.points()[node];
-    [point[0], point.get(1).copied().unwrap_or(0.0)]
+fn place(mesh: &TriangleMesh, node: usize) -> [f64; 2] {
+    mesh.points()[node]
 }
 
 fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// The region of each element, and the regions; none for a bar.
-fn regions<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Option<(Vec<usize>, Vec<Region>)> {
-    if D != 2 {
-        return None;
-    }
+/// The region of each element, and the regions.
+fn regions(mesh: &TriangleMesh) -> (Vec<usize>, Vec<Region>) {
     let mut groups = vec![BTreeSet::new(); mesh.element_count()];
     for (name, members) in mesh.element_groups() {
         members.iter().for_each(|element| _ = groups[element.index()].insert(name.clone()));
@@ -118,31 +115,31 @@ fn regions<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Option<(Vec<usi
         for (k, facet) in mesh.cell_facets()[element].iter().enumerate() {
             let other = mesh.facets()[facet.index()].across(ElementId::new(element));
             if other.is_none_or(|other| region[other.index()] != region[element]) {
-                found[region[element]].edges.push([1, 2].map(|p| cell[(k + p) % N].index()));
+                found[region[element]].edges.push([1, 2].map(|p| cell[(k + p) % 3].index()));
             }
         }
     }
-    Some((region, found))
+    (region, found)
 }
 
 /// The edges of the boundary and between regions.
-fn edges<const D: usize, const N: usize>(mesh: &Mesh<D, N>, region: &[usize]) -> Vec<Edge> {
+fn edges(mesh: &TriangleMesh, region: &[usize]) -> Vec<Edge> {
     let mut names: BTreeMap<FacetId, BTreeSet<String>> = BTreeMap::new();
     for (name, facets) in mesh.facet_groups() {
         facets.iter().for_each(|facet| _ = names.entry(*facet).or_default().insert(name.clone()));
     }
-    let edge = |(number, facet): (usize, &percute_core::mesh::Facet<D>)| {
+    let edge = |(number, facet): (usize, &percute_core::mesh::Facet<2>)| {
         let beside = [Some(facet.owner), facet.neighbour].into_iter().flatten().map(|e| region[e.index()]);
         let beside: BTreeSet<usize> = beside.collect();
         let groups = names.get(&FacetId::new(number)).cloned().unwrap_or_default();
-        let nodes = [facet.nodes[0].index(), facet.nodes[D - 1].index()];
+        let nodes = [facet.nodes[0].index(), facet.nodes[1].index()];
         (facet.neighbour.is_none() || beside.len() > 1).then(|| Edge { nodes: sorted(nodes), kind: (beside, groups) })
     };
     mesh.facets().iter().enumerate().filter_map(edge).collect()
 }
 
 /// The nodes of each straight curve of edges of one kind.
-fn curves<const D: usize, const N: usize>(mesh: &Mesh<D, N>, edges: &[Edge]) -> Vec<Vec<usize>> {
+fn curves(mesh: &TriangleMesh, edges: &[Edge]) -> Vec<Vec<usize>> {
     let mut at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (number, edge) in edges.iter().enumerate() {
         edge.nodes.iter().for_each(|node| at.entry(*node).or_default().push(number));
@@ -179,7 +176,7 @@ fn curves<const D: usize, const N: usize>(mesh: &Mesh<D, N>, edges: &[Edge]) -> 
 }
 
 /// The closed polygons of a region, the outer one first; none where it touches itself in a node.
-fn polygons<const D: usize, const N: usize>(mesh: &Mesh<D, N>, region: &Region) -> Option<Vec<Vec<usize>>> {
+fn polygons(mesh: &TriangleMesh, region: &Region) -> Option<Vec<Vec<usize>>> {
     let mut next: BTreeMap<usize, usize> = BTreeMap::new();
     for [from, to] in &region.edges {
         if next.insert(*from, *to).is_some() {
@@ -227,11 +224,11 @@ mod tests {
 
     #[test]
     fn a_rectangle_has_four_lines_with_its_groups() {
-        let text = outline(&TriangleMesh::rectangle(0.05, 0.04, 5, 4).unwrap()).unwrap();
+        let text = outline(&TriangleMesh::rectangle(0.05, 0.04, 5, 4).unwrap().into()).unwrap();
         assert_eq!(["Point", "Line", "Curve Loop", "Plane"].map(|start| count(&text, start)), [4, 4, 1, 1]);
         assert_eq!(["Physical Curve", "Physical Surface(\"body\")"].map(|start| count(&text, start)), [4, 1]);
         assert!(text.contains("Point(6) = {0.05, 0.0, 0};"), "{text}");
-        assert!(outline(&BarMesh::uniform_bar(1.0, 4).unwrap()).is_none());
+        assert!(outline(&BarMesh::uniform_bar(1.0, 4).unwrap().into()).is_none());
     }
 
     /// A frame in two materials: the boundary between them is one line of both, and the hole is a loop of its own or,
@@ -249,7 +246,7 @@ mod tests {
         let upper = (0..cells.len()).filter(|k| middle(elements[*k])[1] > 3.0).collect();
         let groups = ElementGroups::from([("upper".to_string(), upper)]);
         let mesh = TriangleMesh::new(whole.points().to_vec(), &cells, &FacetGroups::new(), &groups).unwrap();
-        let text = outline(&mesh).unwrap();
+        let text = outline(&mesh.into()).unwrap();
         // The outer corners, both ends of the boundary between the materials, the hole.
         assert_eq!(["Point", "Line", "Curve Loop", "Plane"].map(|start| count(&text, start)), [10, 11, 3, 2]);
         assert!(text.contains("Physical Surface(\"upper\")") && text.contains("Physical Surface(\"body\")"));

@@ -2,7 +2,7 @@
 
 use super::{GmshCause, GmshError};
 use crate::create::{Overwrite, whole};
-use percute_core::mesh::Mesh;
+use percute_core::mesh::AnyMesh;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -14,21 +14,21 @@ const EDGE: f64 = 1.519_671_371_303_185_5;
 ///
 /// # Errors
 /// A file that cannot be created or exists already.
-pub fn write_sizes<const D: usize, const N: usize>(
+pub fn write_sizes(
     path: &Path,
     overwrite: Overwrite,
-    mesh: &Mesh<D, N>,
+    mesh: &AnyMesh,
     size: &[f64],
     scale: f64,
 ) -> Result<(), GmshError> {
     let mut text = String::from("View \"size\" {\n");
-    let edge = if D == 1 { 1.0 } else { EDGE };
-    for cell in mesh.cells() {
-        let place = |c: usize, node: usize| mesh.points()[node].get(c).map_or(0.0, |x| x / scale);
-        let places = cell.iter().flat_map(|node| (0..3).map(move |c| place(c, node.index())));
-        let places = places.map(|x| format!("{x:?}")).collect::<Vec<_>>().join(",");
-        let sizes = cell.map(|node| format!("{:?}", edge * size[node.index()] / scale)).join(",");
-        let _ = writeln!(text, "S{}({places}){{{sizes}}};", if D == 1 { "L" } else { "T" });
+    let is_bar = mesh.dimension() == 1;
+    let edge = if is_bar { 1.0 } else { EDGE };
+    for element in mesh.elements() {
+        let places = mesh.cell_points(element).into_iter().flatten().map(|x| format!("{:?}", x / scale));
+        let sizes = mesh.cell(element).iter().map(|node| format!("{:?}", edge * size[node.index()] / scale));
+        let [places, sizes] = [places.collect::<Vec<_>>(), sizes.collect()].map(|numbers| numbers.join(","));
+        let _ = writeln!(text, "S{}({places}){{{sizes}}};", if is_bar { "L" } else { "T" });
     }
     text.push_str("};\n");
     let failed = |cause: GmshCause| GmshError { path: path.to_path_buf(), place: None, cause };
@@ -44,7 +44,8 @@ mod tests {
     #[test]
     fn sizes_are_lengths_of_edges() {
         let folder = tempfile::tempdir().unwrap();
-        let (file, mesh) = (folder.path().join("h.pos"), TriangleMesh::rectangle(0.05, 0.04, 1, 1).unwrap());
+        let (file, mesh) =
+            (folder.path().join("h.pos"), AnyMesh::from(TriangleMesh::rectangle(0.05, 0.04, 1, 1).unwrap()));
         let edge: f64 = 3e-3;
         let size = (3.0_f64.sqrt() / 4.0).sqrt() * edge;
         write_sizes(&file, Overwrite::allowed(false), &mesh, &[size; 4], 1e-3).unwrap();

@@ -73,10 +73,10 @@ pub(super) fn places(ours: &Part<'_>) -> Result<Option<CheckpointPlaces>, FileCa
 
 impl CheckpointPlaces {
     /// Writes a checkpoint over the older one.
-    pub(super) fn write<const D: usize>(&self, file: &File, checkpoint: &Checkpoint<D>) -> io::Result<()> {
+    pub(super) fn write(&self, file: &File, checkpoint: &Checkpoint) -> io::Result<()> {
         let Checkpoint { step, displacement, half_step, sums } = checkpoint;
         let head = std::iter::once(*step as f64).chain(*sums);
-        let fields = displacement.iter().chain(half_step).flatten().copied();
+        let fields = displacement.iter().chain(half_step).copied();
         let numbers: Vec<f64> = head.chain(fields).collect();
         let at = (step / EVERY % ROWS) as u64;
         write_all_at(file, &bytes(&numbers), self.numbers + 8 * self.row * at)?;
@@ -95,13 +95,14 @@ fn sum(numbers: &[f64]) -> i64 {
 }
 
 /// The newest whole checkpoint that `fits`; none if the run was killed before the first one.
-pub(super) fn newest<const D: usize>(
+pub(super) fn newest(
     ours: &Part<'_>,
     nodes: usize,
+    dimension: usize,
     fits: impl Fn(usize) -> bool,
-) -> Result<Option<Checkpoint<D>>, FileCause> {
+) -> Result<Option<Checkpoint>, FileCause> {
     let Some(stored) = ours.optional(NUMBERS)? else { return Ok(None) };
-    let row = row(nodes, D);
+    let row = row(nodes, dimension);
     stored.expect(&[ROWS, row], "step, sums, displacement and half-step velocity in each row")?;
     let checksums = ours.data(CHECKSUMS)?;
     checksums.expect(&[ROWS], "one for each row")?;
@@ -109,13 +110,13 @@ pub(super) fn newest<const D: usize>(
     let whole = numbers.chunks_exact(row).zip(checksums).filter(|(numbers, stored)| sum(numbers) == *stored);
     let newest = whole.map(|(numbers, _)| numbers).filter(|numbers| fits(numbers[0] as usize));
     Ok(newest.max_by(|a, b| a[0].total_cmp(&b[0])).map(|numbers| {
-        let (displacement, half_step) = numbers[HEAD..].split_at(nodes * D);
+        let (displacement, half_step) = numbers[HEAD..].split_at(nodes * dimension);
         let mut sums = [0.0; SUMS];
         sums.copy_from_slice(&numbers[1..HEAD]);
         Checkpoint {
             step: numbers[0] as usize,
-            displacement: displacement.as_chunks().0.to_vec(),
-            half_step: half_step.as_chunks().0.to_vec(),
+            displacement: displacement.to_vec(),
+            half_step: half_step.to_vec(),
             sums,
         }
     }))

@@ -9,8 +9,7 @@ use crate::error::{FileCause, FileError};
 use crate::mesh::vectors;
 use crate::read::{Data, Opened, reading};
 use crate::write::{Case, Provenance};
-use percute_core::mesh::Mesh;
-use percute_core::simplex::ByDimension;
+use percute_core::mesh::AnyMesh;
 use percute_core::time::TimeGrid;
 use percute_system::is_at;
 use std::fs::File;
@@ -18,9 +17,6 @@ use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// A history file of either dimension.
-pub type AnyHistoryFile = ByDimension<HistoryFile<1, 2>, HistoryFile<2, 3>>;
 
 /// Detects another file under the same name. The file stays open, so its number is not reused.
 #[derive(Debug)]
@@ -46,17 +42,17 @@ impl Identity {
 
 /// The contents read on opening.
 #[derive(Debug)]
-pub(super) struct Contents<const D: usize, const N: usize> {
+pub(super) struct Contents {
     pub(super) path: PathBuf,
     pub(super) identity: Identity,
     pub(super) bytes: u64,
-    pub(super) mesh: Mesh<D, N>,
+    pub(super) mesh: AnyMesh,
     pub(super) statement: String,
     pub(super) case: Option<Case>,
     pub(super) provenance: Provenance,
-    pub(super) elsewhere: Option<Elsewhere<D>>,
-    pub(super) initial_displacement: Vec<[f64; D]>,
-    pub(super) initial_velocity: Vec<[f64; D]>,
+    pub(super) elsewhere: Option<Elsewhere>,
+    pub(super) initial_displacement: Vec<f64>,
+    pub(super) initial_velocity: Vec<f64>,
     pub(super) times: TimeGrid,
     pub(super) count: usize,
     pub(super) complete: bool,
@@ -72,8 +68,8 @@ pub(super) struct Contents<const D: usize, const N: usize> {
 
 /// A history in a file. Steps are read on demand, and the file is open only during reading.
 #[derive(Clone, Debug)]
-pub struct HistoryFile<const D: usize, const N: usize> {
-    pub(super) contents: Arc<Contents<D, N>>,
+pub struct HistoryFile {
+    pub(super) contents: Arc<Contents>,
 }
 
 /// The place of an array in the file, for mapping into memory.
@@ -89,8 +85,8 @@ pub struct NativeArray {
     pub offset: Option<u64>,
 }
 
-impl<const D: usize, const N: usize> HistoryFile<D, N> {
-    pub(super) fn new(contents: Contents<D, N>) -> Self {
+impl HistoryFile {
+    pub(super) fn new(contents: Contents) -> Self {
         Self { contents: Arc::new(contents) }
     }
 
@@ -108,8 +104,14 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
 
     /// The mesh.
     #[must_use]
-    pub fn mesh(&self) -> &Mesh<D, N> {
+    pub fn mesh(&self) -> &AnyMesh {
         &self.contents.mesh
+    }
+
+    /// 1 for bars, 2 for plane bodies.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.mesh().dimension()
     }
 
     /// The problem in the language of the case files; mesh, initial fields and times are not in it.
@@ -158,14 +160,14 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
 
     /// u₀ at the nodes (m): step 0, unless the file has that of the problem.
     #[must_use]
-    pub fn initial_displacement(&self) -> &[[f64; D]] {
+    pub fn initial_displacement(&self) -> &[f64] {
         let Contents { elsewhere, initial_displacement, .. } = &*self.contents;
         elsewhere.as_ref().map_or(initial_displacement, |elsewhere| &elsewhere.initial_displacement)
     }
 
     /// v₀ at the nodes (m/s).
     #[must_use]
-    pub fn initial_velocity(&self) -> &[[f64; D]] {
+    pub fn initial_velocity(&self) -> &[f64] {
         &self.contents.initial_velocity
     }
 
@@ -205,11 +207,11 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         self.contents.given_contact
     }
 
-    /// u_n at the nodes (m), node by node and step after step.
+    /// u_n at the nodes (m), in rows, step after step.
     ///
     /// # Errors
     /// Steps outside the file, or a file that can no longer be read.
-    pub fn displacement(&self, steps: Range<usize>) -> Result<Vec<[f64; D]>, FileError> {
+    pub fn displacement(&self, steps: Range<usize>) -> Result<Vec<f64>, FileError> {
         Ok(self.nodal("displacement", steps)?.unwrap_or_default())
     }
 
@@ -217,7 +219,7 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
     ///
     /// # Errors
     /// As for [`HistoryFile::displacement`].
-    pub fn velocity(&self, steps: Range<usize>) -> Result<Option<Vec<[f64; D]>>, FileError> {
+    pub fn velocity(&self, steps: Range<usize>) -> Result<Option<Vec<f64>>, FileError> {
         self.nodal("velocity", steps)
     }
 
@@ -225,37 +227,32 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
     ///
     /// # Errors
     /// As for [`HistoryFile::displacement`].
-    pub fn acceleration(&self, steps: Range<usize>) -> Result<Option<Vec<[f64; D]>>, FileError> {
+    pub fn acceleration(&self, steps: Range<usize>) -> Result<Option<Vec<f64>>, FileError> {
         self.nodal("acceleration", steps)
     }
 
-    fn nodal(&self, name: &str, steps: Range<usize>) -> Result<Option<Vec<[f64; D]>>, FileError> {
+    fn nodal(&self, name: &str, steps: Range<usize>) -> Result<Option<Vec<f64>>, FileError> {
         let nodes = self.mesh().node_count();
         let rows = nodes * steps.start..nodes * steps.end;
         self.steps(steps.clone(), |opened| {
             let Some(data) = opened.root().group("VTKHDF")?.group("PointData")?.optional(name)? else {
                 return Ok(None);
             };
-            let values = vectors::<D>(&data, data.float_rows(rows)?)?;
+            let values = vectors(&data, &data.float_rows(rows)?, self.dimension())?;
             self.check(opened, name, steps, &values, of_vectors)?;
             Ok(Some(values))
         })
     }
 
-    /// R_n (N) on [`HistoryFile::contact_nodes`], node by node and step after step.
+    /// R_n (N) on [`HistoryFile::contact_nodes`], in rows, step after step.
     ///
     /// # Errors
     /// As for [`HistoryFile::displacement`].
-    pub fn reaction(&self, steps: Range<usize>) -> Result<Vec<[f64; D]>, FileError> {
-        self.contact(
-            steps,
-            "reaction",
-            |data, steps| Ok(data.float_rows(steps)?.as_chunks::<D>().0.to_vec()),
-            of_vectors,
-        )
+    pub fn reaction(&self, steps: Range<usize>) -> Result<Vec<f64>, FileError> {
+        self.contact(steps, "reaction", |data, steps| data.float_rows(steps), of_vectors)
     }
 
-    /// Touching status of [`HistoryFile::contact_nodes`], node by node and step after step.
+    /// Touching status of [`HistoryFile::contact_nodes`], in rows, step after step.
     ///
     /// # Errors
     /// As for [`HistoryFile::displacement`].
@@ -307,9 +304,9 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
         let padded = field == FIELDS[0];
         let sum = |row: &[f64]| match padded {
             true => of_vectors(
-                &row.as_chunks::<3>().0.iter().map(|v| std::array::from_fn(|c| v[c])).collect::<Vec<[f64; D]>>(),
+                &row.as_chunks::<3>().0.iter().flat_map(|v| &v[..self.dimension()]).copied().collect::<Vec<f64>>(),
             ),
-            false => Checksum::new().numbers(row),
+            false => of_vectors(row),
         };
         self.compare(field, steps, rows.map(sum), sums)
     }

@@ -18,7 +18,7 @@ mod thinned;
 mod writer;
 
 pub use elsewhere::Elsewhere;
-pub use file::{AnyHistoryFile, HistoryFile, NativeArray};
+pub use file::{HistoryFile, NativeArray};
 pub use kept::{Kept, KeptSteps};
 pub use open::open;
 pub(crate) use open::{case, provenance};

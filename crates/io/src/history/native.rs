@@ -5,9 +5,9 @@ use percute_system::write_all_at;
 use std::fs::File;
 use std::io;
 
-/// Writes nodal vectors with three components for ParaView.
-pub(super) fn write_vectors<const D: usize>(file: &File, place: u64, values: &[[f64; D]]) -> io::Result<()> {
-    write_all_at(file, &bytes(&in_space(values)), place)
+/// Writes nodal vectors of a dimension, in rows, with three components for ParaView.
+pub(super) fn write_vectors(file: &File, place: u64, values: &[f64], dimension: usize) -> io::Result<()> {
+    write_all_at(file, &bytes(&in_space(values, dimension)), place)
 }
 
 /// The bytes of numbers.

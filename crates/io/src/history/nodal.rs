@@ -3,19 +3,21 @@
 use crate::error::FileCause;
 use crate::read::Part;
 
-/// Reads them.
-pub(super) fn nodal<const D: usize>(ours: &Part<'_>, name: &str, nodes: usize) -> Result<Vec<[f64; D]>, FileCause> {
+/// Reads them, in rows; `shape` is the number of nodes and the dimension.
+pub(super) fn nodal(ours: &Part<'_>, name: &str, shape: [usize; 2]) -> Result<Vec<f64>, FileCause> {
     let data = ours.data(name)?;
-    data.expect(&[nodes, D], "(nodes, dimension)")?;
-    let values = data.floats()?.as_chunks::<D>().0.to_vec();
-    finite(&data.name, &values).map(|()| values)
+    data.expect(&shape, "(nodes, dimension)")?;
+    let values = data.floats()?;
+    finite(&data.name, &values, shape[1]).map(|()| values)
 }
 
 /// Refuses NaN and infinity.
-pub(super) fn finite<const D: usize>(name: &str, values: &[[f64; D]]) -> Result<(), FileCause> {
-    let wrong = values.iter().enumerate().find_map(|(node, v)| Some((node, *v.iter().find(|x| !x.is_finite())?)));
-    match wrong {
-        Some((node, value)) => Err(FileCause::NotFinite { name: name.to_string(), step: 0, node, value }),
+pub(super) fn finite(name: &str, values: &[f64], dimension: usize) -> Result<(), FileCause> {
+    match values.iter().position(|x| !x.is_finite()) {
+        Some(at) => {
+            let (node, value) = (at / dimension, values[at]);
+            Err(FileCause::NotFinite { name: name.to_string(), step: 0, node, value })
+        }
         None => Ok(()),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::DISPLACEMENT;
 use super::elsewhere::Elsewhere;
-use super::file::{AnyHistoryFile, Contents, HistoryFile, Identity};
+use super::file::{Contents, HistoryFile, Identity};
 use super::kept;
 use super::nodal::{finite, nodal};
 use super::rows::FIELDS;
@@ -12,7 +12,6 @@ use crate::kind::Kind;
 use crate::mesh::{read, vectors};
 use crate::read::{Data, Opened, Part, reading};
 use crate::write::{Case, Provenance};
-use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
 use std::path::Path;
 
@@ -21,44 +20,22 @@ use std::path::Path;
 /// # Errors
 /// A file that is missing, locked, damaged, of another program, another kind or another layout; a part that
 /// is missing, or of a wrong type, shape or value.
-pub fn open(path: impl AsRef<Path>) -> Result<AnyHistoryFile, FileError> {
+pub fn open(path: impl AsRef<Path>) -> Result<HistoryFile, FileError> {
     let path = path.as_ref();
     let identity = Identity::of(path).map_err(|cause| cause.at(path))?;
-    reading(path, |opened| match dimension(opened)? {
-        1 => contents(path, identity, opened).map(AnyHistoryFile::Bar),
-        2 => contents(path, identity, opened).map(AnyHistoryFile::Plane),
+    reading(path, |opened| contents(path, identity, opened))
+}
+
+/// The dimension of a history; any other file is refused.
+fn dimension(opened: &Opened) -> Result<usize, FileCause> {
+    opened.expect(Kind::History)?;
+    match opened.root().group("percute")?.integer_attribute("dimension")? {
+        dimension @ 1..=2 => Ok(dimension as usize),
         other => {
             let detail = format!("{other} is not a known dimension; it must be 1 (bars) or 2 (triangles)");
             Err(FileCause::Value { name: "percute.dimension".to_string(), detail })
         }
-    })
-}
-
-impl<const D: usize, const N: usize> HistoryFile<D, N>
-where
-    Element<D, N>: Simplex<D, N>,
-{
-    /// Opens a history of this dimension.
-    ///
-    /// # Errors
-    /// As [`open`], and the history of a body of another dimension.
-    pub fn of(path: &Path) -> Result<Self, FileError> {
-        let identity = Identity::of(path).map_err(|cause| cause.at(path))?;
-        reading(path, |opened| {
-            let given = dimension(opened)?;
-            if given != D as i64 {
-                let detail = format!("it is {given}, but the body here has the dimension {D}");
-                return Err(FileCause::Value { name: "percute.dimension".to_string(), detail });
-            }
-            contents(path, identity, opened)
-        })
     }
-}
-
-/// The dimension of a history; any other file is refused.
-fn dimension(opened: &Opened) -> Result<i64, FileCause> {
-    opened.expect(Kind::History)?;
-    opened.root().group("percute")?.integer_attribute("dimension")
 }
 
 /// Whether a history has checksums: then one for each field at each instant.
@@ -68,30 +45,23 @@ fn has_checksums(ours: &Part<'_>, instants: usize) -> Result<bool, FileCause> {
     Ok(true)
 }
 
-pub(super) fn contents<const D: usize, const N: usize>(
-    path: &Path,
-    identity: Identity,
-    opened: &Opened,
-) -> Result<HistoryFile<D, N>, FileCause>
-where
-    Element<D, N>: Simplex<D, N>,
-{
-    let root = opened.root();
+pub(super) fn contents(path: &Path, identity: Identity, opened: &Opened) -> Result<HistoryFile, FileCause> {
+    let (root, d) = (opened.root(), dimension(opened)?);
     let (vtk, ours) = (root.group("VTKHDF")?, root.group("percute")?);
-    let mesh = read::<D, N>(opened)?;
+    let mesh = read(opened, d)?;
     let nodes = mesh.node_count();
     let times = times(&vtk, &ours)?;
     let instants = times.instants().len();
     let (count, complete) = written(&vtk, &ours, instants)?;
-    let (initial_displacement, stored) = fields::<D>(&vtk, instants, nodes)?;
+    let (initial_displacement, stored) = fields(&vtk, instants, [nodes, d])?;
     let kept = kept::read(&ours, times.instants())?;
     // Motion by the scheme follows from all steps as well.
     let given = if ours.has_attribute("by_scheme") { [false; 2] } else { stored };
-    let initial_velocity = nodal::<D>(&ours, "initial_velocity", nodes)?;
-    let (contact_nodes, given_contact) = contact(&ours, instants, nodes, D)?;
+    let initial_velocity = nodal(&ours, "initial_velocity", [nodes, d])?;
+    let (contact_nodes, given_contact) = contact(&ours, instants, nodes, d)?;
     let statement =
         ours.optional_text("problem")?.ok_or_else(|| FileCause::MissingPart { name: "percute/problem".to_string() })?;
-    let (case, provenance, elsewhere) = (case(&ours)?, provenance(&ours)?, Elsewhere::read(&ours, nodes)?);
+    let (case, provenance, elsewhere) = (case(&ours)?, provenance(&ours)?, Elsewhere::read(&ours, [nodes, d])?);
     let checksums = provenance.is_percute() && has_checksums(&ours, instants)?;
     if checksums {
         let nodes = contact_nodes.iter().copied();
@@ -139,15 +109,11 @@ fn check_seen(vtk: &Part<'_>, count: usize, complete: bool) -> Result<(), FileCa
 
 /// The initial displacement, and whether velocities and accelerations are given; all of their shapes are
 /// checked.
-fn fields<const D: usize>(
-    vtk: &Part<'_>,
-    instants: usize,
-    nodes: usize,
-) -> Result<(Vec<[f64; D]>, [bool; 2]), FileCause> {
+fn fields(vtk: &Part<'_>, instants: usize, [nodes, dimension]: [usize; 2]) -> Result<(Vec<f64>, [bool; 2]), FileCause> {
     let missing = || FileCause::MissingPart { name: DISPLACEMENT.to_string() };
     let displacement = field(vtk, "displacement", instants, nodes)?.ok_or_else(missing)?;
-    let initial = vectors::<D>(&displacement, displacement.float_rows(0..nodes)?)?;
-    finite(DISPLACEMENT, &initial)?;
+    let initial = vectors(&displacement, &displacement.float_rows(0..nodes)?, dimension)?;
+    finite(DISPLACEMENT, &initial, dimension)?;
     let velocity = field(vtk, "velocity", instants, nodes)?.is_some();
     let acceleration = field(vtk, "acceleration", instants, nodes)?.is_some();
     Ok((initial, [velocity, acceleration]))

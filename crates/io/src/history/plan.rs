@@ -14,7 +14,7 @@ use crate::mesh::{bytes_of_bodies, write_bodies, write_grid, write_groups};
 use crate::steps::write_steps;
 use crate::write::{Case, Texts, attribute, group, numbers, offset, ours, room, statement, unit};
 use hdf5::Group;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use std::path::Path;
 
@@ -24,21 +24,21 @@ const PER_GROUP: u64 = 350;
 
 /// A planned history file.
 #[derive(Clone, Debug)]
-pub struct Plan<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+pub struct Plan<'p> {
+    problem: &'p AnyProblem,
     times: &'p TimeGrid,
     statement: String,
     case: Option<Case>,
     given: [bool; 2],
     kept: Option<Kept>,
-    elsewhere: Option<Elsewhere<D>>,
+    elsewhere: Option<Elsewhere>,
 }
 
-impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
+impl<'p> Plan<'p> {
     /// A file for the history of a problem over these instants. `statement` is the problem in the
     /// language of the case files; `case` is the case file as given.
     #[must_use]
-    pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, statement: &str, case: Option<&Case>) -> Self {
+    pub fn new(problem: &'p AnyProblem, times: &'p TimeGrid, statement: &str, case: Option<&Case>) -> Self {
         let (statement, case) = (statement.to_string(), case.cloned());
         Self { problem, times, statement, case, given: [false; 2], kept: None, elsewhere: None }
     }
@@ -51,7 +51,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
 
     /// For a history that another program has simulated.
     #[must_use]
-    pub fn simulated_elsewhere(self, elsewhere: Option<Elsewhere<D>>) -> Self {
+    pub fn simulated_elsewhere(self, elsewhere: Option<Elsewhere>) -> Self {
         Self { elsewhere, ..self }
     }
 
@@ -69,12 +69,12 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
 
     /// Whether the file has reactions and touching status.
     fn has_contact(&self) -> bool {
-        !self.problem.surface().nodes().is_empty() && self.kept.as_ref().is_none_or(|kept| kept.reaction)
+        !self.problem.contact_nodes().is_empty() && self.kept.as_ref().is_none_or(|kept| kept.reaction)
     }
 
     /// Nodes with reactions and touching status in the file.
     fn contact_nodes(&self) -> usize {
-        if self.has_contact() { self.problem.surface().nodes().len() } else { 0 }
+        if self.has_contact() { self.problem.contact_nodes().len() } else { 0 }
     }
 
     /// Whether the file lacks steps or reactions.
@@ -88,7 +88,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
     pub fn bytes(&self) -> u64 {
         let mesh = self.problem.mesh();
         let (nodes, cells, instants) = (mesh.node_count() as u64, mesh.element_count() as u64, self.instants() as u64);
-        let (d, contact) = (D as u64, self.contact_nodes() as u64);
+        let (d, contact) = (mesh.dimension() as u64, self.contact_nodes() as u64);
         let grid = 24 * nodes + 8 * (d + 1) * cells + 8 * (cells + 1) + cells;
         let steps = 8 * (7 + self.vectors() + FIELDS.len() as u64);
         let facets: u64 = mesh.facet_groups().values().map(|members| 8 * d * members.len() as u64).sum();
@@ -100,7 +100,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
             .elsewhere
             .as_ref()
             .map_or(0, |origin| 8 * d * nodes + (origin.program.len() + origin.derived().len()) as u64 + 3 * PER_GROUP);
-        let checkpoints = checkpoints::size(self.steps_to_go_on(), mesh.node_count(), D);
+        let checkpoints = checkpoints::size(self.steps_to_go_on(), mesh.node_count(), mesh.dimension());
         let fixed = grid
             + facets
             + elements
@@ -119,7 +119,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
     /// Size of the fields at an instant (bytes).
     fn row(&self) -> u64 {
         let nodes = self.problem.mesh().node_count() as u64;
-        24 * nodes * self.vectors() + self.contact_nodes() as u64 * (8 * D as u64 + 1)
+        24 * nodes * self.vectors() + self.contact_nodes() as u64 * (8 * self.problem.dimension() as u64 + 1)
     }
 
     /// Number of nodal vector fields.
@@ -142,7 +142,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
     /// # Errors
     /// An existing file (or one in use, if it is to be replaced), a folder that is missing or not writable,
     /// a disk without enough space. No file is left then.
-    pub fn create(&self, path: impl AsRef<Path>, overwrite: Overwrite) -> Result<Writer<D>, FileError> {
+    pub fn create(&self, path: impl AsRef<Path>, overwrite: Overwrite) -> Result<Writer, FileError> {
         let path = path.as_ref();
         let named = self.unnamed(path, overwrite, self.bytes()).and_then(|(unnamed, places)| {
             unnamed.reserve()?;
@@ -163,7 +163,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         path: impl AsRef<Path>,
         overwrite: Overwrite,
         count: usize,
-    ) -> Result<Writer<D>, FileError> {
+    ) -> Result<Writer, FileError> {
         let path = path.as_ref();
         let unwritten = self.instants().saturating_sub(count) as u64;
         let unnamed = self.unnamed(path, overwrite, self.bytes().saturating_sub(unwritten.saturating_mul(self.row())));
@@ -174,12 +174,17 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
     /// Creates the file without its name; `bytes` is the room that it will take.
     fn unnamed(&self, path: &Path, overwrite: Overwrite, bytes: u64) -> Result<(Unnamed, Places), FileCause> {
         let (unnamed, places) = Unnamed::new(path, overwrite, bytes, |file, texts| self.fill(file, texts))?;
-        let start = write_vectors(unnamed.file(), places.displacement, self.problem.initial_displacement());
+        let start = write_vectors(
+            unnamed.file(),
+            places.displacement,
+            self.problem.initial_displacement(),
+            self.problem.dimension(),
+        );
         start.map_err(|source| unnamed.unwritten(source))?;
         Ok((unnamed, places))
     }
 
-    fn writer(&self, target: Target, places: Places) -> Result<Writer<D>, FileCause> {
+    fn writer(&self, target: Target, places: Places) -> Result<Writer, FileCause> {
         let begun =
             Begun { last: self.times.step_count(), next: 0, stored: 0, given: self.given, kept: self.kept.clone() };
         Writer::new(target, places, begun).map_err(|source| FileCause::Create { source })
@@ -188,21 +193,21 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
     fn fill(&self, file: &Group, texts: &mut Texts) -> Result<Places, FileCause> {
         let mesh = self.problem.mesh();
         let vtk = write_grid(file, mesh)?;
-        let ours = ours(file, Kind::History, D)?;
+        let ours = ours(file, Kind::History, mesh.dimension())?;
         statement(&ours, texts, &self.statement, self.case.as_ref())?;
         write_groups(&ours, mesh)?;
-        let elsewhere = self.elsewhere.as_ref();
-        elsewhere.map_or(Ok(()), |elsewhere| elsewhere.write(&ours, texts))?;
+        let (elsewhere, dimension) = (self.elsewhere.as_ref(), mesh.dimension());
+        elsewhere.map_or(Ok(()), |elsewhere| elsewhere.write(&ours, texts, dimension))?;
         let velocity = self.problem.initial_velocity();
-        unit(&numbers(&ours, "initial_velocity", &[velocity.len(), D], velocity.as_flattened())?, "m/s")?;
-        let surface = if self.has_contact() { self.problem.surface().nodes() } else { &[] };
+        unit(&numbers(&ours, "initial_velocity", &[mesh.node_count(), dimension], velocity)?, "m/s")?;
+        let surface = if self.has_contact() { self.problem.contact_nodes() } else { &[] };
         let nodes = surface.iter().map(|contact| contact.node.index());
         let run = if self.is_thinned() { self.times.instants() } else { &[] };
         let texts = (self.statement.as_str(), self.case.as_ref(), elsewhere);
         let sum = fixed_part(mesh, velocity, texts, [&self.stored_times(), run], nodes);
         numbers(&ours, "checksum", &[], &[sum])?;
         let checksums = room::<i64>(&ours, "checksums", &[self.instants(), FIELDS.len()])?;
-        let checkpoints = checkpoints::make_room(&ours, self.steps_to_go_on(), mesh.node_count(), D)?;
+        let checkpoints = checkpoints::make_room(&ours, self.steps_to_go_on(), mesh.node_count(), dimension)?;
         let steps_written = numbers(&ours, "steps_written", &[], &[0_i64])?;
         let complete = numbers(&ours, "complete", &[], &[0_u8])?;
         let instants = &self.stored_times();
@@ -212,8 +217,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         let [velocity, acceleration] = self.given;
         let fields =
             [("displacement", "m", true), ("velocity", "m/s", velocity), ("acceleration", "m/s2", acceleration)];
-        let data = group(&vtk, "PointData")?;
-        let (mut names, mut places) = (Vec::new(), [None; 3]);
+        let (data, mut names, mut places) = (group(&vtk, "PointData")?, Vec::new(), [None; 3]);
         for (place, (name, of, _)) in places.iter_mut().zip(fields).filter(|(_, (_, _, there))| *there) {
             let set = room::<f64>(&data, name, &[self.instants() * mesh.node_count(), 3])?;
             unit(&set, of)?;
@@ -231,8 +235,9 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
             complete: offset(&complete)?,
             checksums: offset(&checksums)?,
             checkpoints,
+            dimension,
             nodes: mesh.node_count(),
-            contact_nodes: self.problem.surface().nodes().len(),
+            contact_nodes: self.problem.contact_nodes().len(),
             has_contact: self.has_contact(),
             had: 0,
         })
@@ -248,7 +253,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
     fn run(&self, ours: &Group) -> Result<(), FileCause> {
         let Some(kept) = &self.kept else { return Ok(()) };
         attribute(ours, "by_scheme", 1_u8)?;
-        if !kept.reaction && !self.problem.surface().nodes().is_empty() {
+        if !kept.reaction && !self.problem.contact_nodes().is_empty() {
             attribute(ours, "without_reactions", 1_u8)?;
         }
         if self.is_thinned() {
@@ -262,7 +267,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
 
     /// Contact data, if any node can touch, and the place of their rows.
     fn contact(&self, ours: &Group) -> Result<(u64, u64), FileCause> {
-        let surface = self.problem.surface().nodes();
+        let surface = self.problem.contact_nodes();
         if !self.has_contact() {
             return Ok((0, 0));
         }
@@ -270,7 +275,7 @@ impl<'p, const D: usize, const N: usize> Plan<'p, D, N> {
         let nodes: Vec<i64> = surface.iter().map(|c| c.node.index() as i64).collect();
         numbers(&contact, "nodes", &[nodes.len()], &nodes)?;
         let (instants, count) = (self.instants(), nodes.len());
-        let reaction = room::<f64>(&contact, "reaction", &[instants, count, D])?;
+        let reaction = room::<f64>(&contact, "reaction", &[instants, count, self.problem.dimension()])?;
         unit(&reaction, self.problem.units().of("N"))?;
         let touching = room::<u8>(&contact, "touching", &[instants, count])?;
         Ok((offset(&reaction)?, offset(&touching)?))

@@ -13,17 +13,17 @@ const WAITING: usize = 2;
 
 /// A queue of what is to be written, in order.
 #[derive(Debug)]
-pub(super) struct Queue<const D: usize> {
-    entries: Option<SyncSender<Entry<D>>>,
-    used: Receiver<Row<D>>,
+pub(super) struct Queue {
+    entries: Option<SyncSender<Entry>>,
+    used: Receiver<Row>,
     thread: Option<JoinHandle<Result<(), Failure>>>,
     failed: Option<Failure>,
 }
 
 /// A copy of what is to be written.
-enum Entry<const D: usize> {
-    Row(Row<D>),
-    Checkpoint(Checkpoint<D>),
+enum Entry {
+    Row(Row),
+    Checkpoint(Checkpoint),
 }
 
 /// The step that could not be written.
@@ -45,7 +45,7 @@ impl Failure {
     }
 }
 
-impl<const D: usize> Queue<D> {
+impl Queue {
     /// Starts the thread, which writes to `file`.
     ///
     /// # Errors
@@ -62,7 +62,7 @@ impl<const D: usize> Queue<D> {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub(super) fn row(&mut self, step: &Step<'_, D>, place: usize) -> Result<(), FileCause> {
+    pub(super) fn row(&mut self, step: &Step<'_>, place: usize) -> Result<(), FileCause> {
         let mut row = self.used.try_recv().unwrap_or_default();
         row.take(step, place);
         self.pass_on(Entry::Row(row), step.index)
@@ -72,12 +72,12 @@ impl<const D: usize> Queue<D> {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub(super) fn checkpoint(&mut self, checkpoint: Checkpoint<D>) -> Result<(), FileCause> {
+    pub(super) fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), FileCause> {
         let step = checkpoint.step;
         self.pass_on(Entry::Checkpoint(checkpoint), step)
     }
 
-    fn pass_on(&mut self, entry: Entry<D>, step: usize) -> Result<(), FileCause> {
+    fn pass_on(&mut self, entry: Entry, step: usize) -> Result<(), FileCause> {
         self.check()?;
         if self.entries.as_ref().is_some_and(|entries| entries.send(entry).is_ok()) {
             return Ok(());
@@ -117,19 +117,14 @@ impl<const D: usize> Queue<D> {
     }
 }
 
-impl<const D: usize> Drop for Queue<D> {
+impl Drop for Queue {
     fn drop(&mut self) {
         let _ = self.stop();
     }
 }
 
 /// Writes entries in order, until the last one or a failure.
-fn write_all<const D: usize>(
-    file: &File,
-    places: &Places,
-    taken: &Receiver<Entry<D>>,
-    back: &Sender<Row<D>>,
-) -> Result<(), Failure> {
+fn write_all(file: &File, places: &Places, taken: &Receiver<Entry>, back: &Sender<Row>) -> Result<(), Failure> {
     for entry in taken {
         match entry {
             Entry::Row(row) => {

@@ -8,7 +8,6 @@ use crate::error::{FileCause, FileError};
 use crate::held::Held;
 use crate::library::{alone, detail};
 use crate::steps::{give_steps, note_steps};
-use percute_core::each_dimension;
 use percute_system::give_back;
 use std::fs::File;
 use std::path::Path;
@@ -30,15 +29,15 @@ pub struct Recovered {
 pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
     let path = path.as_ref();
     let found = open(path)?;
-    let (count, was_complete) = each_dimension!(&found, file => (file.count(), file.is_complete()));
-    let planned = each_dimension!(&found, file => file.times().instants().len());
+    let (count, was_complete) = (found.count(), found.is_complete());
+    let planned = found.times().instants().len();
     let recovered = Recovered { count, was_complete };
     if recovered.was_complete {
         return Ok(recovered);
     }
     // Read before the lock, which keeps readers out.
-    let arrays = each_dimension!(&found, file => file.arrays())?;
-    let checkpoints = each_dimension!(&found, file => file.again(|opened| places(&opened.root().group("percute")?)))?;
+    let arrays = found.arrays()?;
+    let checkpoints = found.again(|opened| places(&opened.root().group("percute")?))?;
     let finish = || {
         let file = File::options().read(true).write(true).open(path);
         let file = file.map_err(|error| FileCause::Finish { detail: error.to_string(), steps: recovered.count })?;

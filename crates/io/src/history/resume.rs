@@ -12,25 +12,21 @@ use crate::held::Held;
 use crate::read::{Data, Opened};
 use crate::write::Provenance;
 use percute_core::history::Checkpoint;
-use percute_core::problem::Problem;
-use percute_core::simplex::{Element, Simplex};
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_system::{occupied, write_all_at};
 use std::fs::File;
 
 /// A history to which its run goes on to add steps.
 #[derive(Debug)]
-pub struct Unended<const D: usize> {
+pub struct Unended {
     /// The state from which the run goes on; without one, it begins again at its first step.
-    pub checkpoint: Option<Checkpoint<D>>,
+    pub checkpoint: Option<Checkpoint>,
     /// Writes the steps after it.
-    pub writer: Writer<D>,
+    pub writer: Writer,
 }
 
-impl<const D: usize, const N: usize> HistoryFile<D, N>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+impl HistoryFile {
     /// All planned instants of the run (s), those that a thinned history does not keep included.
     #[must_use]
     pub fn run_times(&self) -> &TimeGrid {
@@ -66,11 +62,11 @@ where
     /// A file of another program, version or machine, whose numbers would be others, or one with velocities and
     /// accelerations of its own; one without checksums, or that is damaged; one that is being written or cannot be
     /// written to; a disk without enough space.
-    pub fn resume(&self, problem: &Problem<D, N>) -> Result<Unended<D>, FileError> {
+    pub fn resume(&self, problem: &AnyProblem) -> Result<Unended, FileError> {
         self.go_on(problem).map_err(|cause| cause.at(self.path()))
     }
 
-    fn go_on(&self, problem: &Problem<D, N>) -> Result<Unended<D>, FileCause> {
+    fn go_on(&self, problem: &AnyProblem) -> Result<Unended, FileCause> {
         let (writer, here) = (self.provenance(), Provenance::here());
         if *writer != here {
             let told = |by: &Provenance| format!("{} on {} {}", by.program, by.architecture, by.system);
@@ -93,10 +89,11 @@ where
         let now: Self = contents(path, Identity::of(path)?, &opened)?;
         let places = now.places(&opened, problem)?;
         let fits = |step: usize| step <= now.run_times().step_count() && now.rows_until(step) <= now.count();
-        let checkpoint = checkpoints::newest::<D>(&opened.root().group("percute")?, now.mesh().node_count(), fits)?;
+        let checkpoint =
+            checkpoints::newest(&opened.root().group("percute")?, now.mesh().node_count(), now.dimension(), fits)?;
         let bytes = opened.bytes();
         drop(opened);
-        let next = checkpoint.as_ref().map_or(0, |checkpoint: &Checkpoint<D>| checkpoint.step + 1);
+        let next = checkpoint.as_ref().map_or(0, |checkpoint: &Checkpoint| checkpoint.step + 1);
         let stored = next.checked_sub(1).map_or(0, |step| now.rows_until(step));
         now.check_rows(stored).map_err(|error| error.cause)?;
         let missing = bytes.saturating_sub(occupied(held.file()));
@@ -126,7 +123,7 @@ where
     }
 
     /// The places of all that a run writes.
-    fn places(&self, opened: &Opened, problem: &Problem<D, N>) -> Result<Places, FileCause> {
+    fn places(&self, opened: &Opened, problem: &AnyProblem) -> Result<Places, FileCause> {
         let root = opened.root();
         let (ours, fields) = (root.group("percute")?, root.group("VTKHDF")?.group("PointData")?);
         let [velocity, acceleration] = ["velocity", "acceleration"].map(|name| fields.optional(name));
@@ -148,8 +145,9 @@ where
             complete: place(complete.native_offset::<u8>()?, &complete)?,
             checksums: place(checksums.native_offset::<i64>()?, &checksums)?,
             checkpoints: checkpoints::places(&ours)?,
+            dimension: self.dimension(),
             nodes: self.mesh().node_count(),
-            contact_nodes: problem.surface().nodes().len(),
+            contact_nodes: problem.contact_nodes().len(),
             has_contact: contact.is_some(),
             had: self.count(),
         })

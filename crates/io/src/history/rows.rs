@@ -24,6 +24,7 @@ pub(super) struct Places {
     /// Of a row of checksums for each step.
     pub(super) checksums: u64,
     pub(super) checkpoints: Option<CheckpointPlaces>,
+    pub(super) dimension: usize,
     pub(super) nodes: usize,
     pub(super) contact_nodes: usize,
     /// Whether the file has reactions and touching status.
@@ -34,31 +35,31 @@ pub(super) struct Places {
 
 impl Places {
     /// The place of each array over time, and the size of a step in it (bytes).
-    pub(super) fn rooms(&self, dimension: u64) -> impl Iterator<Item = (u64, u64)> {
+    pub(super) fn rooms(&self) -> impl Iterator<Item = (u64, u64)> {
         let (nodes, contact) = (24 * self.nodes as u64, self.contact_nodes as u64);
         let nodal = [Some(self.displacement), self.velocity, self.acceleration].into_iter().flatten();
-        let of_contact = [(self.reaction, 8 * dimension * contact), (self.touching, contact)];
+        let of_contact = [(self.reaction, 8 * self.dimension as u64 * contact), (self.touching, contact)];
         nodal.map(move |place| (place, nodes)).chain(of_contact.into_iter().filter(|_| self.has_contact))
     }
 }
 
 /// A copy of a step, passed between threads.
 #[derive(Debug, Default)]
-pub(super) struct Row<const D: usize> {
+pub(super) struct Row {
     /// Its number in the run.
     pub(super) index: usize,
     /// Its place in the file.
     place: usize,
-    displacement: Vec<[f64; D]>,
-    reaction: Vec<[f64; D]>,
+    displacement: Vec<f64>,
+    reaction: Vec<f64>,
     touching: Vec<u8>,
-    velocity: Vec<[f64; D]>,
-    acceleration: Vec<[f64; D]>,
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
 }
 
-impl<const D: usize> Row<D> {
+impl Row {
     /// Copies a step into the memory of the previous one.
-    pub(super) fn take(&mut self, step: &Step<'_, D>, place: usize) {
+    pub(super) fn take(&mut self, step: &Step<'_>, place: usize) {
         (self.index, self.place) = (step.index, place);
         let fields = [
             (&mut self.displacement, Some(step.displacement)),
@@ -85,12 +86,12 @@ impl<const D: usize> Row<D> {
         ];
         for (place, values) in fields {
             if let Some(place) = place {
-                write_vectors(file, place + n * nodes * 24, values)?;
+                write_vectors(file, place + n * nodes * 24, values, places.dimension)?;
             }
         }
         if places.has_contact {
-            let reaction = bytes(self.reaction.as_flattened());
-            write_all_at(file, &reaction, places.reaction + n * contact * 8 * D as u64)?;
+            let reaction = bytes(&self.reaction);
+            write_all_at(file, &reaction, places.reaction + n * contact * 8 * places.dimension as u64)?;
             write_all_at(file, &self.touching, places.touching + n * contact)?;
         }
         let sums = self.checksums(places.has_contact).iter().flat_map(|sum| sum.to_ne_bytes()).collect::<Vec<u8>>();
@@ -101,12 +102,12 @@ impl<const D: usize> Row<D> {
 
     /// The checksums of the fields, in the order of [`FIELDS`]; 0 of those that are not stored.
     fn checksums(&self, has_contact: bool) -> [i64; FIELDS.len()] {
-        let nodal = |values: &Vec<[f64; D]>| {
-            if values.is_empty() { 0 } else { Checksum::new().numbers(values.as_flattened()).stored() }
+        let nodal = |values: &Vec<f64>| {
+            if values.is_empty() { 0 } else { Checksum::new().numbers(values).stored() }
         };
         let mut all = [nodal(&self.displacement), nodal(&self.velocity), nodal(&self.acceleration), 0, 0];
         if has_contact {
-            all[3] = Checksum::new().numbers(self.reaction.as_flattened()).stored();
+            all[3] = Checksum::new().numbers(&self.reaction).stored();
             all[4] = Checksum::new().indices(self.touching.iter().map(|&touches| touches.into())).stored();
         }
         all

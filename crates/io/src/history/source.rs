@@ -7,7 +7,7 @@ use crate::mesh::vectors;
 use crate::read::{Opened, Part};
 use percute_core::contact::ContactNode;
 use percute_core::history::{SinkError, Step, StepSource};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use std::collections::{BTreeMap, VecDeque};
 use std::ops::Range;
@@ -17,8 +17,8 @@ const BLOCK: usize = 1 << 23;
 
 /// Reads the steps of a history file, with contact data on the contact surface of the problem.
 #[derive(Clone, Debug)]
-pub struct HistorySource<const D: usize, const N: usize> {
-    file: HistoryFile<D, N>,
+pub struct HistorySource {
+    file: HistoryFile,
     /// The row of each surface node in the file; a node that is not listed never touches.
     rows: Vec<Option<usize>>,
     /// Rows of nodes that cannot touch, with their nodes.
@@ -26,14 +26,14 @@ pub struct HistorySource<const D: usize, const N: usize> {
 }
 
 /// Some consecutive steps.
-struct StepBlock<const D: usize> {
-    displacement: Vec<[f64; D]>,
-    reaction: Vec<[f64; D]>,
+struct StepBlock {
+    displacement: Vec<f64>,
+    reaction: Vec<f64>,
     touching: Vec<bool>,
-    motion: [Option<Vec<[f64; D]>>; 2],
+    motion: [Option<Vec<f64>>; 2],
 }
 
-impl<const D: usize, const N: usize> HistoryFile<D, N> {
+impl HistoryFile {
     /// The first `count` steps in blocks that are read at once.
     pub(super) fn blocks(&self, count: usize) -> impl Iterator<Item = Range<usize>> {
         let step = 24 * self.mesh().node_count() + 16 * self.contact_nodes().len();
@@ -45,7 +45,7 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
     ///
     /// # Errors
     /// A problem on another mesh.
-    pub fn source(&self, problem: &Problem<D, N>) -> Result<HistorySource<D, N>, FileError> {
+    pub fn source(&self, problem: &AnyProblem) -> Result<HistorySource, FileError> {
         let (given, needed) = (problem.mesh().node_count(), self.mesh().node_count());
         if given != needed {
             return Err(FileCause::Problem { what: "nodes", given, needed }.at(self.path()));
@@ -54,8 +54,8 @@ impl<const D: usize, const N: usize> HistoryFile<D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> HistorySource<D, N> {
-    fn new(file: HistoryFile<D, N>, problem: &Problem<D, N>) -> Result<Self, FileError> {
+impl HistorySource {
+    fn new(file: HistoryFile, problem: &AnyProblem) -> Result<Self, FileError> {
         let mut rows_of: BTreeMap<usize, VecDeque<usize>> = BTreeMap::new();
         for (row, &node) in file.contact_nodes().iter().enumerate() {
             rows_of.entry(node).or_default().push_back(row);
@@ -63,10 +63,10 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
         // Rows of surface nodes are removed, those of a node at two planes in their order; the remaining nodes can
         // touch no obstacle.
         let take = |contact: &ContactNode| rows_of.get_mut(&contact.node.index())?.pop_front();
-        let rows = problem.surface().nodes().iter().map(take).collect();
+        let rows = problem.contact_nodes().iter().map(take).collect();
         let mut strange = Vec::new();
         for (node, left) in rows_of {
-            let touches_one = problem.surface().nodes().iter().any(|contact| contact.node.index() == node);
+            let touches_one = problem.contact_nodes().iter().any(|contact| contact.node.index() == node);
             if left.len() > usize::from(!touches_one) {
                 let (name, detail) = ("percute/contact/nodes".to_string(), format!("node {node} stands in it twice"));
                 return Err(FileCause::Value { name, detail }.at(file.path()));
@@ -76,7 +76,7 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
         Ok(Self { file, rows, strange })
     }
 
-    fn block(&self, steps: Range<usize>) -> Result<StepBlock<D>, FileError> {
+    fn block(&self, steps: Range<usize>) -> Result<StepBlock, FileError> {
         let nodes = self.file.mesh().node_count();
         let rows = steps.start * nodes..steps.end * nodes;
         self.file.again(|opened| {
@@ -85,7 +85,7 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
             let motion = [0, 1].map(|at| self.motion(&fields, at, rows.clone(), steps.start));
             let [velocity, acceleration] = motion;
             let displacement = fields.data("displacement")?;
-            let displacement = vectors(&displacement, displacement.float_rows(rows.clone())?)?;
+            let displacement = vectors(&displacement, &displacement.float_rows(rows.clone())?, self.file.dimension())?;
             self.finite("VTKHDF/PointData/displacement", &displacement, steps.start, |at| at)?;
             self.file.check(opened, "displacement", steps.clone(), &displacement, of_vectors)?;
             let (reaction, touching) = self.contact(opened, steps.clone())?;
@@ -115,59 +115,53 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
         which: usize,
         rows: Range<usize>,
         first: usize,
-    ) -> Result<Option<Vec<[f64; D]>>, FileCause> {
+    ) -> Result<Option<Vec<f64>>, FileCause> {
         // Motion by the scheme is made again from all steps; a thinned history has no other.
         let there = if self.file.kept().is_some() { self.file.stored() } else { self.file.given() };
         if !there[which] {
             return Ok(None);
         }
         let data = fields.data(["velocity", "acceleration"][which])?;
-        let values = vectors(&data, data.float_rows(rows)?)?;
+        let values = vectors(&data, &data.float_rows(rows)?, self.file.dimension())?;
         self.finite(&data.name, &values, first, |at| at)?;
         Ok(Some(values))
     }
 
     /// Reactions and touching status on the surface of the problem.
-    fn contact(&self, opened: &Opened, steps: Range<usize>) -> Result<(Vec<[f64; D]>, Vec<bool>), FileCause> {
-        let listed = self.file.contact_nodes();
+    fn contact(&self, opened: &Opened, steps: Range<usize>) -> Result<(Vec<f64>, Vec<bool>), FileCause> {
+        let (listed, d) = (self.file.contact_nodes(), self.file.dimension());
         let count = self.rows.len() * steps.len();
         if listed.is_empty() {
-            return Ok((vec![[0.0; D]; count], vec![false; count]));
+            return Ok((vec![0.0; d * count], vec![false; count]));
         }
         let contact = opened.root().group("percute")?.group("contact")?;
         let data = contact.data("reaction")?;
-        let values = data.float_rows(steps.clone())?;
-        let reaction = values.as_chunks::<D>().0;
+        let reaction = data.float_rows(steps.clone())?;
         let touching = match self.file.given_contact()[1] {
             true => contact.data("touching")?.flag_rows(steps.clone())?,
-            false => vec![false; reaction.len()],
+            false => vec![false; reaction.len() / d],
         };
-        self.finite(&data.name, reaction, steps.start, |row| listed[row])?;
-        self.file.check(opened, "reaction", steps.clone(), reaction, of_vectors)?;
+        self.finite(&data.name, &reaction, steps.start, |row| listed[row])?;
+        self.file.check(opened, "reaction", steps.clone(), &reaction, of_vectors)?;
         self.file.check(opened, "touching", steps.clone(), &touching, of_flags)?;
+        let force = |place: usize| &reaction[d * place..d * (place + 1)];
         for (k, step) in steps.clone().enumerate() {
             let here = |row: usize| k * listed.len() + row;
-            let touches = |row: usize| touching[here(row)] || reaction[here(row)] != [0.0; D];
+            let touches = |row: usize| touching[here(row)] || force(here(row)).iter().any(|x| *x != 0.0);
             if let Some(&(_, node)) = self.strange.iter().find(|(row, _)| touches(*row)) {
                 return Err(FileCause::Contact { step, node });
             }
         }
         let at = |k: usize| self.rows.iter().map(move |row| row.map(|row| k * listed.len() + row));
         let places = || (0..steps.len()).flat_map(at);
-        let on_surface = places().map(|place| place.map_or([0.0; D], |p| reaction[p])).collect();
+        let on_surface = places().flat_map(|place| place.map_or(&[0.0; 3][..d], force)).copied().collect();
         Ok((on_surface, places().map(|place| place.is_some_and(|p| touching[p])).collect()))
     }
 
     /// Refuses NaN and infinity; `node` gives the node of a row within a step.
-    fn finite(
-        &self,
-        name: &str,
-        values: &[[f64; D]],
-        first: usize,
-        node: impl Fn(usize) -> usize,
-    ) -> Result<(), FileCause> {
-        let wrong = values.iter().enumerate().find_map(|(at, v)| Some((at, *v.iter().find(|x| !x.is_finite())?)));
-        let Some((at, value)) = wrong else { return Ok(()) };
+    fn finite(&self, name: &str, values: &[f64], first: usize, node: impl Fn(usize) -> usize) -> Result<(), FileCause> {
+        let Some(at) = values.iter().position(|x| !x.is_finite()) else { return Ok(()) };
+        let (value, at) = (values[at], at / self.file.dimension());
         let rows =
             if name.starts_with("percute") { self.file.contact_nodes().len() } else { self.file.mesh().node_count() };
         Err(FileCause::NotFinite { name: name.to_string(), step: first + at / rows, node: node(at % rows), value })
@@ -175,20 +169,21 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
 
     fn hand_on(
         &self,
-        block: &StepBlock<D>,
+        block: &StepBlock,
         steps: Range<usize>,
-        take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>,
+        take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>,
     ) -> Result<(), SinkError> {
-        let (nodes, surface) = (self.file.mesh().node_count(), self.rows.len());
+        let (surface, d) = (self.rows.len(), self.file.dimension());
+        let nodal = d * self.file.mesh().node_count();
         for (k, index) in steps.enumerate() {
-            let (nodal, contact) = (k * nodes..(k + 1) * nodes, k * surface..(k + 1) * surface);
-            let [velocity, acceleration] = [0, 1].map(|m| block.motion[m].as_ref().map(|v| &v[nodal.clone()]));
+            let rows = |row: usize| k * row..(k + 1) * row;
+            let [velocity, acceleration] = [0, 1].map(|m| block.motion[m].as_ref().map(|v| &v[rows(nodal)]));
             take(&Step {
                 index,
                 time: self.file.times().instants()[index],
-                displacement: &block.displacement[nodal],
-                reaction: &block.reaction[contact.clone()],
-                touching: &block.touching[contact],
+                displacement: &block.displacement[rows(nodal)],
+                reaction: &block.reaction[rows(d * surface)],
+                touching: &block.touching[rows(surface)],
                 velocity,
                 acceleration,
             })?;
@@ -197,7 +192,7 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> StepSource<D> for HistorySource<D, N> {
+impl StepSource for HistorySource {
     fn times(&self) -> &TimeGrid {
         self.file.times()
     }
@@ -206,21 +201,21 @@ impl<const D: usize, const N: usize> StepSource<D> for HistorySource<D, N> {
         self.file.count()
     }
 
-    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError> {
         self.file.expect_all()?;
         self.replay_stored(take)
     }
 }
 
-impl<const D: usize, const N: usize> HistorySource<D, N> {
+impl HistorySource {
     /// The stored steps, also of a thinned history: numbered by their place in the file, and with the motion that it
     /// has.
     #[must_use]
-    pub fn stored(&self) -> StoredSteps<'_, D, N> {
+    pub fn stored(&self) -> StoredSteps<'_> {
         StoredSteps(self)
     }
 
-    fn replay_stored(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+    fn replay_stored(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError> {
         for steps in self.file.blocks(self.count()) {
             let block = self.block(steps.clone())?;
             self.hand_on(&block, steps, take)?;
@@ -231,9 +226,9 @@ impl<const D: usize, const N: usize> HistorySource<D, N> {
 
 /// The stored steps of a history, which may be thinned.
 #[derive(Clone, Copy, Debug)]
-pub struct StoredSteps<'s, const D: usize, const N: usize>(&'s HistorySource<D, N>);
+pub struct StoredSteps<'s>(&'s HistorySource);
 
-impl<const D: usize, const N: usize> StepSource<D> for StoredSteps<'_, D, N> {
+impl StepSource for StoredSteps<'_> {
     fn times(&self) -> &TimeGrid {
         self.0.times()
     }
@@ -242,7 +237,7 @@ impl<const D: usize, const N: usize> StepSource<D> for StoredSteps<'_, D, N> {
         self.0.count()
     }
 
-    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError> {
         self.0.replay_stored(take)
     }
 }

@@ -6,23 +6,22 @@ use crate::checksum::Checksum;
 use crate::error::FileCause;
 use crate::read::{Opened, Part};
 use crate::write::Case;
-use percute_core::mesh::Mesh;
+use percute_core::mesh::AnyMesh;
 use std::ops::Range;
 
 /// The checksum of all that does not change in time: mesh, initial velocity, texts (statement, case and origin),
 /// instants and contact nodes. `run` has all instants of the run of a thinned history, and is empty for others.
-pub(super) fn fixed_part<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
-    initial_velocity: &[[f64; D]],
-    (statement, case, elsewhere): (&str, Option<&Case>, Option<&Elsewhere<D>>),
+pub(super) fn fixed_part(
+    mesh: &AnyMesh,
+    initial_velocity: &[f64],
+    (statement, case, elsewhere): (&str, Option<&Case>, Option<&Elsewhere>),
     [times, run]: [&[f64]; 2],
     contact_nodes: impl IntoIterator<Item = usize>,
 ) -> i64 {
-    let all = Checksum::new().mesh(mesh).numbers(initial_velocity.as_flattened()).text(statement);
+    let all = Checksum::new().mesh(mesh).numbers(initial_velocity).text(statement);
     let all = case.map_or(all, |case| all.text(&case.name).text(&case.text));
-    let all = elsewhere.map_or(all, |origin| {
-        all.text(&origin.program).text(&origin.derived()).numbers(origin.initial_displacement.as_flattened())
-    });
+    let all = elsewhere
+        .map_or(all, |origin| all.text(&origin.program).text(&origin.derived()).numbers(&origin.initial_displacement));
     let all = all.numbers(times).indices(contact_nodes);
     if run.is_empty() { all.stored() } else { all.numbers(run).stored() }
 }
@@ -72,8 +71,8 @@ pub(super) fn compare(
 }
 
 /// The checksum of nodal vectors.
-pub(super) fn of_vectors<const D: usize>(values: &[[f64; D]]) -> Checksum {
-    Checksum::new().numbers(values.as_flattened())
+pub(super) fn of_vectors(values: &[f64]) -> Checksum {
+    Checksum::new().numbers(values)
 }
 
 /// The checksum of touching status.

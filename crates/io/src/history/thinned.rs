@@ -4,7 +4,7 @@ use super::file::HistoryFile;
 use super::kept::KeptSteps;
 use crate::error::{FileCause, FileError};
 
-impl<const D: usize, const N: usize> HistoryFile<D, N> {
+impl HistoryFile {
     /// Whether the file has velocities and accelerations, its own or those of the scheme.
     #[must_use]
     pub fn stored(&self) -> [bool; 2] {

@@ -18,9 +18,9 @@ use std::path::{Path, PathBuf};
 /// Writes steps into a history file in a separate thread. Written steps survive if the process is killed
 /// later, unless the file is given its name at the end. Such a file has all complete steps and is not marked complete.
 #[derive(Debug)]
-pub struct Writer<const D: usize> {
+pub struct Writer {
     // Dropped first: the file is written until then.
-    queue: Queue<D>,
+    queue: Queue,
     target: Target,
     places: Places,
     last: usize,
@@ -99,7 +99,7 @@ pub(super) struct Begun {
     pub(super) kept: Option<Kept>,
 }
 
-impl<const D: usize> Writer<D> {
+impl Writer {
     pub(super) fn new(target: Target, places: Places, begun: Begun) -> io::Result<Self> {
         let Begun { last, next, stored, given, kept } = begun;
         let queue = Queue::new(target.file().try_clone()?, places)?;
@@ -147,7 +147,7 @@ impl<const D: usize> Writer<D> {
         let Some(place) = self.target.place() else { return Err(FileCause::Lost { now: None }) };
         set_steps(file, stored).map_err(failed)?;
         let planned = self.kept.as_ref().map_or(self.last + 1, |kept| kept.steps.len());
-        give_back_room(file, self.places.rooms(D as u64), planned, stored);
+        give_back_room(file, self.places.rooms(), planned, stored);
         if let Some(checkpoints) = self.places.checkpoints.filter(|_| self.next > self.last) {
             checkpoints.give_back(file);
         }
@@ -157,12 +157,12 @@ impl<const D: usize> Writer<D> {
         Ok(place)
     }
 
-    fn check_order(&self, step: &Step<'_, D>) -> Result<(), StepError> {
+    fn check_order(&self, step: &Step<'_>) -> Result<(), StepError> {
         let (given, expected, last) = (step.index, self.next, self.last);
         if given != expected || given > last { Err(StepError::Order { given, expected, last }) } else { Ok(()) }
     }
 
-    fn check(&self, step: &Step<'_, D>) -> Result<(), StepError> {
+    fn check(&self, step: &Step<'_>) -> Result<(), StepError> {
         let n = step.index;
         for (had, (field, there)) in self
             .given
@@ -173,13 +173,14 @@ impl<const D: usize> Writer<D> {
                 return Err(StepError::Partly { step: n, field, there });
             }
         }
-        let Places { nodes, contact_nodes, .. } = self.places;
+        let Places { dimension, contact_nodes, .. } = self.places;
+        let [nodal, reaction] = [self.places.nodes, contact_nodes].map(|nodes| dimension * nodes);
         let lengths = [
-            ("displacement", step.displacement.len(), nodes),
-            ("reaction", step.reaction.len(), contact_nodes),
+            ("displacement", step.displacement.len(), nodal),
+            ("reaction", step.reaction.len(), reaction),
             ("touching", step.touching.len(), contact_nodes),
-            ("velocity", step.velocity.map_or(nodes, <[_]>::len), nodes),
-            ("acceleration", step.acceleration.map_or(nodes, <[_]>::len), nodes),
+            ("velocity", step.velocity.map_or(nodal, <[_]>::len), nodal),
+            ("acceleration", step.acceleration.map_or(nodal, <[_]>::len), nodal),
         ];
         match lengths.into_iter().find(|(_, given, needed)| given != needed) {
             Some((field, given, needed)) => Err(StepError::Length { step: n, field, given, needed }),
@@ -187,7 +188,7 @@ impl<const D: usize> Writer<D> {
         }
     }
 
-    fn send(&mut self, step: &Step<'_, D>) -> Result<(), FileCause> {
+    fn send(&mut self, step: &Step<'_>) -> Result<(), FileCause> {
         self.queue.check()?;
         self.check_order(step)?;
         let Some(place) = self.kept.as_ref().map_or(Some(step.index), |kept| kept.row_of(step.index)) else {
@@ -208,8 +209,8 @@ impl<const D: usize> Writer<D> {
     /// A file that cannot be written.
     pub fn keep(
         &mut self,
-        state: &State<'_, D>,
-        restated: impl FnOnce(Checkpoint<D>) -> Checkpoint<D>,
+        state: &State<'_>,
+        restated: impl FnOnce(Checkpoint) -> Checkpoint,
     ) -> Result<(), SinkError> {
         if self.places.checkpoints.is_none() || !is_due(state.step().index) {
             return Ok(());
@@ -223,13 +224,13 @@ impl<const D: usize> Writer<D> {
     ///
     /// # Errors
     /// A step that does not fit, or a file that cannot be written.
-    pub fn push(&mut self, step: &Step<'_, D>) -> Result<(), SinkError> {
+    pub fn push(&mut self, step: &Step<'_>) -> Result<(), SinkError> {
         Ok(self.send(step).map_err(|cause| cause.at(self.path()))?)
     }
 }
 
-impl<const D: usize> StateSink<D> for Writer<D> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl StateSink for Writer {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         self.push(state.step())?;
         self.keep(state, |checkpoint| checkpoint)
     }

@@ -1,6 +1,7 @@
 //! Contact results in estimate files.
 
 use crate::estimate::{block, estimated, stored, with_contact, written};
+use percute_core::border::vectors;
 use percute_core::contact::Obstacle;
 use percute_core::contact::{ContactRecorder, ContactResults, Status};
 use percute_core::dynamics::{critical_time_step, simulate};
@@ -8,33 +9,34 @@ use percute_core::history::{History, StepSource};
 use percute_core::material::Elastic;
 use percute_core::mesh::BarMesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{BarProblem, Initial, Problem};
+use percute_core::problem::{AnyProblem, BarProblem, Initial};
 use percute_core::time::TimeGrid;
-use percute_io::estimate_file::{AnyContact, contact, open};
+use percute_io::estimate_file::{contact, open};
 use percute_io::{FileCause, Overwrite, history};
 
-fn times<const D: usize, const N: usize>(problem: &Problem<D, N>) -> TimeGrid {
+fn times(problem: &AnyProblem) -> TimeGrid {
     TimeGrid::uniform(0.9 * critical_time_step(problem) * 20.0, 20).unwrap()
 }
 
-fn steps<const D: usize, const N: usize>(problem: &Problem<D, N>) -> History<D> {
+fn steps(problem: &AnyProblem) -> History {
     let times = times(problem);
     let mut history = History::new(&times);
     simulate(problem, &times, &mut history, &mut Unobserved).unwrap();
     history
 }
 
-fn replayed<const D: usize, const N: usize>(problem: &Problem<D, N>, source: &dyn StepSource<D>) -> ContactResults<D> {
+fn replayed(problem: &AnyProblem, source: &dyn StepSource) -> ContactResults {
     ContactRecorder::new(problem, source.times()).keeping_steps().unwrap().replay(source).unwrap()
 }
 
-fn bar() -> BarProblem {
-    Problem::builder(BarMesh::uniform_bar(0.1, 20).unwrap())
+fn bar() -> AnyProblem {
+    BarProblem::builder(BarMesh::uniform_bar(0.1, 20).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-20.0]))
         .obstacle(Obstacle::plane([-1e-5], [1.0], 0.0, None).unwrap())
         .build()
         .unwrap()
+        .into()
 }
 
 /// Beside the run, from memory and from a history file the same, and back from an estimate file, bit by bit.
@@ -52,13 +54,13 @@ fn contact_results_are_the_same_wherever_they_come_from() {
     let beside = beside.finish();
     assert!(beside.total.iter().any(|r| r.in_contact == 6) && beside.total[20].friction_energy > 0.0);
     assert_eq!(replayed(&problem, &memory), beside);
-    let history::AnyHistoryFile::Plane(file) = history::open(&path).unwrap() else { panic!("a bar") };
+    let file = history::open(&path).unwrap();
     assert_eq!(replayed(&problem, &file.source(&problem).unwrap()), beside);
 
     let error = folder.path().join("error.vtkhdf");
     let found = with_contact(&error, &problem, &estimated(&problem, 4, false), Some(&beside)).unwrap();
     assert!(!found.fields, "contact results are no admissible fields");
-    let Some(AnyContact::Plane(back)) = contact(&error).unwrap() else { panic!("no contact") };
+    let Some(back) = contact(&error).unwrap() else { panic!("no contact") };
     assert_eq!(back, beside);
     without_steps(&problem, &times, &memory, &beside);
     // Nodes of surfaces that slide may face nothing, and have figures that one body does not have.
@@ -66,24 +68,19 @@ fn contact_results_are_the_same_wherever_they_come_from() {
     apart.steps.as_mut().unwrap().gap[3] = f64::INFINITY;
     let apart_file = folder.path().join("apart.vtkhdf");
     with_contact(&apart_file, &problem, &estimated(&problem, 4, false), Some(&apart)).unwrap();
-    let Some(AnyContact::Plane(back)) = contact(&apart_file).unwrap() else { panic!("no contact") };
+    let Some(back) = contact(&apart_file).unwrap() else { panic!("no contact") };
     assert_eq!(back, apart);
 
     let bar_file = folder.path().join("bar.vtkhdf");
     let results = replayed(&bar(), &steps(&bar()));
     with_contact(&bar_file, &bar(), &estimated(&bar(), 2, true), Some(&results)).unwrap();
     assert!(open(&bar_file).unwrap().fields);
-    let Some(AnyContact::Bar(back)) = contact(&bar_file).unwrap() else { panic!("no contact") };
+    let Some(back) = contact(&bar_file).unwrap() else { panic!("no contact") };
     assert_eq!(back, results);
 }
 
 /// Resultants and summaries do not depend on whether all nodes at all steps are kept.
-fn without_steps<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    times: &TimeGrid,
-    memory: &History<D>,
-    all: &ContactResults<D>,
-) {
+fn without_steps(problem: &AnyProblem, times: &TimeGrid, memory: &History, all: &ContactResults) {
     let results = ContactRecorder::new(problem, times).replay(memory).unwrap();
     assert_eq!(results, ContactResults { steps: None, ..all.clone() });
 }
@@ -110,7 +107,7 @@ fn the_body_shows_contact_at_the_instants() {
         for node in 0..nodes {
             let at = results.nodes.iter().position(|place| place.node.index() == node);
             let row = at.map(|at| map.step * c + at);
-            let vector = |field: &[[f64; 2]], by: f64| row.map_or([0.0; 2], |row| field[row].map(|x| x / by));
+            let vector = |field: &[f64], by: f64| row.map_or([0.0; 2], |row| vectors::<2>(field)[row].map(|x| x / by));
             let area = at.map_or(1.0, |at| results.nodes[at].area);
             let place = k * nodes + node;
             let here = |values: &[u64], axis: usize| f64::from_bits(values[3 * place + axis]);

@@ -6,7 +6,7 @@ use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
 use percute_core::mesh::{BarMesh, TriangleMesh};
 use percute_core::observer::Unobserved;
-use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::problem::{AnyProblem, BarProblem, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Estimator, Options, Request};
 use percute_io::estimate_file::{EstimateContents, EstimateFile, open, write};
@@ -18,16 +18,17 @@ mod contact;
 const STATEMENT: &str = "[material]\nyoung = 7e10\n";
 const REPORT: &str = "{\"sup\": 195.1, \"unit\": \"J^½\"}";
 
-fn block() -> TriangleProblem {
-    Problem::builder(TriangleMesh::rectangle(0.05, 0.04, 5, 4).unwrap())
+fn block() -> AnyProblem {
+    TriangleProblem::builder(TriangleMesh::rectangle(0.05, 0.04, 5, 4).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([400.0, -400.0]))
         .obstacle(Obstacle::plane([0.0, -2e-4], [0.0, 1.0], 0.2, None).unwrap())
         .build()
         .unwrap()
+        .into()
 }
 
-fn estimated<const D: usize, const N: usize>(problem: &Problem<D, N>, count: usize, fields: bool) -> Estimate<D> {
+fn estimated(problem: &AnyProblem, count: usize, fields: bool) -> Estimate {
     let times = TimeGrid::uniform(0.9 * critical_time_step(problem) * 20.0, 20).unwrap();
     let request = Request { fields, ..Request::evenly(&times, count, 1) };
     let mut estimator = Estimator::new(problem, &times, Options::default()).unwrap().keeping(&request).unwrap();
@@ -35,19 +36,15 @@ fn estimated<const D: usize, const N: usize>(problem: &Problem<D, N>, count: usi
     estimator.finish().unwrap()
 }
 
-fn written<const D: usize, const N: usize>(
-    path: &Path,
-    problem: &Problem<D, N>,
-    estimate: &Estimate<D>,
-) -> Result<EstimateFile, FileError> {
+fn written(path: &Path, problem: &AnyProblem, estimate: &Estimate) -> Result<EstimateFile, FileError> {
     with_contact(path, problem, estimate, None)
 }
 
-fn with_contact<const D: usize, const N: usize>(
+fn with_contact(
     path: &Path,
-    problem: &Problem<D, N>,
-    estimate: &Estimate<D>,
-    contact: Option<&ContactResults<D>>,
+    problem: &AnyProblem,
+    estimate: &Estimate,
+    contact: Option<&ContactResults>,
 ) -> Result<EstimateFile, FileError> {
     let case = Some(&Case { name: "block.toml".to_string(), text: "# a case".to_string() });
     let contents = EstimateContents { problem, estimate, contact, statement: STATEMENT, case, report: REPORT };
@@ -95,11 +92,11 @@ fn what_was_estimated_comes_back() {
     assert_eq!((shape, &values[120..]), (vec![160], &bits(estimate.by_element.clone())[..]));
 
     let of = |k: usize| maps[k].fields.as_ref().unwrap();
-    let stress = bits((0..4).flat_map(|k| of(k).stress.as_flattened().as_flattened().to_vec()));
+    let stress = bits((0..4).flat_map(|k| of(k).stress.clone()));
     assert_eq!(stored(&path, "VTKHDF/CellData/admissible_stress"), (vec![160, 4], stress));
-    let stress = bits((0..4).flat_map(|k| of(k).compatible_stress.as_flattened().as_flattened().to_vec()));
+    let stress = bits((0..4).flat_map(|k| of(k).compatible_stress.clone()));
     assert_eq!(stored(&path, "VTKHDF/CellData/compatible_stress"), (vec![160, 4], stress));
-    let space = |v: &[[f64; 2]]| v.iter().flat_map(|v| [v[0], v[1], 0.0]).collect::<Vec<_>>();
+    let space = |v: &[f64]| v.as_chunks::<2>().0.iter().flat_map(|v| [v[0], v[1], 0.0]).collect::<Vec<_>>();
     let velocity = bits((0..4).flat_map(|k| space(&of(k).velocity)));
     assert_eq!(stored(&path, "VTKHDF/PointData/admissible_velocity"), (vec![120, 3], velocity));
     let displacement = bits((0..4).flat_map(|k| space(&of(k).displacement)));
@@ -119,12 +116,13 @@ fn what_was_estimated_comes_back() {
 #[test]
 fn without_maps_and_fields() {
     let folder = tempfile::tempdir().unwrap();
-    let bar = Problem::builder(BarMesh::uniform_bar(0.1, 20).unwrap())
+    let bar = BarProblem::builder(BarMesh::uniform_bar(0.1, 20).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-20.0]))
         .obstacle(Obstacle::plane([-1e-5], [1.0], 0.0, None).unwrap())
         .build()
-        .unwrap();
+        .unwrap()
+        .into();
     for count in [0, 3] {
         let path = folder.path().join(format!("{count}.vtkhdf"));
         let file = written(&path, &bar, &estimated(&bar, count, false)).unwrap();

@@ -1,9 +1,10 @@
 //! Files to read, and meshes to compare.
 
-use percute_core::mesh::{Mesh, TriangleMesh};
-use percute_io::gmsh::{GmshError, MeshFile, MeshOf, parse};
+use percute_core::mesh::{AnyMesh, BarMesh, Mesh, TriangleMesh};
+use percute_io::gmsh::{GmshError, MeshFile, parse};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 pub(crate) const FORMATS: [&str; 4] = ["4.1", "4.1-binary", "2.2", "2.2-binary"];
 
@@ -58,18 +59,23 @@ pub(crate) fn of_bytes(bytes: &[u8]) -> Result<MeshFile, GmshError> {
     parse("a.msh".as_ref(), bytes, 1.0)
 }
 
-pub(crate) fn plane(file: MeshFile) -> MeshOf<2, 3> {
-    match file {
-        MeshFile::Plane(read) => read,
-        MeshFile::Bar(_) => panic!("triangles were to be read"),
-    }
+/// A mesh of one dimension that was read, with the tags of the file.
+pub(crate) struct Read<M> {
+    pub(crate) mesh: Arc<M>,
+    pub(crate) node_tags: Vec<u64>,
+    pub(crate) element_tags: Vec<u64>,
 }
 
-pub(crate) fn bar(file: MeshFile) -> MeshOf<1, 2> {
-    match file {
-        MeshFile::Bar(read) => read,
-        MeshFile::Plane(_) => panic!("bars were to be read"),
-    }
+pub(crate) fn plane(file: MeshFile) -> Read<TriangleMesh> {
+    let MeshFile { mesh, node_tags, element_tags } = file;
+    let AnyMesh::D2(mesh) = mesh else { panic!("triangles were to be read") };
+    Read { mesh, node_tags, element_tags }
+}
+
+pub(crate) fn bar(file: MeshFile) -> Read<BarMesh> {
+    let MeshFile { mesh, node_tags, element_tags } = file;
+    let AnyMesh::D1(mesh) = mesh else { panic!("bars were to be read") };
+    Read { mesh, node_tags, element_tags }
 }
 
 /// Everything of a mesh but its numbers: elements and facets by the bits of their corners, in an order of their own.

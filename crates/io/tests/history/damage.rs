@@ -25,7 +25,7 @@ fn samples(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// Everything that can be asked of a file; whatever is said must be said in words.
-fn ask(path: &Path) -> Option<History<2>> {
+fn ask(path: &Path) -> Option<History> {
     let problem = block(4, 3);
     let told = replayed(path, &problem).and_then(|history| plane_file(path).arrays().map(|_| history));
     if let Err(error) = &told {

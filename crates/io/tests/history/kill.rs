@@ -4,7 +4,7 @@ use crate::history::common::*;
 use percute_core::dynamics::simulate;
 use percute_core::history::Discard;
 use percute_core::observer::Unobserved;
-use percute_core::problem::TriangleProblem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{Options, Request, Sampling, estimate};
 use percute_io::history::{Plan, recover};
@@ -21,7 +21,7 @@ const FILE: &str = "PERCUTE_TEST_FILE";
 const STEPS: &str = "PERCUTE_TEST_STEPS";
 
 /// Larger meshes with every run; about as many numbers in each, 24 MB of displacements.
-fn problem(run: usize, when: When) -> (TriangleProblem, TimeGrid) {
+fn problem(run: usize, when: When) -> (AnyProblem, TimeGrid) {
     let nx = 5 + run % 100;
     let problem = block(nx, 4 + run % 100 * 4 / 5);
     let most = if when == When::Ending { 20 } else { 1_000_000 / problem.mesh().node_count() };

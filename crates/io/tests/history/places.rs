@@ -8,7 +8,7 @@ use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::process::Command;
 
-fn create(path: &Path, overwrite: Overwrite) -> Result<Writer<2>, FileError> {
+fn create(path: &Path, overwrite: Overwrite) -> Result<Writer, FileError> {
     let problem = block(4, 3);
     Plan::new(&problem, &steps(&problem, 12), STATEMENT, None).create(path, overwrite)
 }
@@ -273,7 +273,7 @@ fn steps_that_do_not_fit() {
     let history = run(&problem, &steps(&problem, 12));
     let mut writer = write_some(&path, &problem, &history, 3);
     let step = history.step(3).unwrap();
-    let mut refuse = |step: &percute_core::history::Step<'_, 2>, words: &str| {
+    let mut refuse = |step: &percute_core::history::Step<'_>, words: &str| {
         let error = writer.push(step).unwrap_err();
         assert!(error.to_string().contains(words) && error.is::<FileError>(), "{error}");
     };

@@ -3,8 +3,7 @@
 use crate::history::common::*;
 use percute_core::dynamics::{resume, simulate};
 use percute_core::observer::Unobserved;
-use percute_core::problem::{Problem, TriangleProblem};
-use percute_core::simplex::{Element, Simplex};
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_io::history::{HistoryFile, Kept, Plan, Unended, recover};
 use percute_io::{FileCause, Overwrite};
@@ -25,13 +24,13 @@ fn kept(run: usize, times: &TimeGrid) -> Option<Kept> {
 }
 
 /// Larger meshes with every run.
-fn problem(run: usize) -> (TriangleProblem, TimeGrid) {
+fn problem(run: usize) -> (AnyProblem, TimeGrid) {
     let problem = block(5 + run % 60, 4 + run % 60);
     let times = steps(&problem, 600_000 / problem.mesh().node_count());
     (problem, times)
 }
 
-fn begin<const D: usize, const N: usize>(path: &Path, problem: &Problem<D, N>, times: &TimeGrid, kept: Option<Kept>) {
+fn begin(path: &Path, problem: &AnyProblem, times: &TimeGrid, kept: Option<Kept>) {
     let plan = Plan::new(problem, times, STATEMENT, Some(&case())).keeping(kept);
     let mut writer = plan.create(path, Overwrite::Refuse).unwrap();
     simulate(problem, times, &mut writer, &mut Unobserved).unwrap();
@@ -39,10 +38,7 @@ fn begin<const D: usize, const N: usize>(path: &Path, problem: &Problem<D, N>, t
 }
 
 /// Goes on with a run; returns the step of its checkpoint.
-fn go_on<const D: usize, const N: usize>(file: &HistoryFile<D, N>, problem: &Problem<D, N>) -> Option<usize>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+fn go_on(file: &HistoryFile, problem: &AnyProblem) -> Option<usize> {
     let (Unended { checkpoint, mut writer }, times) = (file.resume(problem).unwrap(), file.run_times());
     match &checkpoint {
         Some(from) => resume(problem, times, None, from, &mut writer, &mut Unobserved).unwrap(),
@@ -52,12 +48,7 @@ where
     checkpoint.map(|checkpoint| checkpoint.step)
 }
 
-fn undisturbed<const D: usize, const N: usize>(
-    folder: &Path,
-    problem: &Problem<D, N>,
-    times: &TimeGrid,
-    kept: Option<Kept>,
-) -> Vec<u8> {
+fn undisturbed(folder: &Path, problem: &AnyProblem, times: &TimeGrid, kept: Option<Kept>) -> Vec<u8> {
     let path = folder.join("undisturbed.vtkhdf");
     begin(&path, problem, times, kept);
     let bytes = std::fs::read(&path).unwrap();
@@ -129,7 +120,7 @@ fn two_hundred_kills_and_ends() {
 }
 
 /// Writes the first steps of a run of 200, and leaves the file as a killed process does, or as a stopped one.
-fn leave(path: &Path, problem: &TriangleProblem, times: &TimeGrid, count: usize, stopped: bool) {
+fn leave(path: &Path, problem: &AnyProblem, times: &TimeGrid, count: usize, stopped: bool) {
     let plan = Plan::new(problem, times, STATEMENT, Some(&case()));
     let mut writer = plan.create(path, Overwrite::Refuse).unwrap();
     let mut seen = 0;
@@ -192,7 +183,7 @@ fn a_torn_checkpoint_is_not_used() {
     let mut bytes = std::fs::read(&path).unwrap();
     // u_128 stands in its step and in its checkpoint, which has no third component.
     let file = plane_file(&path);
-    let field: Vec<u8> = file.displacement(128..129).unwrap().iter().flatten().flat_map(|x| x.to_ne_bytes()).collect();
+    let field: Vec<u8> = file.displacement(128..129).unwrap().iter().flat_map(|x| x.to_ne_bytes()).collect();
     let places: Vec<usize> = (0..bytes.len() - field.len()).filter(|&at| bytes[at..].starts_with(&field)).collect();
     let [place] = places[..] else { panic!("{places:?}") };
     bytes[place + 17] ^= 4;

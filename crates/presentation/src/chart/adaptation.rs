@@ -20,9 +20,7 @@ const AROUND: f64 = 1.15;
 /// # Errors
 /// None that is known; whatever the serialiser reports.
 #[must_use = "it is the picture"]
-pub fn adaptation<const D: usize, const N: usize>(
-    adaptation: &Adaptation<D, N>,
-) -> Result<Option<String>, std::io::Error> {
+pub fn adaptation(adaptation: &Adaptation) -> Result<Option<String>, std::io::Error> {
     let Some(best) = &adaptation.best else { return Ok(None) };
     let Ok(document) = Document::parse(&best.report.to_stored_json()?) else { return Ok(None) };
     let map = picture::whole(&Body::new(best.problem.mesh()), &document);
@@ -30,7 +28,7 @@ pub fn adaptation<const D: usize, const N: usize>(
 }
 
 /// The errors of the runs.
-fn errors<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>) -> Svg {
+fn errors(adaptation: &Adaptation) -> Svg {
     let costs = adaptation.iterations.iter().scan(0.0, |cost, run| {
         *cost += run.element_steps;
         Some(*cost)

@@ -1,6 +1,7 @@
 //! The contact surface over time, ready to draw.
 
 use crate::document::Document;
+use percute_core::border::{Vector, row};
 use percute_core::contact::{ContactPoint, ContactResults};
 
 /// Most instants of a picture; of more, each piece gives its largest pressure.
@@ -26,25 +27,27 @@ impl Surface {
     /// nodes at all instants; of two bodies, the surface of the first one. None without these, without contact, and
     /// where a single node may touch.
     #[must_use]
-    pub fn all<const D: usize>(results: &ContactResults<D>, document: &Document) -> Vec<Self> {
+    pub fn all(results: &ContactResults, document: &Document) -> Vec<Self> {
         let names = document.names_of_obstacles();
         names.into_iter().filter_map(|(obstacle, name)| Self::new(results, obstacle, name)).collect()
     }
 
-    fn new<const D: usize>(results: &ContactResults<D>, obstacle: usize, name: String) -> Option<Self> {
+    fn new(results: &ContactResults, obstacle: usize, name: String) -> Option<Self> {
         let (steps, count) = (results.steps.as_ref()?, results.nodes.len());
         let time = [*results.instants.first()?, *results.instants.last()?];
         let nodes: Vec<usize> = (0..count).filter(|&node| results.nodes[node].obstacle == obstacle).collect();
         if nodes.len() < 2 || time[0] >= time[1] {
             return None;
         }
-        let force = |node: usize, row: &[[f64; D]]| -> f64 {
+        let force = |node: usize, forces: &[f64]| -> f64 {
             let point = &results.nodes[node];
-            (0..D).map(|c| row[node][c] * point.normal[c]).sum::<f64>() / point.area
+            let force = row(forces, node, results.dimension);
+            (0..3).map(|c| force[c] * point.normal[c]).sum::<f64>() / point.area
         };
-        let rows: Vec<&[[f64; D]]> = steps.force.chunks_exact(count).collect();
+        let rows: Vec<&[f64]> = steps.force.chunks_exact(results.dimension * count).collect();
         let pieces = rows.chunks(rows.len().div_ceil(INSTANTS).max(1));
-        let largest = |node: usize, piece: &[&[[f64; D]]]| piece.iter().map(|row| force(node, row)).fold(0.0, f64::max);
+        let largest =
+            |node: usize, piece: &[&[f64]]| piece.iter().map(|forces| force(node, forces)).fold(0.0, f64::max);
         let history = |node: usize| pieces.clone().map(|piece| largest(node, piece)).collect();
         let points: Vec<_> = nodes.iter().map(|&node| results.nodes[node]).collect();
         let pressed = |k: usize| results.summary.get(nodes[k]).is_some_and(|s| s.peak_pressure > 0.0);
@@ -54,19 +57,21 @@ impl Surface {
             let [a, b] = [pair[0], pair[1]].map(|node| results.nodes[node].point);
             places.push(places[places.len() - 1] + distance(&a, &b));
         }
-        let end = |node: Option<&usize>| node.map(|&node| results.nodes[node].point.to_vec()).unwrap_or_default();
+        let end = |node: Option<&usize>| {
+            node.map(|&node| results.nodes[node].point[..results.dimension].to_vec()).unwrap_or_default()
+        };
         let ends = [end(order.first()), end(order.last())];
         Some(Self { name, time, places, pressure: order.iter().map(|&node| history(node)).collect(), ends })
     }
 }
 
-fn distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
-    (0..D).map(|c| (a[c] - b[c]).powi(2)).sum::<f64>().sqrt()
+fn distance(a: &Vector, b: &Vector) -> f64 {
+    (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f64>().sqrt()
 }
 
 /// The nodes to show, in their order along the surface: those that are pressed, and some on both sides. A closed
 /// outline is opened in its longest part without contact.
-fn order<const D: usize>(nodes: &[ContactPoint<D>], pressed: impl Fn(usize) -> bool) -> Option<Vec<usize>> {
+fn order(nodes: &[ContactPoint], pressed: impl Fn(usize) -> bool) -> Option<Vec<usize>> {
     let count = nodes.len();
     let pressed: Vec<bool> = (0..count).map(pressed).collect();
     if !pressed.contains(&true) {
@@ -93,8 +98,8 @@ mod tests {
     use super::*;
     use percute_core::ids::NodeId;
 
-    fn node(point: [f64; 2]) -> ContactPoint<2> {
-        ContactPoint { node: NodeId::new(0), obstacle: 0, point, normal: [0.0, 1.0], area: 1.0 }
+    fn node([x, y]: [f64; 2]) -> ContactPoint {
+        ContactPoint { node: NodeId::new(0), obstacle: 0, point: [x, y, 0.0], normal: [0.0, 1.0, 0.0], area: 1.0 }
     }
 
     #[test]

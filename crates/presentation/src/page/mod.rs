@@ -86,7 +86,7 @@ mod tests {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let mesh =
             TriangleMesh::new(points, &[[0, 1, 2], [0, 2, 3]], &Default::default(), &Default::default()).unwrap();
-        let (document, body) = (Document::parse(document).unwrap(), Body::new(&mesh));
+        let (document, body) = (Document::parse(document).unwrap(), Body::new(&mesh.into()));
         page(&Contents { about, document: &document, body: &body, statement: "", case, surfaces: &[] }, Path::new(""))
     }
 

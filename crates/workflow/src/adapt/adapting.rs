@@ -14,9 +14,8 @@ use crate::report::{Report, Subject};
 use crate::restated::Restated;
 use crate::run::{Results, whole};
 use percute_core::dynamics::critical_time_step;
-use percute_core::mesh::{Generated, Mesh};
 use percute_core::observer::Observer;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{Options, Reconstruction};
 use std::ops::ControlFlow::{self, Break, Continue};
@@ -24,8 +23,8 @@ use std::sync::Arc;
 
 /// A run that is planned.
 #[derive(Clone, Debug)]
-struct Planned<const D: usize, const N: usize> {
-    problem: Problem<D, N>,
+struct Planned {
+    problem: AnyProblem,
     times: TimeGrid,
     critical_step: f64,
     made: Made,
@@ -33,19 +32,19 @@ struct Planned<const D: usize, const N: usize> {
 
 /// An adaptation on its way: as long as [`Adapting::upcoming`] has a run, [`Adapting::run`] does it.
 #[derive(Clone, Debug)]
-pub struct Adapting<const D: usize, const N: usize> {
+pub struct Adapting {
     wish: Wish,
     options: Options,
     /// The end (s) and the Courant number of all runs.
     end: f64,
     courant: f64,
-    restated: Restated<D, N>,
-    meshing: Meshing<D, N>,
+    restated: Restated,
+    meshing: Meshing,
     iterations: Vec<Iteration>,
-    planned: Option<Planned<D, N>>,
+    planned: Option<Planned>,
     /// The last run, and the basis of the plan that follows from it.
-    last: Option<(Arc<Best<D, N>>, Option<Basis>)>,
-    best: Option<Arc<Best<D, N>>>,
+    last: Option<(Arc<Best>, Option<Basis>)>,
+    best: Option<Arc<Best>>,
     needed: Option<Needed>,
     /// The work of a run above the limit.
     refused: Option<Needed>,
@@ -53,17 +52,14 @@ pub struct Adapting<const D: usize, const N: usize> {
     reason: Option<Reason>,
 }
 
-impl<const D: usize, const N: usize> Adapting<D, N>
-where
-    Mesh<D, N>: Generated,
-{
+impl Adapting {
     /// Begins with a problem on its mesh.
     ///
     /// # Errors
     /// A wish out of range, a reconstruction without sources, a problem that cannot be written down, a mesher that
     /// cannot mesh it.
     pub fn new(
-        problem: &Problem<D, N>,
+        problem: &AnyProblem,
         times: &TimeGrid,
         options: Options,
         (wish, mesher): (Wish, Mesher),
@@ -156,7 +152,7 @@ where
         Ok(())
     }
 
-    fn announced(&self, planned: &Planned<D, N>) -> Next {
+    fn announced(&self, planned: &Planned) -> Next {
         let Planned { problem, times, made: Made { branch, predicted }, .. } = planned;
         Next {
             run: self.iterations.len(),
@@ -169,7 +165,7 @@ where
         }
     }
 
-    fn simulated(&mut self, planned: Planned<D, N>, observer: &mut dyn Observer) -> Result<(), Failure> {
+    fn simulated(&mut self, planned: Planned, observer: &mut dyn Observer) -> Result<(), Failure> {
         let Planned { problem, times, critical_step, made } = planned;
         let (name, held, checked, unended) = ("", None, None, None);
         let subject = Subject { name, problem: &problem, times: &times, critical_step, held, checked, unended };
@@ -186,9 +182,9 @@ where
     #[allow(clippy::type_complexity)]
     fn followed(
         &self,
-        subject: &Subject<'_, D, N>,
+        subject: &Subject<'_>,
         observer: &mut dyn Observer,
-    ) -> Result<Option<(Results<D>, Report, Option<f64>)>, Failure> {
+    ) -> Result<Option<(Results, Report, Option<f64>)>, Failure> {
         let ordered = Ordered::new(subject.problem);
         let on = self.wish.on.as_ref();
         let mut sink = on.map_or(Ok(None), |quantity| quantity.sink(ordered.problem()))?;
@@ -202,7 +198,7 @@ where
     }
 
     /// Takes a run in, with the value of the quantity of the target.
-    fn take(&mut self, last: Arc<Best<D, N>>, made: Made, quantity: Option<f64>) {
+    fn take(&mut self, last: Arc<Best>, made: Made, quantity: Option<f64>) {
         let mesh = last.problem.mesh();
         let basis = Basis::new(mesh, &last.results.estimate, &last.results.contact);
         let iteration = Iteration::new(&last.report, basis.as_ref(), &sizes(mesh), self.wish.measure, made);
@@ -212,8 +208,7 @@ where
         }
         let worth = |run: &Iteration| (!run.doubts.is_empty(), run.error);
         // The limit of a quantity is nearer on each finer mesh.
-        let better =
-            |best: &Arc<Best<D, N>>| quantity.is_some() || worth(&iteration) < worth(&self.iterations[best.run]);
+        let better = |best: &Arc<Best>| quantity.is_some() || worth(&iteration) < worth(&self.iterations[best.run]);
         if self.best.as_ref().is_none_or(better) {
             self.best = Some(last.clone());
         }
@@ -236,9 +231,9 @@ where
     /// The problem on the mesh that follows from the last run, or the reason why there is none.
     fn problem_after(
         &self,
-        last: &Best<D, N>,
+        last: &Best,
         basis: Option<&Basis>,
-    ) -> Result<ControlFlow<Reason, (Problem<D, N>, Made)>, Failure> {
+    ) -> Result<ControlFlow<Reason, (AnyProblem, Made)>, Failure> {
         let Some(basis) = basis else { return Ok(Break(Reason::NoSources)) };
         let (mesh, error) = (last.problem.mesh(), self.iterations[last.run].error);
         let wanted = self.wish.wanted(&self.iterations[last.run], basis);
@@ -252,23 +247,23 @@ where
         // The outline of a finer disc may cut a plane that touches the first one.
         if let Some((next, predicted)) = self.meshing.generated(mesh, &plan)
             && next.element_count() != mesh.element_count()
-            && let Ok(problem) = self.restated.on(next)
+            && let Ok(problem) = self.restated.on(&next)
         {
             return Ok(Continue((problem, made(predicted))));
         }
         let most = (self.wish.limit / last.times.step_count() as f64) as usize;
         let (next, predicted) = self.meshing.next(mesh, (basis, &plan), most.max(1))?;
-        if next.points() == mesh.points() && next.cells() == mesh.cells() {
+        if next.points() == mesh.points() && next.cells().eq(mesh.cells()) {
             return Ok(Break(Reason::SameMesh));
         }
-        Ok(Continue((self.restated.on(next)?, made(predicted))))
+        Ok(Continue((self.restated.on(&next)?, made(predicted))))
     }
 }
 
-impl<const D: usize, const N: usize> Adapting<D, N> {
+impl Adapting {
     /// The adaptation as far as it is done.
     #[must_use]
-    pub fn so_far(&self) -> Adaptation<D, N> {
+    pub fn so_far(&self) -> Adaptation {
         let Self { wish, iterations, best, needed, refused, warnings, reason, .. } = self;
         let needed = needed.filter(|_| *reason != Some(Reason::Reached));
         Adaptation {
@@ -288,7 +283,8 @@ impl<const D: usize, const N: usize> Adapting<D, N> {
         let (last, basis) = self.last.as_ref()?;
         let basis = basis.as_ref().filter(|basis| self.wish.on.is_none() && basis.branch() == Branch::Uniform)?;
         let q = Plan::exponents(basis).far;
-        let less = (self.wish.limit / basis.element_steps()).powf(-q / (D + 1) as f64);
+        let less =
+            (self.wish.limit / basis.element_steps()).powf(-q / (self.restated.problem().dimension() + 1) as f64);
         Some(less * self.iterations[last.run].error)
     }
 }

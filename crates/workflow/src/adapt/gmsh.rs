@@ -3,8 +3,7 @@
 use crate::failure::Failure;
 use crate::message::{counted, short};
 use crate::plan::{Basis, Plan, SizeField};
-use percute_core::mesh::Mesh;
-use percute_core::simplex::ByDimension;
+use percute_core::mesh::AnyMesh;
 use percute_io::{Overwrite, gmsh};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -61,13 +60,13 @@ pub(super) fn check(geometry: &Geometry) -> Result<(), Failure> {
 }
 
 /// Makes the mesh of a plan for the mesh of a run.
-pub(super) fn meshed<const D: usize, const N: usize>(
-    first: &Mesh<D, N>,
+pub(super) fn meshed(
+    first: &AnyMesh,
     geometry: &Geometry,
-    run: &Mesh<D, N>,
+    run: &AnyMesh,
     (basis, plan): (&Basis, &Plan),
     most: usize,
-) -> Result<Mesh<D, N>, Failure> {
+) -> Result<AnyMesh, Failure> {
     let field = SizeField::new(run, basis, plan, most);
     let field = field.map_err(|error| Failure::Argument(format!("the size field cannot be refined: {error}")))?;
     let failed = |what: String| Failure::Argument(format!("gmsh: {what}"));
@@ -87,8 +86,10 @@ pub(super) fn meshed<const D: usize, const N: usize>(
     written.map_err(|error| failed(error.to_string()))?;
     run_gmsh(&file, &at("size.pos"), &at("mesh.msh"))?;
     let read = gmsh::read(&at("mesh.msh"), scale).map_err(|error| failed(error.to_string()))?;
-    let mesh: Mesh<D, N> =
-        of_dimension(read).ok_or_else(|| failed("the geometry is not that of a body of this dimension".into()))?;
+    let mesh = read.mesh;
+    if mesh.dimension() != first.dimension() {
+        return Err(failed("the geometry is not that of a body of this dimension".into()));
+    }
     let [made, stated] = [&mesh, first].map(|mesh| mesh.volumes().iter().sum::<f64>());
     if (made - stated).abs() > SAME_BODY * stated || mesh.parts() != first.parts() {
         return Err(failed(format!(
@@ -127,13 +128,4 @@ fn run_gmsh(geometry: &Path, sizes: &Path, mesh: &Path) -> Result<(), Failure> {
     let told = String::from_utf8_lossy(&[output.stderr, output.stdout].concat()).trim().to_string();
     let told = told.lines().next().unwrap_or("no message").to_string();
     Err(Failure::Argument(format!("gmsh did not mesh {}: {told}", geometry.display())))
-}
-
-/// The mesh that was read, if it has this dimension.
-fn of_dimension<const D: usize, const N: usize>(read: gmsh::MeshFile) -> Option<Mesh<D, N>> {
-    let mesh: Box<dyn std::any::Any> = match read {
-        ByDimension::Bar(read) => Box::new(read.mesh),
-        ByDimension::Plane(read) => Box::new(read.mesh),
-    };
-    mesh.downcast().ok().map(|mesh| *mesh)
 }

@@ -5,8 +5,8 @@ use super::gmsh::{self, Geometry};
 use crate::failure::Failure;
 use crate::plan::{Basis, Branch, LARGEST, Plan, Wanted, sizes};
 use percute_core::ids::ElementId;
-use percute_core::mesh::{Bisection, Generated, Locator, Mesh};
-use percute_core::problem::Problem;
+use percute_core::mesh::{AnyBisection, AnyLocator, AnyMesh};
+use percute_core::problem::AnyProblem;
 
 /// The way to make meshes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,22 +21,19 @@ pub enum Mesher {
 
 /// Makes the meshes of an adaptation from the first one.
 #[derive(Clone, Debug)]
-pub(super) struct Meshing<const D: usize, const N: usize> {
-    first: Bisection<D, N>,
+pub(super) struct Meshing {
+    first: AnyBisection,
     mesher: Mesher,
 }
 
-impl<const D: usize, const N: usize> Meshing<D, N>
-where
-    Mesh<D, N>: Generated,
-{
+impl Meshing {
     /// # Errors
     /// A mesh that the mesher cannot make.
-    pub(super) fn new(problem: &Problem<D, N>, mesher: Mesher) -> Result<Self, Failure> {
+    pub(super) fn new(problem: &AnyProblem, mesher: Mesher) -> Result<Self, Failure> {
         let pairs = problem.facing_nodes();
         let told = match &mesher {
             Mesher::Bisection => None,
-            Mesher::Gmsh(_) if D == 1 => Some("a bar is not meshed by Gmsh"),
+            Mesher::Gmsh(_) if problem.dimension() == 1 => Some("a bar is not meshed by Gmsh"),
             Mesher::Gmsh(_) if !pairs.is_empty() => {
                 Some("nodes of bodies that face each other in pairs would not do so in a mesh of Gmsh")
             }
@@ -47,7 +44,7 @@ where
         };
         let refused = told.map(|told| Failure::Argument(format!("{told}; take the mesher \"bisect\"")));
         refused.map_or(Ok(()), Err)?;
-        Ok(Self { first: Bisection::new(problem.mesh().clone(), &pairs), mesher })
+        Ok(Self { first: AnyBisection::new(problem.mesh(), &pairs), mesher })
     }
 
     /// Whether the outline of the first mesh stays.
@@ -59,31 +56,32 @@ where
     /// has about `most` elements at most.
     pub(super) fn next(
         &self,
-        run: &Mesh<D, N>,
+        run: &AnyMesh,
         (basis, plan): (&Basis, &Plan),
         most: usize,
-    ) -> Result<(Mesh<D, N>, f64), Failure> {
+    ) -> Result<(AnyMesh, f64), Failure> {
         let Mesher::Gmsh(geometry) = &self.mesher else {
             return bisected(&self.first, run, (basis, plan), most);
         };
-        let next = gmsh::meshed(self.first.mesh(), geometry, run, (basis, plan), most)?;
+        let next = gmsh::meshed(&self.first.mesh(), geometry, run, (basis, plan), most)?;
         let expected = expected(&Wanted::new(run, basis, plan), &next, basis, plan);
         Ok((next, expected))
     }
 
     /// The same by the generator of the first mesh, if all elements become smaller alike.
-    pub(super) fn generated(&self, run: &Mesh<D, N>, plan: &Plan) -> Option<(Mesh<D, N>, f64)> {
+    pub(super) fn generated(&self, run: &AnyMesh, plan: &Plan) -> Option<(AnyMesh, f64)> {
         if plan.branch != Branch::Uniform || self.mesher != Mesher::Bisection {
             return None;
         }
         let next = run.resized(1.0 / plan.ratio.first()?)?;
         let finer = next.element_count() as f64 / run.element_count() as f64;
-        Some((next, finer.powf(-plan.exponents.far / D as f64)))
+        Some((next, finer.powf(-plan.exponents.far / run.dimension() as f64)))
     }
 
     /// How much larger than in a run each of its elements may become: with bisection not larger than in the first mesh.
-    pub(super) fn largest(&self, run: &Mesh<D, N>) -> Vec<f64> {
-        let (locator, first) = (Locator::new(self.first.mesh()), sizes(self.first.mesh()));
+    pub(super) fn largest(&self, run: &AnyMesh) -> Vec<f64> {
+        let mesh = self.first.mesh();
+        let (locator, first) = (AnyLocator::new(&mesh), sizes(&mesh));
         let most = if self.mesher == Mesher::Bisection { 1.0 } else { LARGEST };
         let of = |(e, h): (usize, f64)| {
             let in_first = locator.element_near(&run.centroid(ElementId::new(e)));

@@ -24,9 +24,8 @@ use crate::plan::Branch;
 use crate::quantity::Quantity;
 use crate::report::Report;
 use crate::run::Results;
-use percute_core::mesh::{Generated, Mesh};
 use percute_core::observer::Observer;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use std::sync::Arc;
@@ -83,7 +82,7 @@ impl Wish {
 
 /// An adaptation: its runs, and the best mesh.
 #[derive(Clone, Debug)]
-pub struct Adaptation<const D: usize, const N: usize> {
+pub struct Adaptation {
     /// What was wanted.
     pub wish: Wish,
     /// The runs, in order.
@@ -99,22 +98,22 @@ pub struct Adaptation<const D: usize, const N: usize> {
     /// Warnings about the meshes.
     pub warnings: Vec<String>,
     /// The best run; none if the first was interrupted.
-    pub best: Option<Arc<Best<D, N>>>,
+    pub best: Option<Arc<Best>>,
 }
 
 /// The best run of an adaptation.
 #[derive(Clone, Debug)]
-pub struct Best<const D: usize, const N: usize> {
+pub struct Best {
     /// Its number, from 0.
     pub run: usize,
     /// The problem on its mesh.
-    pub problem: Problem<D, N>,
+    pub problem: AnyProblem,
     /// Its steps.
     pub times: TimeGrid,
     /// Its critical step (s).
     pub critical_step: f64,
     /// Its results.
-    pub results: Results<D>,
+    pub results: Results,
     /// Its report.
     pub report: Report,
 }
@@ -143,17 +142,14 @@ pub struct Next {
 ///
 /// # Errors
 /// A wish out of range, a problem that cannot be written down, a first run that fails.
-pub fn adapt<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub fn adapt(
+    problem: &AnyProblem,
     times: &TimeGrid,
     options: Options,
     wish: (Wish, Mesher),
     observer: &mut dyn Observer,
     tell: &mut dyn FnMut(&Next),
-) -> Result<Adaptation<D, N>, Failure>
-where
-    Mesh<D, N>: Generated,
-{
+) -> Result<Adaptation, Failure> {
     let mut adapting = Adapting::new(problem, times, options, wish)?;
     while let Some(next) = adapting.upcoming()? {
         tell(&next);

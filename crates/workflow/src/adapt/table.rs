@@ -27,7 +27,7 @@ const MUCH: f64 = 1.5;
 
 /// The runs and how they ended.
 #[must_use]
-pub fn table<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>) -> String {
+pub fn table(adaptation: &Adaptation) -> String {
     let columns = if adaptation.wish.on.is_some() { ["value", "change"] } else { ["expected", "trust"] };
     let head = ["run", "mesh", "elements", "steps", "smallest", "largest", "error", columns[0], columns[1]];
     let mut lines = vec![row(&head.map(str::to_string))];
@@ -44,7 +44,7 @@ pub fn table<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>) -> S
 
 /// How the runs ended.
 #[must_use]
-pub fn conclusion<const D: usize, const N: usize>(adaptation: &Adaptation<D, N>) -> String {
+pub fn conclusion(adaptation: &Adaptation) -> String {
     let wish = &adaptation.wish;
     let on = wish.on.as_ref().map_or_else(|| measure(wish.measure).to_string(), Quantity::told);
     let target = format!("{} ({on})", percent(wish.target));
@@ -98,7 +98,7 @@ fn untouched(report: &Report) -> bool {
 }
 
 /// The value of the quantity of the target, its last change, and its order.
-fn of_quantity<const D: usize, const N: usize>(quantity: &Quantity, adaptation: &Adaptation<D, N>) -> String {
+fn of_quantity(quantity: &Quantity, adaptation: &Adaptation) -> String {
     let (runs, judgement) = (&adaptation.iterations, judged(&adaptation.iterations));
     let value = runs.last().and_then(|run| run.quantity).map_or_else(String::new, |value| trimmed(value, 4));
     let units = adaptation.best.as_ref().map_or(Units { per_metre: false }, |best| best.problem.units());
@@ -176,7 +176,7 @@ struct Document<'a> {
     convergence: Option<Judgement>,
 }
 
-impl<const D: usize, const N: usize> Adaptation<D, N> {
+impl Adaptation {
     /// The runs and their end as a JSON document.
     ///
     /// # Errors

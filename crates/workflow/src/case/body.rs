@@ -5,9 +5,10 @@ use super::table::Table;
 use super::value::Value;
 use super::{material, mesh};
 use crate::message::{hint, short};
+use percute_core::border::Vector;
 use percute_core::material::Elastic;
-use percute_core::mesh::{AnyMesh, Mesh, MeshError};
-use percute_core::simplex::{Element, Shape, Simplex};
+use percute_core::mesh::{AnyMesh, MeshError};
+use percute_core::simplex::Shape;
 use std::path::PathBuf;
 
 const KEYS: [&str; 6] = ["name", "group", "origin", "rotation", "material", "velocity"];
@@ -20,31 +21,25 @@ const INSTEAD: [(&str, &str); 3] =
     [("mesh", "its mesh, such as `rectangle`"), ("material", "`material`"), ("initial", "`velocity`")];
 
 /// Several bodies as one mesh.
-pub(super) struct Bodies<const D: usize, const N: usize> {
-    pub(super) mesh: Mesh<D, N>,
+pub(super) struct Bodies {
+    pub(super) mesh: AnyMesh,
     /// The name of each body, which is the group of its elements, and its material.
     pub(super) materials: Vec<(String, Elastic)>,
-    /// Initial velocity of each node (m/s).
-    pub(super) velocity: Vec<[f64; D]>,
+    /// Initial velocity of each node (m/s), in rows.
+    pub(super) velocity: Vec<f64>,
     /// The files with meshes.
     pub(super) files: Vec<PathBuf>,
 }
 
-/// Bodies of either dimension.
-pub(super) enum AnyBodies {
-    Bars(Box<Bodies<1, 2>>),
-    Plane(Box<Bodies<2, 3>>),
-}
-
 /// One body as it is stated.
-struct Stated<'a, const D: usize, const N: usize> {
+struct Stated<'a> {
     table: Table<'a>,
     name: &'a str,
-    mesh: Mesh<D, N>,
+    mesh: AnyMesh,
 }
 
 /// Reads all bodies; `None` for a case that has one only, with a table `[mesh]`.
-pub(super) fn read(root: &Table<'_>) -> Result<Option<AnyBodies>, CaseError> {
+pub(super) fn read(root: &Table<'_>) -> Result<Option<Bodies>, CaseError> {
     let tables = root.tables("body")?;
     if tables.is_empty() {
         return Ok(None);
@@ -52,7 +47,7 @@ pub(super) fn read(root: &Table<'_>) -> Result<Option<AnyBodies>, CaseError> {
     for (key, instead) in INSTEAD {
         root.refuse(key, &format!("stands beside [[body]]; each body has {instead} in its own table"))?;
     }
-    let (mut bars, mut plane) = (Vec::new(), Vec::new());
+    let mut bodies = Vec::new();
     let mut names: Vec<&str> = Vec::new();
     for table in tables {
         table.only(&[&KEYS[..], &mesh::KEYS].concat())?;
@@ -61,18 +56,14 @@ pub(super) fn read(root: &Table<'_>) -> Result<Option<AnyBodies>, CaseError> {
             return Err(name.0.error(format!("is \"{}\", the name of an earlier body; give each its own", name.1)));
         }
         names.push(name.1);
-        match mesh::one_way(&table)? {
-            AnyMesh::Bar(mesh) => bars.push(Stated { mesh: of_group(&table, mesh)?, table, name: name.1 }),
-            AnyMesh::Plane(mesh) => plane.push(Stated { mesh: of_group(&table, mesh)?, table, name: name.1 }),
-        }
+        let mesh = mesh::one_way(&table)?;
+        bodies.push(Stated { mesh: of_group(&table, mesh)?, table, name: name.1 });
     }
-    if let (Some(bar), Some(_)) = (bars.first(), plane.first()) {
+    let bar = bodies.iter().find(|body| body.mesh.shape() == Shape::Bar);
+    if let Some(bar) = bar.filter(|_| bodies.iter().any(|body| body.mesh.shape() != Shape::Bar)) {
         return Err(bar.table.error("is a bar, but another body is plane; bodies of a case are all bars or all plane"));
     }
-    Ok(Some(match plane.is_empty() {
-        true => AnyBodies::Bars(Box::new(joined(root, &bars)?)),
-        false => AnyBodies::Plane(Box::new(joined(root, &plane)?)),
-    }))
+    joined(root, &bodies).map(Some)
 }
 
 /// The name of a body, which has no dot: a dot joins it to the names of its groups.
@@ -85,22 +76,16 @@ fn name<'a>(table: &Table<'a>) -> Result<(Value<'a>, &'a str), CaseError> {
     Ok((value, name))
 }
 
-fn joined<const D: usize, const N: usize>(
-    root: &Table<'_>,
-    bodies: &[Stated<'_, D, N>],
-) -> Result<Bodies<D, N>, CaseError>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+fn joined(root: &Table<'_>, bodies: &[Stated<'_>]) -> Result<Bodies, CaseError> {
     let (mut materials, mut velocity, mut placed) = (Vec::new(), Vec::new(), Vec::new());
     for Stated { table, name, mesh } in bodies {
         placed.push((*name, placed_mesh(table, mesh)?));
-        materials.push(((*name).to_string(), law(table, mesh.simplex().shape())?));
-        let uniform = table.get("velocity").map_or(Ok([0.0; D]), |value| value.vector("m/s"))?;
-        velocity.extend(vec![uniform; mesh.node_count()]);
+        materials.push(((*name).to_string(), law(table, mesh.shape())?));
+        let uniform = table.get("velocity").map_or(Ok([0.0; 3]), |value| value.vector("m/s", mesh.dimension()))?;
+        velocity.extend(uniform[..mesh.dimension()].repeat(mesh.node_count()));
     }
     let of_all: Vec<_> = placed.iter().map(|(name, mesh)| (*name, mesh)).collect();
-    let mesh = Mesh::joined(&of_all).map_err(|error| apart(root, &of_all, &error))?;
+    let mesh = AnyMesh::joined(&of_all).map_err(|error| apart(root, &of_all, &error))?;
     let files = bodies.iter().filter_map(|body| mesh::file(&body.table)).collect();
     Ok(Bodies { mesh, materials, velocity, files })
 }
@@ -113,14 +98,11 @@ fn law(table: &Table<'_>, shape: Shape) -> Result<Elastic, CaseError> {
 }
 
 /// The mesh in its place.
-fn placed_mesh<const D: usize, const N: usize>(table: &Table<'_>, mesh: &Mesh<D, N>) -> Result<Mesh<D, N>, CaseError>
-where
-    Element<D, N>: Simplex<D, N>,
-{
-    if D == 1 {
+fn placed_mesh(table: &Table<'_>, mesh: &AnyMesh) -> Result<AnyMesh, CaseError> {
+    if mesh.dimension() == 1 {
         table.refuse("rotation", "does not apply to a bar")?;
     }
-    let origin = table.get("origin").map_or(Ok([0.0; D]), |value| value.vector("m"))?;
+    let origin = table.get("origin").map_or(Ok([0.0; 3]), |value| value.vector("m", mesh.dimension()))?;
     let angle = table.get("rotation").map_or(Ok(0.0), |value| value.number("degrees"))?;
     mesh.placed(&origin, angle).map_err(|error| match (far_origin(mesh, &origin), table.get("origin")) {
         (Some(told), Some(value)) => value.error(told),
@@ -130,22 +112,20 @@ where
 
 /// What is wrong with an origin (m) at which a mesh has no place, if it is too far away for numbers of 64 bits.
 #[must_use]
-pub fn far_origin<const D: usize, const N: usize>(mesh: &Mesh<D, N>, origin: &[f64; D]) -> Option<String> {
+pub fn far_origin(mesh: &AnyMesh, origin: &Vector) -> Option<String> {
     let far = origin.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     (far > FAR * mesh.size()).then(|| {
         format!(
-            "is {origin:?} m, so far from a mesh of {} m that rounding takes its shape away; give a place near the \
+            "is {:?} m, so far from a mesh of {} m that rounding takes its shape away; give a place near the \
              other bodies, in metres",
+            &origin[..mesh.dimension()],
             short(mesh.size(), 3)
         )
     })
 }
 
 /// The elements of the group that is named, if one is: one of several bodies in a file.
-fn of_group<const D: usize, const N: usize>(table: &Table<'_>, mesh: Mesh<D, N>) -> Result<Mesh<D, N>, CaseError>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+fn of_group(table: &Table<'_>, mesh: AnyMesh) -> Result<AnyMesh, CaseError> {
     let Some(value) = table.get("group") else { return Ok(mesh) };
     let group = value.text("a group of elements")?;
     let part = mesh.part_of_group(group).ok_or_else(|| {
@@ -160,15 +140,8 @@ where
 }
 
 /// Bodies that overlap, by their names.
-fn apart<const D: usize, const N: usize>(
-    root: &Table<'_>,
-    bodies: &[(&str, &Mesh<D, N>)],
-    error: &MeshError,
-) -> CaseError
-where
-    Element<D, N>: Simplex<D, N>,
-{
+fn apart(root: &Table<'_>, bodies: &[(&str, &AnyMesh)], error: &MeshError) -> CaseError {
     let tables = root.tables("body").unwrap_or_default();
-    let Some((second, message)) = Mesh::overlapping(bodies, error) else { return root.error(error.to_string()) };
+    let Some((second, message)) = AnyMesh::overlapping(bodies, error) else { return root.error(error.to_string()) };
     tables.get(second).map_or_else(|| root.error(&message), |table| table.error(&message))
 }

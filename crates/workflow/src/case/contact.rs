@@ -5,7 +5,6 @@ use super::table::Table;
 use super::value::Value;
 use percute_core::contact::ObstacleError;
 use percute_core::problem::{Between, Contact};
-use percute_core::simplex::Shape;
 
 const GROUPS: &str = "the groups of edges of two bodies that may touch, such as [\"anvil.top\", \"hammer.bottom\"]";
 const BODIES: &str = "the names of two bodies that may touch, such as [\"anvil\", \"hammer\"]";
@@ -15,11 +14,11 @@ pub const ONE_BODY: &str = "is the contact of bodies with each other, but there 
                             touch; give the other bodies, or leave it out: a rigid plane is an obstacle";
 
 /// Reads all contacts on a mesh of so many parts.
-pub(super) fn read<const D: usize>(root: &Table<'_>, shape: Shape, parts: usize) -> Result<Vec<Contact>, CaseError> {
-    root.tables("contact")?.iter().map(|table| one::<D>(table, shape, parts)).collect()
+pub(super) fn read(root: &Table<'_>, dimension: usize, parts: usize) -> Result<Vec<Contact>, CaseError> {
+    root.tables("contact")?.iter().map(|table| one(table, dimension, parts)).collect()
 }
 
-fn one<const D: usize>(table: &Table<'_>, shape: Shape, parts: usize) -> Result<Contact, CaseError> {
+fn one(table: &Table<'_>, dimension: usize, parts: usize) -> Result<Contact, CaseError> {
     table.only(&["bodies", "groups", "friction", "matching"])?;
     let between = match (table.get("bodies"), table.get("groups")) {
         (Some(_), Some(groups)) => {
@@ -32,9 +31,9 @@ fn one<const D: usize>(table: &Table<'_>, shape: Shape, parts: usize) -> Result<
         (None, None) if parts < 2 => return Err(table.error(ONE_BODY)),
         (None, None) => Between::All,
     };
-    let friction = super::obstacle::friction(table, shape)?;
+    let friction = super::obstacle::friction(table, dimension)?;
     let matching = table.get("matching").map(|value| value.flag()).transpose()?;
-    Contact::new::<D>(between, friction, matching).map_err(|error| {
+    Contact::new(dimension, between, friction, matching).map_err(|error| {
         let key = match error {
             ObstacleError::Friction { .. } | ObstacleError::FrictionInOneDimension { .. } => "friction",
             ObstacleError::Normal { .. } | ObstacleError::Point { .. } | ObstacleError::Gap { .. } => "groups",

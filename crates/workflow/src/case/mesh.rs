@@ -3,11 +3,9 @@
 use super::material::NOT_FOR_BARS;
 use super::source::CaseError;
 use super::table::Table;
-use super::value::Value;
+use super::value::{Value, rows};
 use crate::message::hint;
-use percute_core::map_dimension;
-use percute_core::mesh::{AnyMesh, BarMesh, Diagonals, ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
-use percute_core::simplex::{Element, Simplex};
+use percute_core::mesh::{AnyMesh, Diagonals, ElementGroups, FacetRows, MeshError};
 use percute_io::FileCause;
 use percute_io::gmsh::{self, GmshCause};
 use std::path::PathBuf;
@@ -25,9 +23,9 @@ const ELEMENTS: &str = "{ core = [0, 1, 2] }";
 type Reader = for<'a> fn(&Table<'a>, &Value<'a>) -> Result<AnyMesh, CaseError>;
 
 const WAYS: [(&str, Reader); 5] = [
-    ("rectangle", |_, value| rectangle(value).map(AnyMesh::Plane)),
-    ("disc", |_, value| disc(value).map(AnyMesh::Plane)),
-    ("bar", |_, value| bar(value).map(AnyMesh::Bar)),
+    ("rectangle", |_, value| rectangle(value)),
+    ("disc", |_, value| disc(value)),
+    ("bar", |_, value| bar(value)),
     ("file", from_file),
     ("points", from_arrays),
 ];
@@ -96,25 +94,24 @@ pub(super) fn coarsest(table: &Table<'_>) -> Option<Coarsest> {
     // Beyond all that a mesh may have, the large mesh is refused.
     let above = ny.saturating_mul(nx.saturating_add(1));
     let corners = || vec![0, nx, above, above.saturating_add(nx)];
+    let rectangle = |width, height| AnyMesh::rectangle_cut([width, height], [1, 1], Diagonals::default());
     let (made, nodes) = match ["rectangle", "disc", "bar"].map(|key| table.get(key).is_some()) {
         [true, false, false] => {
             let size = ["width", "height"].map(|side| length("rectangle", &OF_RECTANGLE, side));
             match size {
-                [Some(width), Some(height)] => (TriangleMesh::rectangle(width, height, 1, 1), corners()),
-                _ => (TriangleMesh::rectangle(1.0, 1.0, 1, 1), Vec::new()),
+                [Some(width), Some(height)] => (rectangle(width, height), corners()),
+                _ => (rectangle(1.0, 1.0), Vec::new()),
             }
         }
         // The outline of the coarsest lies inside that of the disc.
-        [false, true, false] => (TriangleMesh::disc(1.0, 1), Vec::new()),
+        [false, true, false] => (AnyMesh::disc(1.0, 1), Vec::new()),
         [false, false, true] => {
             let size = length("bar", &["length", "elements"], "length");
-            let made = BarMesh::uniform_bar(size.unwrap_or(1.0), 1).ok()?;
-            let nodes = size.map_or_else(Vec::new, |_| vec![0, elements]);
-            return Some(Coarsest { mesh: AnyMesh::Bar(made), nodes });
+            (AnyMesh::uniform_bar(size.unwrap_or(1.0), 1), size.map_or_else(Vec::new, |_| vec![0, elements]))
         }
         _ => return None,
     };
-    Some(Coarsest { mesh: AnyMesh::Plane(made.ok()?), nodes })
+    Some(Coarsest { mesh: made.ok()?, nodes })
 }
 
 /// The file that the mesh is in, if it is in one.
@@ -135,7 +132,7 @@ fn from_file(table: &Table<'_>, value: &Value<'_>) -> Result<AnyMesh, CaseError>
         .get("scale")
         .map_or(Ok(1.0), |scale| scale.number("metres per unit of length in the file: 1e-3 for millimetres"))?;
     match gmsh::read(&file, scale) {
-        Ok(read) => Ok(map_dimension!(read, read => read.mesh)),
+        Ok(read) => Ok(read.mesh),
         Err(error) => match (&error.cause, table.get("scale")) {
             (GmshCause::Scale { .. }, Some(scale)) => Err(scale.error(error.cause.to_string())),
             (GmshCause::File(FileCause::Missing), _) => {
@@ -146,13 +143,13 @@ fn from_file(table: &Table<'_>, value: &Value<'_>) -> Result<AnyMesh, CaseError>
     }
 }
 
-fn rectangle(value: &Value<'_>) -> Result<TriangleMesh, CaseError> {
+fn rectangle(value: &Value<'_>) -> Result<AnyMesh, CaseError> {
     let table = value.table(&OF_RECTANGLE, RECTANGLE)?;
     let length = |key| table.require(key, "a length in m")?.number("m");
     let count = |key| table.require(key, "a number of cells")?.count(1);
     let (width, height, nx, ny) = (length("width")?, length("height")?, count("nx")?, count("ny")?);
     let diagonals = table.get("diagonals").map_or(Ok(Diagonals::default()), |value| diagonals(&value))?;
-    TriangleMesh::rectangle_cut(width, height, nx, ny, diagonals).map_err(|error| generator(&table, &error))
+    AnyMesh::rectangle_cut([width, height], [nx, ny], diagonals).map_err(|error| generator(&table, &error))
 }
 
 fn diagonals(value: &Value<'_>) -> Result<Diagonals, CaseError> {
@@ -163,18 +160,18 @@ fn diagonals(value: &Value<'_>) -> Result<Diagonals, CaseError> {
     Diagonals::named(name).ok_or_else(|| value.must_be(format!("{allowed}{}", hint())))
 }
 
-fn disc(value: &Value<'_>) -> Result<TriangleMesh, CaseError> {
+fn disc(value: &Value<'_>) -> Result<AnyMesh, CaseError> {
     let table = value.table(&["radius", "rings"], DISC)?;
     let radius = table.require("radius", "a length in m")?.number("m")?;
     let rings = table.require("rings", "a number of rings")?.count(1)?;
-    TriangleMesh::disc(radius, rings).map_err(|error| generator(&table, &error))
+    AnyMesh::disc(radius, rings).map_err(|error| generator(&table, &error))
 }
 
-fn bar(value: &Value<'_>) -> Result<BarMesh, CaseError> {
+fn bar(value: &Value<'_>) -> Result<AnyMesh, CaseError> {
     let table = value.table(&["length", "elements"], BAR)?;
     let length = table.require("length", "a length in m")?.number("m")?;
     let elements = table.require("elements", "a number of elements")?.count(1)?;
-    BarMesh::uniform_bar(length, elements).map_err(|error| generator(&table, &error))
+    AnyMesh::uniform_bar(length, elements).map_err(|error| generator(&table, &error))
 }
 
 /// A generator's error, at the key that it names.
@@ -189,26 +186,20 @@ fn generator(table: &Table<'_>, error: &MeshError) -> CaseError {
 fn from_arrays(table: &Table<'_>, points: &Value<'_>) -> Result<AnyMesh, CaseError> {
     let entries = points.list("points, each its coordinates in m")?;
     let plane = entries.first().is_some_and(|first| first.list("").is_ok_and(|list| list.len() != 1));
-    if plane { arrays(table).map(AnyMesh::Plane) } else { arrays(table).map(AnyMesh::Bar) }
+    arrays(table, if plane { 2 } else { 1 })
 }
 
 /// A mesh from points, cells, groups of facets and groups of elements.
-fn arrays<const D: usize, const N: usize>(table: &Table<'_>) -> Result<Mesh<D, N>, CaseError>
-where
-    Element<D, N>: Simplex<D, N>,
-{
-    let points = table.require("points", "the coordinates of the nodes in m")?.vectors("m")?;
+fn arrays(table: &Table<'_>, dimension: usize) -> Result<AnyMesh, CaseError> {
+    let points = table.require("points", "the coordinates of the nodes in m")?.vectors("m", dimension)?;
+    let points = rows(points, dimension);
     let cells = table.require("cells", "the node numbers of each element, counted from 0")?;
-    let cells = cells
-        .list("elements, each the numbers of its nodes")?
-        .iter()
-        .map(Value::nodes)
-        .collect::<Result<Vec<_>, _>>()?;
-    let mut facets = FacetGroups::new();
+    let cells = nodes(&cells.list("elements, each the numbers of its nodes")?, dimension + 1)?;
+    let mut facets = FacetRows::new();
     if let Some(groups) = table.get("edge_groups") {
         for (name, members) in groups.any_table(GROUPS)?.entries() {
             let members = members.list("edges (a bar: points), each the numbers of its nodes")?;
-            facets.insert(name.to_string(), members.iter().map(Value::nodes).collect::<Result<_, _>>()?);
+            facets.insert(name.to_string(), nodes(&members, dimension)?);
         }
     }
     let mut elements = ElementGroups::new();
@@ -218,7 +209,13 @@ where
             elements.insert(name.to_string(), members.iter().map(|m| m.count(0)).collect::<Result<_, _>>()?);
         }
     }
-    Mesh::new(points, &cells, &facets, &elements).map_err(|error| array_error(table, &error))
+    AnyMesh::new(dimension, &points, &cells, (&facets, &elements)).map_err(|error| array_error(table, &error))
+}
+
+/// The numbers of so many nodes in each entry, in rows.
+fn nodes(entries: &[Value<'_>], count: usize) -> Result<Vec<usize>, CaseError> {
+    let rows: Vec<Vec<usize>> = entries.iter().map(|entry| entry.nodes(count)).collect::<Result<_, _>>()?;
+    Ok(rows.concat())
 }
 
 /// The entry of the arrays that an error of the mesh is about.

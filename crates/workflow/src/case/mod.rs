@@ -65,13 +65,12 @@ use crate::effort::{Effort, Long};
 use crate::message::bytes;
 use crate::report::{Subject, Warning};
 use crate::until::Until;
-use body::{AnyBodies, Bodies};
+use body::Bodies;
 use mesh::Coarsest;
 use percute_core::dynamics::{SimulationError, check_start};
-use percute_core::each_dimension;
 use percute_core::memory::can_be_had;
-use percute_core::problem::{Place, Problem, RefusedStart, cause_of_refused_start};
-use percute_core::simplex::ByDimension;
+use percute_core::mesh::AnyMesh;
+use percute_core::problem::{AnyProblem, Place, RefusedStart, cause_of_refused_start};
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use std::path::{Path, PathBuf};
@@ -107,13 +106,13 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// the mesh, sums or several values at once is left to the reader.
 pub const SCHEMA: &str = include_str!("schema.json");
 
-/// A case of one dimension, ready to run.
+/// A case, ready to run.
 #[derive(Clone, Debug)]
-pub struct CaseOf<const D: usize, const N: usize> {
+pub struct Case {
     /// The file it came from.
     pub source: Source,
     /// The problem.
-    pub problem: Problem<D, N>,
+    pub problem: AnyProblem,
     /// The instants; to the latest end, while a run that ends with the rebound has not been resolved.
     pub times: TimeGrid,
     /// The Courant number that the case states, if it does.
@@ -134,9 +133,6 @@ pub struct CaseOf<const D: usize, const N: usize> {
     pub mesh_scale: f64,
 }
 
-/// A case ready to run.
-pub type Case = ByDimension<Box<CaseOf<1, 2>>, Box<CaseOf<2, 3>>>;
-
 /// Reads and checks a case file.
 ///
 /// # Errors
@@ -146,23 +142,17 @@ pub fn parse(source: Source) -> Result<Case, CaseError> {
     let document = parsed(&source)?;
     let root = Table::root(&source, document.get_ref());
     root.only(&TABLES)?;
-    match body::read(&root)? {
-        Some(AnyBodies::Bars(bodies)) => return Ok(ByDimension::Bar(Box::new(of_bodies(&source, &root, *bodies)?))),
-        Some(AnyBodies::Plane(bodies)) => return Ok(ByDimension::Plane(Box::new(of_bodies(&source, &root, *bodies)?))),
-        None => {}
+    if let Some(bodies) = body::read(&root)? {
+        return of_bodies(&source, &root, bodies);
     }
     let mesh = root.single("mesh")?.ok_or_else(|| root.error(NO_MESH))?;
     let files = mesh::file(&mesh).into_iter().collect();
     if let Some(Coarsest { mesh, nodes }) = mesh::coarsest(&mesh) {
-        each_dimension!(mesh, coarsest => check_tables(&root, coarsest, &nodes)?);
+        check_tables(&root, &mesh, &nodes)?;
     }
-    match mesh::read(&mesh)? {
-        ByDimension::Bar(bar) => {
-            let case = of_mesh(&source, &root, bar, files).map_err(|error| mesh::of_lines_only(&mesh, error))?;
-            Ok(ByDimension::Bar(Box::new(case)))
-        }
-        ByDimension::Plane(triangles) => Ok(ByDimension::Plane(Box::new(of_mesh(&source, &root, triangles, files)?))),
-    }
+    let body = mesh::read(&mesh)?;
+    let case = read(&source, &root, files, || problem::read(&root, &body));
+    case.map_err(|error| if body.dimension() == 1 { mesh::of_lines_only(&mesh, error) } else { error })
 }
 
 /// Refuses a text whose document would take more memory than there is: with a mesh in it, a case may be long.
@@ -182,43 +172,25 @@ fn check_length(source: &Source) -> Result<(), CaseError> {
 }
 
 /// Finds mistakes in all tables but that of the mesh, which may take seconds and gigabytes to make; see [`Coarsest`].
-fn check_tables<const D: usize, const N: usize>(
-    root: &Table<'_>,
-    coarsest: percute_core::mesh::Mesh<D, N>,
-    nodes: &[usize],
-) -> Result<(), CaseError> {
+fn check_tables(root: &Table<'_>, coarsest: &AnyMesh, nodes: &[usize]) -> Result<(), CaseError> {
     estimate::read(root)?;
     output::read(root)?;
     time::read(root)?;
     problem::check_coarsest(root, coarsest, nodes)
 }
 
-/// The case of one body.
-fn of_mesh<const D: usize, const N: usize>(
-    source: &Source,
-    root: &Table<'_>,
-    mesh: percute_core::mesh::Mesh<D, N>,
-    files: Vec<PathBuf>,
-) -> Result<CaseOf<D, N>, CaseError> {
-    read(source, root, files, || problem::read(root, mesh))
-}
-
 /// The case of several bodies.
-fn of_bodies<const D: usize, const N: usize>(
-    source: &Source,
-    root: &Table<'_>,
-    mut bodies: Bodies<D, N>,
-) -> Result<CaseOf<D, N>, CaseError> {
+fn of_bodies(source: &Source, root: &Table<'_>, mut bodies: Bodies) -> Result<Case, CaseError> {
     let files = std::mem::take(&mut bodies.files);
     read(source, root, files, || problem::of_bodies(root, bodies))
 }
 
-fn read<const D: usize, const N: usize>(
+fn read(
     source: &Source,
     root: &Table<'_>,
     mesh_files: Vec<PathBuf>,
-    problem: impl FnOnce() -> Result<Problem<D, N>, CaseError>,
-) -> Result<CaseOf<D, N>, CaseError> {
+    problem: impl FnOnce() -> Result<AnyProblem, CaseError>,
+) -> Result<Case, CaseError> {
     // Cheap tables first: a slip in the last line should not wait for the critical step.
     let options = estimate::read(root)?;
     let output = output::read(root)?;
@@ -230,26 +202,14 @@ fn read<const D: usize, const N: usize>(
     output::check(root, &output, times.end())?;
     let (source, unended, courant) = (source.clone(), None, wanted.courant());
     let mesh_scale = root.single("mesh")?.map_or(1.0, |mesh| mesh::scale(&mesh));
-    Ok(CaseOf {
-        source,
-        problem,
-        times,
-        courant,
-        until,
-        unended,
-        critical_step,
-        options,
-        output,
-        mesh_files,
-        mesh_scale,
-    })
+    Ok(Case { source, problem, times, courant, until, unended, critical_step, options, output, mesh_files, mesh_scale })
 }
 
 /// The place and the cause of a start that the simulation refuses: a unit that is hardly right, beside which there is
 /// no other remedy, else the obstacle.
 #[must_use]
-pub fn refused_start<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub fn refused_start(
+    problem: &AnyProblem,
     times: &TimeGrid,
     obstacle: usize,
     error: &SimulationError,
@@ -285,10 +245,10 @@ fn parsed(source: &Source) -> Result<toml::Spanned<DeTable<'_>>, CaseError> {
     })
 }
 
-impl<const D: usize, const N: usize> CaseOf<D, N> {
+impl Case {
     /// What a report on it is about.
     #[must_use]
-    pub fn subject(&self) -> Subject<'_, D, N> {
+    pub fn subject(&self) -> Subject<'_> {
         let Self { source, problem, times, critical_step, unended, .. } = self;
         let (name, critical_step, unended) = (source.name(), *critical_step, unended.as_ref());
         Subject { name, problem, times, critical_step, held: None, checked: None, unended }

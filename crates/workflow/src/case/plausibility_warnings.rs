@@ -1,13 +1,13 @@
 //! Plausibility warnings about a case, with their lines.
 
-use super::{CaseOf, parsed, place};
+use super::{Case, parsed, place};
 use crate::case::table::Table;
 use crate::info::memory;
 use crate::message::bytes;
 use crate::report::{Warning, few_samples, varying_steps};
 use percute_core::problem::{Place, PlausibilityWarning, plausibility_warnings};
 
-impl<const D: usize, const N: usize> CaseOf<D, N> {
+impl Case {
     /// Statements that are possible but more likely slips, each with its line, for use before the run. With
     /// `in_memory`, the history is kept in memory.
     #[must_use]

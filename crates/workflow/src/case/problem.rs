@@ -3,45 +3,37 @@
 use super::body::Bodies;
 use super::source::CaseError;
 use super::table::Table;
-use super::value::Value;
+use super::value::{Value, rows};
 use super::{contact, load, material, obstacle, place, support};
 use crate::message::hint;
-use percute_core::mesh::{ImportWarning, Mesh};
-use percute_core::problem::{Builder, Cause, Initial, InputError, Place, Problem};
+use percute_core::mesh::{AnyMesh, ImportWarning};
+use percute_core::problem::{AnyProblem, Cause, InputError, Place, Statement};
 
 /// Reads all that makes the problem on a mesh.
-pub(super) fn read<const D: usize, const N: usize>(
-    root: &Table<'_>,
-    mesh: Mesh<D, N>,
-) -> Result<Problem<D, N>, CaseError> {
-    let import_warnings = mesh.import_warnings().to_vec();
-    let builder = with_start(root, mesh)?.planes_to_be_moved();
-    builder.build().map_err(|error| located(root, &error, &import_warnings))
+pub(super) fn read(root: &Table<'_>, mesh: &AnyMesh) -> Result<AnyProblem, CaseError> {
+    let stated = Statement { planes_to_be_moved: true, ..with_start(root, mesh)? };
+    AnyProblem::new(mesh, &stated).map_err(|error| located(root, &error, mesh.import_warnings()))
 }
 
 /// Reads all that makes the problem of several bodies.
-pub(super) fn of_bodies<const D: usize, const N: usize>(
-    root: &Table<'_>,
-    bodies: Bodies<D, N>,
-) -> Result<Problem<D, N>, CaseError> {
+pub(super) fn of_bodies(root: &Table<'_>, bodies: Bodies) -> Result<AnyProblem, CaseError> {
     let Bodies { mesh, materials, velocity, .. } = bodies;
-    let mut builder = Problem::builder(mesh).initial_velocity(Initial::Nodal(velocity)).automatic_contact();
-    builder = builder.planes_to_be_moved();
-    for (body, law) in materials {
-        builder = builder.material_of(body, law);
-    }
-    build(root, surroundings(root, builder)?)
+    let stated = Statement {
+        materials: materials.into_iter().map(|(body, law)| (Some(body), law)).collect(),
+        velocity,
+        automatic_contact: true,
+        planes_to_be_moved: true,
+        ..surroundings(root, &mesh)?
+    };
+    build(root, &mesh, &stated)
 }
 
 /// Finds mistakes that do not depend on the size of the mesh, with a small one that has the same groups. A plane that
 /// cuts through the body does so at a corner, too; `nodes` are the numbers of the corners in the large mesh, if it has
 /// the same body.
-pub(super) fn check_coarsest<const D: usize, const N: usize>(
-    root: &Table<'_>,
-    mesh: Mesh<D, N>,
-    nodes: &[usize],
-) -> Result<(), CaseError> {
-    let Err(InputError { place, cause }) = with_start(root, mesh)?.build() else { return Ok(()) };
+pub(super) fn check_coarsest(root: &Table<'_>, mesh: &AnyMesh, nodes: &[usize]) -> Result<(), CaseError> {
+    let built = AnyProblem::new(mesh, &with_start(root, mesh)?);
+    let Err(InputError { place, cause }) = built else { return Ok(()) };
     let cause = match (cause, nodes) {
         (cause @ Cause::UnknownGroup { .. }, _) => cause,
         (Cause::Penetrates { node, depth, clear }, [_, ..]) => Cause::Penetrates { node: nodes[node], depth, clear },
@@ -52,77 +44,50 @@ pub(super) fn check_coarsest<const D: usize, const N: usize>(
 }
 
 /// Reads all that makes the problem, and does not check it as a whole.
-fn with_start<const D: usize, const N: usize>(root: &Table<'_>, mesh: Mesh<D, N>) -> Result<Builder<D, N>, CaseError> {
-    let mut builder = stated(root, mesh)?;
+fn with_start(root: &Table<'_>, mesh: &AnyMesh) -> Result<Statement, CaseError> {
+    let mut stated = stated(root, mesh)?;
     if let Some(table) = root.single("initial")? {
         table.only(&["velocity", "displacement"])?;
-        if let Some(value) = table.get("velocity") {
-            builder = builder.initial_velocity(field(&value, "m/s")?);
-        }
-        if let Some(value) = table.get("displacement") {
-            builder = builder.initial_displacement(field(&value, "m")?);
-        }
+        let field =
+            |key: &str, unit: &str| table.get(key).map_or(Ok(Vec::new()), |v| field(&v, unit, mesh.dimension()));
+        (stated.velocity, stated.displacement) = (field("velocity", "m/s")?, field("displacement", "m")?);
     }
-    Ok(builder)
+    Ok(stated)
 }
 
 /// Reads materials, planes, contacts of bodies, supports and loads.
-pub(super) fn stated<const D: usize, const N: usize>(
-    root: &Table<'_>,
-    mesh: Mesh<D, N>,
-) -> Result<Builder<D, N>, CaseError> {
-    let shape = mesh.simplex().shape();
-    let mut builder = Problem::builder(mesh);
-    for (group, law) in material::read(root, shape)? {
-        builder = match group {
-            Some(group) => builder.material_of(group, law),
-            None => builder.material(law),
-        };
-    }
-    surroundings(root, builder)
+pub(super) fn stated(root: &Table<'_>, mesh: &AnyMesh) -> Result<Statement, CaseError> {
+    let materials = material::read(root, mesh.shape())?;
+    Ok(Statement { materials, ..surroundings(root, mesh)? })
 }
 
 /// Reads planes, contacts of bodies, supports, loads and weight.
-fn surroundings<const D: usize, const N: usize>(
-    root: &Table<'_>,
-    mut builder: Builder<D, N>,
-) -> Result<Builder<D, N>, CaseError> {
-    let (shape, parts) = (builder.mesh().simplex().shape(), builder.mesh().parts());
-    for contact in contact::read::<D>(root, shape, parts)? {
-        builder = builder.contact(contact);
-    }
-    for plane in obstacle::read(root, shape)? {
-        builder = builder.obstacle(plane);
-    }
-    for support in support::read(root)? {
-        builder = builder.support(support);
-    }
-    for traction in load::tractions(root)? {
-        builder = builder.traction(traction);
-    }
-    for force in load::body_forces(root)? {
-        builder = builder.body_force(force);
-    }
-    match root.get("gravity") {
-        Some(gravity) => Ok(builder.gravity(gravity.vector("m/s²")?)),
-        None => Ok(builder),
-    }
+fn surroundings(root: &Table<'_>, mesh: &AnyMesh) -> Result<Statement, CaseError> {
+    let dimension = mesh.dimension();
+    let contacts = contact::read(root, dimension, mesh.parts())?;
+    Ok(Statement {
+        contacts,
+        obstacles: obstacle::read(root, dimension)?,
+        supports: support::read(root, dimension)?,
+        tractions: load::tractions(root, dimension)?,
+        body_forces: load::body_forces(root, dimension)?,
+        gravity: root.get("gravity").map(|gravity| gravity.vector("m/s²", dimension)).transpose()?,
+        ..Statement::default()
+    })
 }
 
 /// Has the core check the problem as a whole.
-pub(super) fn build<const D: usize, const N: usize>(
-    root: &Table<'_>,
-    builder: Builder<D, N>,
-) -> Result<Problem<D, N>, CaseError> {
-    builder.build().map_err(|error| located(root, &error, &[]))
+pub(super) fn build(root: &Table<'_>, mesh: &AnyMesh, stated: &Statement) -> Result<AnyProblem, CaseError> {
+    AnyProblem::new(mesh, stated).map_err(|error| located(root, &error, &[]))
 }
 
-/// One vector for all nodes, or a list with one for each.
-fn field<const D: usize>(value: &Value<'_>, unit: &str) -> Result<Initial<D>, CaseError> {
+/// One vector for all nodes, or a list with one for each, in rows.
+fn field(value: &Value<'_>, unit: &str, dimension: usize) -> Result<Vec<f64>, CaseError> {
     let entries = if value.is_list() { value.list("")? } else { Vec::new() };
     // A bar has at least two nodes: a list of one number is the same for all of them.
-    let nodal = if D == 1 { entries.len() > 1 } else { entries.first().is_some_and(Value::is_list) };
-    if nodal { value.vectors(unit).map(Initial::Nodal) } else { value.vector(unit).map(Initial::Uniform) }
+    let nodal = if dimension == 1 { entries.len() > 1 } else { entries.first().is_some_and(Value::is_list) };
+    let vectors = if nodal { value.vectors(unit, dimension)? } else { vec![value.vector(unit, dimension)?] };
+    Ok(rows(vectors, dimension))
 }
 
 /// An error of the core, at its place in the file.

@@ -6,11 +6,12 @@ use super::source::{CaseError, Source};
 use super::table::Table;
 use super::text::{Writer, list, quoted, vector};
 use super::{AXES, estimate, parsed, problem};
-use percute_core::contact::{Interface, Obstacle, Plane};
+use percute_core::border::Vector;
+use percute_core::contact::{AnyObstacle, Interface};
 use percute_core::load::{BodyForce, Profile, Support, Table as InTime, Traction};
 use percute_core::material::{Elastic, Hypothesis, Law};
-use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, Problem};
+use percute_core::mesh::AnyMesh;
+use percute_core::problem::{AnyProblem, Statement};
 use percute_estimator::{Options, Sampling};
 use thiserror::Error;
 
@@ -50,23 +51,21 @@ fn law_name(hypothesis: Hypothesis) -> &'static str {
 ///
 /// # Errors
 /// A problem that the language cannot say.
-pub fn statement<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    options: Option<&Options>,
-) -> Result<String, NotRepresentable> {
-    let (stated, mut text) = (problem.statement(), Writer::default());
+pub fn statement(problem: &AnyProblem, options: Option<&Options>) -> Result<String, NotRepresentable> {
+    let (stated, mut text) = (problem.conditions(), Writer::default());
+    let d = problem.dimension();
     for (i, (group, law)) in stated.materials.iter().enumerate() {
-        material::<D>(&mut text, i, group.as_deref(), law)?;
+        material(&mut text, i, (group.as_deref(), law), d)?;
     }
     for one in problem.obstacles() {
         if let Some(plane) = one.as_plane() {
-            obstacle(&mut text, one, plane);
+            obstacle(&mut text, &one, &plane.map(|vector| vector[..d].to_vec()));
         }
     }
     stated.interfaces.iter().for_each(|one| interface(&mut text, one));
-    stated.supports.iter().for_each(|one| support(&mut text, one));
-    stated.tractions.iter().for_each(|one| traction(&mut text, one));
-    stated.body_forces.iter().for_each(|one| body_force(&mut text, one));
+    stated.supports.iter().for_each(|one| support(&mut text, one, d));
+    stated.tractions.iter().for_each(|one| traction(&mut text, one, d));
+    stated.body_forces.iter().for_each(|one| body_force(&mut text, one, d));
     if let Some(options) = options {
         text.table("[estimate]");
         text.key("reconstruction", quoted(&options.reconstruction.to_string()));
@@ -84,16 +83,16 @@ pub fn statement<const D: usize, const N: usize>(
 }
 
 /// Reads what [`statement`] wrote, on a mesh and with initial displacement (m) and velocity (m/s) at
-/// the nodes. The options are the defaults where the text has none.
+/// the nodes, in rows. The options are the defaults where the text has none.
 ///
 /// # Errors
 /// The first thing that is wrong; `[mesh]`, `[initial]`, `[time]` and `[output]`, which are no part of a statement.
-pub fn problem_from<const D: usize, const N: usize>(
+pub fn problem_from(
     source: &Source,
-    mesh: Mesh<D, N>,
-    initial_displacement: Vec<[f64; D]>,
-    initial_velocity: Vec<[f64; D]>,
-) -> Result<(Problem<D, N>, Options), CaseError> {
+    mesh: &AnyMesh,
+    initial_displacement: Vec<f64>,
+    initial_velocity: Vec<f64>,
+) -> Result<(AnyProblem, Options), CaseError> {
     let document = parsed(source)?;
     let root = Table::root(source, document.get_ref());
     for name in BESIDE {
@@ -101,22 +100,24 @@ pub fn problem_from<const D: usize, const N: usize>(
     }
     root.only(&TABLES)?;
     let options = estimate::read(&root)?;
-    let builder = problem::stated(&root, mesh)?
-        .planes_to_be_moved()
-        .initial_displacement(Initial::Nodal(initial_displacement))
-        .initial_velocity(Initial::Nodal(initial_velocity));
-    Ok((problem::build(&root, builder)?, options))
+    let stated = Statement {
+        planes_to_be_moved: true,
+        displacement: initial_displacement,
+        velocity: initial_velocity,
+        ..problem::stated(&root, mesh)?
+    };
+    Ok((problem::build(&root, mesh, &stated)?, options))
 }
 
-fn material<const D: usize>(
+fn material(
     text: &mut Writer,
     index: usize,
-    group: Option<&str>,
-    law: &Elastic,
+    (group, law): (Option<&str>, &Elastic),
+    dimension: usize,
 ) -> Result<(), NotRepresentable> {
     let hypothesis = law.hypothesis();
-    if (hypothesis == Hypothesis::Bar) != (D == 1) {
-        return Err(NotRepresentable::Law { index: index + 1, hypothesis, dimension: D });
+    if (hypothesis == Hypothesis::Bar) != (dimension == 1) {
+        return Err(NotRepresentable::Law { index: index + 1, hypothesis, dimension });
     }
     text.table("[[material]]");
     text.group(group);
@@ -139,11 +140,11 @@ fn material<const D: usize>(
     Ok(())
 }
 
-fn obstacle<const D: usize>(text: &mut Writer, obstacle: &Obstacle<D>, plane: &Plane<D>) {
+fn obstacle(text: &mut Writer, obstacle: &AnyObstacle, [point, direction]: &[Vec<f64>; 2]) {
     text.table("[[obstacle]]");
-    text.key("point", vector(plane.point()));
+    text.key("point", vector(point));
     // As it was given: a unit normal made unit again may differ in the last bit.
-    text.key("normal", vector(plane.direction()));
+    text.key("normal", vector(direction));
     text.number("friction", obstacle.law().friction());
     text.group(obstacle.group());
 }
@@ -159,35 +160,35 @@ fn interface(text: &mut Writer, interface: &Interface) {
     }
 }
 
-fn support<const D: usize>(text: &mut Writer, support: &Support<D>) {
-    let axes: Vec<usize> = (0..D).filter(|&c| support.components[c]).collect();
+fn support(text: &mut Writer, support: &Support, d: usize) {
+    let axes: Vec<usize> = (0..d).filter(|&c| support.components[c]).collect();
     text.table("[[support]]");
     text.group(Some(&support.group));
     text.key("components", list(axes.iter().map(|&c| quoted(AXES[c]))));
     let Some(table) = &support.velocity else { return };
     // Of other components the language does not speak, nor do they matter.
-    let named = |all: &[f64; D]| axes.iter().map(|&c| all[c]).collect::<Vec<_>>();
+    let named = |all: &Vector| axes.iter().map(|&c| all[c]).collect::<Vec<_>>();
     let value = list(table.value().iter().map(|all| vector(&named(all))));
     text.key("velocity", format!("{{ time = {}, value = {value} }}", numbers(table.time())));
 }
 
-fn traction<const D: usize>(text: &mut Writer, traction: &Traction<D>) {
+fn traction(text: &mut Writer, traction: &Traction, d: usize) {
     text.table("[[traction]]");
     text.group(Some(&traction.group));
-    in_time(text, &traction.value);
+    in_time(text, &traction.value, d);
     let Profile { value, gradient } = &traction.profile;
-    text.key("profile", format!("{{ value = {value:?}, gradient = {} }}", vector(gradient)));
+    text.key("profile", format!("{{ value = {value:?}, gradient = {} }}", vector(&gradient[..d])));
 }
 
-fn body_force<const D: usize>(text: &mut Writer, force: &BodyForce<D>) {
+fn body_force(text: &mut Writer, force: &BodyForce, d: usize) {
     text.table("[[body_force]]");
     text.group(force.group.as_deref());
-    in_time(text, &force.value);
+    in_time(text, &force.value, d);
 }
 
-fn in_time<const D: usize>(text: &mut Writer, table: &InTime<D>) {
+fn in_time(text: &mut Writer, table: &InTime, d: usize) {
     text.key("time", numbers(table.time()));
-    text.key("value", list(table.value().iter().map(|v| vector(v))));
+    text.key("value", list(table.value().iter().map(|v| vector(&v[..d]))));
 }
 
 fn numbers(all: &[f64]) -> String {

@@ -5,20 +5,21 @@ use super::load::table_in_time;
 use super::source::CaseError;
 use super::table::Table as Keys;
 use crate::message::{hint, list};
+use percute_core::border::Vector;
 use percute_core::load::{Support, Table};
 
 const VELOCITY: &str = "{ time = [0.0, 1e-5], value = [0.0, 3.0] }";
 
 /// Reads all supports.
-pub(super) fn read<const D: usize>(root: &Keys<'_>) -> Result<Vec<Support<D>>, CaseError> {
-    root.tables("support")?.iter().map(one).collect()
+pub(super) fn read(root: &Keys<'_>, dimension: usize) -> Result<Vec<Support>, CaseError> {
+    root.tables("support")?.iter().map(|table| one(table, dimension)).collect()
 }
 
-fn one<const D: usize>(table: &Keys<'_>) -> Result<Support<D>, CaseError> {
+fn one(table: &Keys<'_>, dimension: usize) -> Result<Support, CaseError> {
     table.only(&["group", "components", "velocity"])?;
     let group = table.require("group", "the name of a group of edges")?.text("the name of a group of edges")?;
-    let order = components::<D>(table)?;
-    let mut components = [false; D];
+    let order = components(table, dimension)?;
+    let mut components = [false; 3];
     order.iter().for_each(|&c| components[c] = true);
     let velocity = match table.get("velocity") {
         None => None,
@@ -28,12 +29,12 @@ fn one<const D: usize>(table: &Keys<'_>) -> Result<Support<D>, CaseError> {
 }
 
 /// Which components are named, in the order of the file.
-fn components<const D: usize>(table: &Keys<'_>) -> Result<Vec<usize>, CaseError> {
+fn components(table: &Keys<'_>, dimension: usize) -> Result<Vec<usize>, CaseError> {
     let value = table.require("components", "a list of axes, such as [\"x\"]")?;
     let mut order = Vec::new();
     for entry in value.list("axes, such as [\"x\"]")? {
         let name = entry.text("an axis")?;
-        let known = AXES.iter().take(D).copied();
+        let known = AXES.iter().take(dimension).copied();
         let Some(axis) = known.clone().position(|axis| axis == name) else {
             return Err(entry.must_be(format!("one of {}{}", list(known.clone()), hint(name, known))));
         };
@@ -50,22 +51,10 @@ fn components<const D: usize>(table: &Keys<'_>) -> Result<Vec<usize>, CaseError>
 
 /// A velocity table: a number per instant for one component, else a list with an entry for each,
 /// in their order.
-fn motion<const D: usize>(table: &Keys<'_>, order: &[usize]) -> Result<Table<D>, CaseError> {
-    match order.len() {
-        1 => spread(&table_in_time::<1>(table, "m/s")?, table, order),
-        2 => spread(&table_in_time::<2>(table, "m/s")?, table, order),
-        _ => spread(&table_in_time::<3>(table, "m/s")?, table, order),
-    }
-}
-
-/// Puts the components named into their places.
-fn spread<const C: usize, const D: usize>(
-    named: &Table<C>,
-    table: &Keys<'_>,
-    order: &[usize],
-) -> Result<Table<D>, CaseError> {
-    let place = |value: &[f64; C]| {
-        let mut all = [0.0; D];
+fn motion(table: &Keys<'_>, order: &[usize]) -> Result<Table, CaseError> {
+    let named = table_in_time(table, "m/s", order.len())?;
+    let place = |value: &Vector| {
+        let mut all = [0.0; 3];
         order.iter().zip(value).for_each(|(&axis, &v)| all[axis] = v);
         all
     };

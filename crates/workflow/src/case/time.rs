@@ -6,7 +6,7 @@ use super::value::Value;
 use crate::message::trimmed;
 use crate::report::unstable_steps;
 use crate::until::{Until, no_rebound};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::{TimeError, TimeGrid, is_stable};
 
 /// The keys of the table.
@@ -93,11 +93,7 @@ fn positive(value: &Value<'_>) -> Result<f64, CaseError> {
 
 impl Wanted<'_> {
     /// The end with the rebound, if the run ends so; it needs a plane.
-    pub(super) fn until<const D: usize, const N: usize>(
-        &self,
-        problem: &Problem<D, N>,
-        critical: f64,
-    ) -> Result<Option<Until>, CaseError> {
+    pub(super) fn until(&self, problem: &AnyProblem, critical: f64) -> Result<Option<Until>, CaseError> {
         let Some(Rebound { end, longest, after }) = &self.rebound else { return Ok(None) };
         if let Some(told) = no_rebound(problem) {
             return Err(end.error(format!("= {told}")));

@@ -9,7 +9,7 @@ use crate::run;
 use crate::through::Through;
 use percute_core::history::{SinkError, Step, StepSource};
 use percute_core::observer::{Observer, Progress};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_io::export::{Contents, Format, Writer};
 use percute_io::{FileError, Overwrite};
 use quantity::{Rows, quantities};
@@ -61,25 +61,25 @@ impl Request {
 }
 
 /// An export that can be written.
-pub struct Export<'a, const D: usize, const N: usize> {
-    problem: &'a Problem<D, N>,
-    source: &'a dyn StepSource<D>,
+pub struct Export<'a> {
+    problem: &'a AnyProblem,
+    source: &'a dyn StepSource,
     path: &'a Path,
     format: Format,
-    rows: Rows<'a, D, N>,
+    rows: Rows<'a>,
     instants: Vec<(usize, f64)>,
     /// Whether velocities and accelerations follow from the scheme.
     by_scheme: bool,
 }
 
-impl<'a, const D: usize, const N: usize> Export<'a, D, N> {
+impl<'a> Export<'a> {
     /// Checks a request.
     ///
     /// # Errors
     /// A name without a known ending, a step or time after the last, an unknown field, an estimate of another mesh.
     pub fn new(
-        problem: &'a Problem<D, N>,
-        source: &'a dyn StepSource<D>,
+        problem: &'a AnyProblem,
+        source: &'a dyn StepSource,
         path: &'a Path,
         request: &Request,
     ) -> Result<Self, Failure> {
@@ -173,7 +173,7 @@ impl<'a, const D: usize, const N: usize> Export<'a, D, N> {
             let progress = Progress { stage: "exporting", done: step.index, total: last };
             if observer.borrow_mut().observe(progress).is_break() { Err(Stopped.into()) } else { Ok(()) }
         });
-        let mut take = |step: &Step<'_, D>| Ok(writer.push(&rows.at(step))?);
+        let mut take = |step: &Step<'_>| Ok(writer.push(&rows.at(step))?);
         match run::chosen(self.problem, &source, &steps, rows.need_motion() && self.by_scheme, &mut take) {
             Ok(()) => {}
             Err(cause) if cause.is::<Done>() => {}

@@ -6,7 +6,7 @@ use crate::message::hint;
 use percute_core::element_state::ElementState;
 use percute_core::history::Step;
 use percute_core::ids::ElementId;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_io::export::{ExportField, Place, in_space};
 
 /// A quantity of an export, beside the displacement, which each export has.
@@ -51,14 +51,14 @@ impl Quantity {
 }
 
 /// The rows of the fields of an export.
-pub(super) struct Rows<'a, const D: usize, const N: usize> {
-    pub(super) problem: &'a Problem<D, N>,
+pub(super) struct Rows<'a> {
+    pub(super) problem: &'a AnyProblem,
     pub(super) quantities: Vec<Quantity>,
     /// e_E of each element (J^½).
     pub(super) error: Vec<f64>,
 }
 
-impl<const D: usize, const N: usize> Rows<'_, D, N> {
+impl Rows<'_> {
     pub(super) fn fields(&self) -> Vec<ExportField> {
         let units = self.problem.units();
         let fields = self.quantities.iter().map(|quantity| quantity.field());
@@ -71,17 +71,18 @@ impl<const D: usize, const N: usize> Rows<'_, D, N> {
     }
 
     /// The rows of all fields at a step.
-    pub(super) fn at(&self, step: &Step<'_, D>) -> Vec<Vec<f64>> {
+    pub(super) fn at(&self, step: &Step<'_>) -> Vec<Vec<f64>> {
+        let d = self.problem.dimension();
         let of_elements = |q: &Quantity| matches!(q, Quantity::Stress | Quantity::VonMises | Quantity::Pressure);
         let elements = (0..self.problem.mesh().element_count()).map(ElementId::new);
-        let states: Vec<ElementState<D>> = match self.quantities.iter().any(of_elements) {
+        let states: Vec<ElementState> = match self.quantities.iter().any(of_elements) {
             true => elements.map(|e| ElementState::new(self.problem, e, step.displacement)).collect(),
             false => Vec::new(),
         };
         let rows = |quantity: &Quantity| match quantity {
-            Quantity::Displacement => in_space(step.displacement),
-            Quantity::Velocity => in_space(step.velocity.unwrap_or_default()),
-            Quantity::Acceleration => in_space(step.acceleration.unwrap_or_default()),
+            Quantity::Displacement => in_space(step.displacement, d),
+            Quantity::Velocity => in_space(step.velocity.unwrap_or_default(), d),
+            Quantity::Acceleration => in_space(step.acceleration.unwrap_or_default(), d),
             Quantity::Reaction => self.reaction(step),
             Quantity::Stress => states.iter().flat_map(tensor).collect(),
             Quantity::VonMises => states.iter().map(ElementState::von_mises).collect(),
@@ -92,12 +93,12 @@ impl<const D: usize, const N: usize> Rows<'_, D, N> {
     }
 
     /// R_n on all nodes; 0 where no plane can be touched.
-    fn reaction(&self, step: &Step<'_, D>) -> Vec<f64> {
-        let mut all = vec![[0.0; D]; self.problem.mesh().node_count()];
-        for (contact, reaction) in self.problem.surface().nodes().iter().zip(step.reaction) {
-            (0..D).for_each(|c| all[contact.node.index()][c] += reaction[c]);
+    fn reaction(&self, step: &Step<'_>) -> Vec<f64> {
+        let (mut all, d) = (vec![[0.0; 3]; self.problem.mesh().node_count()], self.problem.dimension());
+        for (contact, reaction) in self.problem.contact_nodes().iter().zip(step.reaction.chunks_exact(d)) {
+            all[contact.node.index()].iter_mut().zip(reaction).for_each(|(sum, force)| *sum += force);
         }
-        in_space(&all)
+        all.into_flattened()
     }
 }
 
@@ -138,11 +139,8 @@ pub(super) fn quantities(request: &Request) -> Result<Vec<Quantity>, Failure> {
 }
 
 /// σ in three dimensions (Pa), row after row.
-fn tensor<const D: usize>(state: &ElementState<D>) -> [f64; 9] {
-    let mut tensor = [0.0; 9];
-    tensor[8] = state.stress_across;
-    for a in 0..D {
-        (0..D).for_each(|b| tensor[3 * a + b] = state.stress[a][b]);
-    }
-    tensor
+fn tensor(state: &ElementState) -> [f64; 9] {
+    let mut tensor = state.stress;
+    tensor[2][2] = state.stress_across;
+    std::array::from_fn(|k| tensor[k / 3][k % 3])
 }

@@ -12,7 +12,7 @@ use percute_core::history::SinkError;
 /// The cause of a history that runs backwards.
 pub(crate) const REVERSED: &str = "the order in time is reversed: the last instants fit the initial state";
 
-impl<const D: usize, const N: usize> Suspect<'_, D, N> {
+impl Suspect<'_> {
     /// The likely cause, if the numbers single one out.
     pub(super) fn cause(&self, exceeded: &[Excess]) -> Result<Option<String>, SinkError> {
         let over = |name: &str| exceeded.iter().any(|excess| excess.name == name);
@@ -93,14 +93,12 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
         if let Some(text) = units::displacements(self.evidence) {
             return text;
         }
-        let [given, stated] = ends.start;
+        let [given, stated] = ends.start.map(|start| vector(&start[..self.problem.dimension()], 4));
         let factor = ends.multiple.filter(|f| f.is_finite() && (f - 1.0).abs() > BALANCE);
         let factor = factor.map_or(String::new(), |f| format!(", {} the stated one", times(f)));
         format!(
-            "`initial_velocity` is not that of the history, which starts with {} m/s on average{factor}; the problem \
-             has {} m/s",
-            vector(&given, 4),
-            vector(&stated, 4)
+            "`initial_velocity` is not that of the history, which starts with {given} m/s on average{factor}; the \
+             problem has {stated} m/s"
         )
     }
 
@@ -117,7 +115,7 @@ impl<const D: usize, const N: usize> Suspect<'_, D, N> {
     }
 
     fn without_contact(&self) -> String {
-        let [through, or] = match self.problem.statement().interfaces.is_empty() {
+        let [through, or] = match self.problem.conditions().interfaces.is_empty() {
             true => ["their plane", "the `point` of the plane is not that"],
             false => ["another body", "the places of the bodies are not those"],
         };

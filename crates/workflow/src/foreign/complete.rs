@@ -3,11 +3,11 @@
 use super::derive::{Derivation, Heard};
 use super::opposite::groups;
 use super::pairs;
-use super::window::{Held, windows};
+use super::window::{Held, rows_of, windows};
 use crate::message::{counted, trimmed};
-use percute_core::contact::ContactSurface;
+use percute_core::border::Vector;
 use percute_core::history::{SinkError, Step, StepSource};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use serde::Serialize;
 
@@ -48,24 +48,24 @@ pub struct Lacks {
 }
 
 /// A history with what it lacked. The last instant is left out if its contact forces are not known.
-pub struct Completed<'s, const D: usize, const N: usize> {
-    derivation: Derivation<'s, D, N>,
-    source: &'s dyn StepSource<D>,
+pub struct Completed<'s> {
+    derivation: Derivation<'s>,
+    source: &'s dyn StepSource,
     lacks: Lacks,
     times: TimeGrid,
     count: usize,
     derived: Vec<Derived>,
 }
 
-impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
+impl<'s> Completed<'s> {
     /// Looks at a history once, to see whether its last contact forces are known.
     ///
     /// # Errors
     /// A node that may touch two planes; missing forces between surfaces that slide along each other; steps that cannot
     /// be read; forces on two nodes of different bodies that are not opposite; fewer than three instants of which the
     /// last is not known.
-    pub fn new(problem: &'s Problem<D, N>, source: &'s dyn StepSource<D>, lacks: Lacks) -> Result<Self, SinkError> {
-        if let Some(contact) = problem.surface().nodes().iter().find(|contact| contact.beside.is_some()) {
+    pub fn new(problem: &'s AnyProblem, source: &'s dyn StepSource, lacks: Lacks) -> Result<Self, SinkError> {
+        if let Some(contact) = problem.contact_nodes().iter().find(|contact| contact.beside.is_some()) {
             let told = format!(
                 "histories of other programs are read for nodes at one plane, and node {} may touch two; name for each \
                  plane a `group` so that no node lies in two, or simulate with percute",
@@ -76,13 +76,13 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
         let (times, count) = (source.times().clone(), source.count());
         let derivation = Derivation::new(problem, source);
         let mut made = Self { derivation, source, lacks, times, count, derived: Vec::new() };
-        if problem.surface().nodes().is_empty() {
+        if problem.contact_nodes().is_empty() {
             return Ok(made);
         }
         let needed = made.needed_at_the_end()?;
         if lacks.reaction {
             match made.derivation.listen(source)? {
-                [_, Some(sliding)] => return Err(forces_missing(problem.surface(), sliding).into()),
+                [_, Some(sliding)] => return Err(forces_missing(problem, sliding).into()),
                 [Some(_), None] => {}
                 [None, None] => {
                     // Nothing touches: the history is complete.
@@ -102,6 +102,10 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
         Ok(made)
     }
 
+    fn dimension(&self) -> usize {
+        self.derivation.problem().dimension()
+    }
+
     /// The parts that were derived.
     #[must_use]
     pub fn derived(&self) -> &[Derived] {
@@ -116,9 +120,9 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
     }
 
     /// The contact forces of an instant as they are given, opposite on two nodes of different bodies.
-    fn given(&self, now: &Held<D>) -> Result<Vec<[f64; D]>, SinkError> {
-        let surface = self.derivation.surface();
-        if let Some([first, second]) = pairs::not_opposite(surface, &now.reaction) {
+    fn given(&self, now: &Held) -> Result<Vec<Vector>, SinkError> {
+        let problem = self.derivation.problem();
+        if let Some([first, second]) = pairs::not_opposite(problem, &now.reaction) {
             return Err(format!(
                 "`reaction`: the forces on nodes {first} and {second}, which touch each other, are not opposite at \
                  step {}; give the force on each node, or leave `reaction` out, and it is derived",
@@ -127,7 +131,7 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
             .into());
         }
         let mut reaction = now.reaction.clone();
-        pairs::make_opposite(surface, &mut reaction);
+        pairs::make_opposite(problem, &mut reaction);
         Ok(reaction)
     }
 
@@ -148,12 +152,12 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
     fn needed_at_the_end(&self) -> Result<bool, SinkError> {
         let last = self.source.count().saturating_sub(1);
         let mut needed = false;
-        windows(self.source, &mut |window| {
+        windows(self.source, self.dimension(), &mut |window| {
             if window.now.index < last {
                 return Ok(());
             }
             let known = window.now.acceleration.is_some();
-            if window.before.is_some() && !known && window.now.reaction.iter().all(|r| *r == [0.0; D]) {
+            if window.before.is_some() && !known && window.now.reaction.iter().all(|r| *r == [0.0; 3]) {
                 needed = self.derivation.enters(window);
             }
             Ok(())
@@ -163,9 +167,8 @@ impl<'s, const D: usize, const N: usize> Completed<'s, D, N> {
 }
 
 /// What to do about the forces of surfaces that slide, if they are missing.
-fn forces_missing<const D: usize>(surface: &ContactSurface<D>, heard: Heard) -> String {
-    let sliding = surface.sliding_of(heard.at).map(|index| &surface.sliding()[index]);
-    let groups = sliding.map(|sliding| groups(surface, sliding).join(" and "));
+fn forces_missing(problem: &AnyProblem, heard: Heard) -> String {
+    let groups = problem.sliding_of(heard.at).map(|sliding| groups(problem, sliding).join(" and "));
     format!(
         "`reaction` is missing: the contact forces between {}, which slide or whose nodes do not face each other, are \
          not derived, and some act from {} s on; give the force on each node of both (N) at each step of the solver, \
@@ -175,7 +178,7 @@ fn forces_missing<const D: usize>(surface: &ContactSurface<D>, heard: Heard) -> 
     )
 }
 
-impl<const D: usize, const N: usize> StepSource<D> for Completed<'_, D, N> {
+impl StepSource for Completed<'_> {
     fn times(&self) -> &TimeGrid {
         &self.times
     }
@@ -184,26 +187,26 @@ impl<const D: usize, const N: usize> StepSource<D> for Completed<'_, D, N> {
         self.count
     }
 
-    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError> {
         let derivation = &self.derivation;
         let mut touched = None;
-        windows(self.source, &mut |window| {
+        windows(self.source, self.dimension(), &mut |window| {
             let now = window.now;
             if now.index >= self.count {
                 return Ok(());
             }
             let reaction = if self.lacks.reaction {
-                derivation.reactions(window).unwrap_or_else(|| vec![[0.0; D]; now.reaction.len()])
+                derivation.reactions(window).unwrap_or_else(|| vec![[0.0; 3]; now.reaction.len()])
             } else {
                 self.given(now)?
             };
-            let reaction = &reaction;
+            let rows = &rows_of(&reaction, self.dimension())[..];
             if !self.lacks.touching {
-                return take(&Step { reaction, ..now.step() });
+                return take(&Step { reaction: rows, ..now.step() });
             }
-            let next = derivation.touching(window, reaction);
-            let touching = touched.replace(next).unwrap_or_else(|| derivation.touching_at_start(window, reaction));
-            take(&Step { reaction, touching: &touching, ..now.step() })
+            let next = derivation.touching(window, rows);
+            let touching = touched.replace(next).unwrap_or_else(|| derivation.touching_at_start(window, rows));
+            take(&Step { reaction: rows, touching: &touching, ..now.step() })
         })
     }
 }

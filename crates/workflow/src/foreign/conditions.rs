@@ -2,26 +2,26 @@
 //! multipliers of the slave, with weighted gaps and motions.
 
 use super::balance::Balance;
-use super::window::Window;
-use percute_core::contact::Facing;
-use std::borrow::Cow;
+use super::window::{Window, rows_of};
+use percute_core::border::Vector;
+use percute_core::contact::AnyFacing;
 
 /// The conditions of the step after an instant, by their positions in the contact surface.
 #[derive(Clone, Debug)]
-pub(super) struct Conditions<'p, const D: usize> {
+pub(super) struct Conditions<'p> {
     /// With D and M of the step.
-    facing: Facing<'p, D>,
+    facing: AnyFacing<'p>,
 }
 
-impl<'p, const D: usize> Conditions<'p, D> {
+impl<'p> Conditions<'p> {
     /// Of the step after `window.now`.
-    pub(super) fn of<const N: usize>(balance: &Balance<'p, D, N>, window: Window<'_, D>) -> Self {
-        let surface = balance.problem().surface();
+    pub(super) fn of(balance: &Balance<'p>, window: Window<'_>) -> Self {
+        let problem = balance.problem();
         // Elsewhere nothing depends on the place.
-        let facing = if surface.sliding().is_empty() {
-            surface.facing(&[])
+        let facing = if problem.sliding_count() == 0 {
+            problem.facing(&[])
         } else {
-            surface.facing(&balance.predicted(window.before, window.now))
+            problem.facing(&rows_of(&balance.predicted(window.before, window.now), problem.dimension()))
         };
         Self { facing }
     }
@@ -32,27 +32,27 @@ impl<'p, const D: usize> Conditions<'p, D> {
     }
 
     /// The forces that they are about (N), from those on the nodes.
-    pub(super) fn forces(&self, reaction: &[[f64; D]]) -> Vec<[f64; D]> {
+    pub(super) fn forces(&self, reaction: &[f64]) -> Vec<f64> {
         self.facing.forces(reaction)
     }
 
     /// The gap of one (m) with these displacements of all nodes; infinite where there is none.
-    pub(super) fn gap(&self, at: usize, displacement: &[[f64; D]]) -> f64 {
+    pub(super) fn gap(&self, at: usize, displacement: &[f64]) -> f64 {
         if self.holds(at) { self.facing.gap(at, displacement) } else { f64::INFINITY }
     }
 
     /// How far one gives way (m) under the forces of all (N): its gap plus this is 0 where it is closed.
-    pub(super) fn give(&self, at: usize, forces: &[[f64; D]]) -> f64 {
+    pub(super) fn give(&self, at: usize, forces: &[f64]) -> f64 {
         self.facing.give(at, forces)
     }
 
     /// The smallest of its gaps (m) with these.
-    pub(super) fn nearest(&self, at: usize, displacements: &[Cow<'_, [[f64; D]]>]) -> f64 {
+    pub(super) fn nearest(&self, at: usize, displacements: &[Vec<f64>]) -> f64 {
         displacements.iter().map(|displacement| self.gap(at, displacement)).fold(f64::INFINITY, f64::min)
     }
 
     /// A nodal field against what the node faces.
-    pub(super) fn relative(&self, at: usize, field: &[[f64; D]]) -> [f64; D] {
+    pub(super) fn relative(&self, at: usize, field: &[f64]) -> Vector {
         self.facing.relative(at, field)
     }
 

@@ -6,9 +6,10 @@ use super::figures::Consistency;
 use super::gaps::Gaps;
 use super::nearness::{ADDED, Nearness, unsure};
 use super::opposite::Opposite;
-use super::window::Window;
-use percute_core::contact::{ContactNode, Frame, SlidingSurfaces};
-use percute_core::problem::Problem;
+use super::window::{Window, rows_of, vectors_of};
+use percute_core::border::Vector;
+use percute_core::contact::{ContactNode, Frame};
+use percute_core::problem::AnyProblem;
 
 /// A force that changes the velocity of its node by less than this share of the largest in a step may be rounding.
 const FAINT: f64 = 1e-6;
@@ -38,13 +39,13 @@ impl PlaneSums {
 
 /// Contact of all nodes and instants.
 #[derive(Debug)]
-pub(super) struct Contact<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+pub(super) struct Contact<'p> {
+    problem: &'p AnyProblem,
     nearness: Nearness,
     /// Of each plane.
     planes: Vec<PlaneSums>,
     /// The forces of the instant before (N), and the gaps at its end (m).
-    before: Option<(Vec<[f64; D]>, Vec<f64>)>,
+    before: Option<(Vec<Vector>, Vec<f64>)>,
     /// Of each two surfaces that slide.
     opposite: Vec<Opposite>,
     /// Nodes of the surface on which a force acts at some instant.
@@ -63,18 +64,18 @@ pub(super) struct Contact<'p, const D: usize, const N: usize> {
     changes: [usize; 2],
 }
 
-impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
-    pub(super) fn new(problem: &'p Problem<D, N>) -> Self {
+impl<'p> Contact<'p> {
+    pub(super) fn new(problem: &'p AnyProblem) -> Self {
         Self {
             problem,
             nearness: Nearness::new(problem),
-            planes: vec![PlaneSums::new(problem.surface().nodes().len()); problem.obstacles().len()],
+            planes: vec![PlaneSums::new(problem.contact_nodes().len()); problem.obstacle_count()],
             before: None,
-            opposite: vec![Opposite::default(); problem.surface().sliding().len()],
-            forced: vec![false; problem.surface().nodes().len()],
+            opposite: vec![Opposite::default(); problem.sliding_count()],
+            forced: vec![false; problem.contact_nodes().len()],
             largest: [0.0; 4],
             pressed: [0.0; 3],
-            springs: vec![[0.0; 2]; problem.surface().nodes().len()],
+            springs: vec![[0.0; 2]; problem.contact_nodes().len()],
             unsure: 0.0,
             disagree: [0; 3],
             changes: [0; 2],
@@ -85,9 +86,9 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
     /// balance.
     pub(super) fn take(
         &mut self,
-        (window, conditions): (Window<'_, D>, &Conditions<'_, D>),
-        motion: Option<&Motion<D>>,
-        terms: Option<&Terms<D>>,
+        (window, conditions): (Window<'_>, &Conditions<'_>),
+        motion: Option<&Motion>,
+        terms: Option<&Terms>,
         [dt, h]: [f64; 2],
     ) {
         let (problem, now) = (self.problem, window.now);
@@ -96,26 +97,27 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         let least = SLIDING * speed;
         // Status is derived without forces that move a node by rounding.
         let rounding = problem.contact_tolerance() / (dt * h);
-        let faint = |at: usize, mass: f64| {
-            (FAINT * speed / h * mass).max(rounding * problem.surface().moved_mass(at, problem.mass()))
-        };
-        let (forces, before) = (conditions.forces(&now.reaction), self.before.take());
-        for (opposite, sliding) in self.opposite.iter_mut().zip(problem.surface().sliding()) {
-            opposite.take(sliding, &now.reaction, &forces);
+        let faint = |at: usize, mass: f64| (FAINT * speed / h * mass).max(rounding * problem.moved_mass(at));
+        let (rows, before, d) = (conditions.forces(now.step().reaction), self.before.take(), problem.dimension());
+        let forces = vectors_of(&rows, d);
+        for (sliding, opposite) in self.opposite.iter_mut().enumerate() {
+            opposite.take(&problem.sides_of_sliding(sliding), &now.reaction, &forces);
         }
+        let forward = motion.map(|motion| rows_of(&motion.forward, d));
         let mut gaps = vec![f64::INFINITY; forces.len()];
-        for (at, contact) in problem.surface().nodes().iter().enumerate() {
+        for (at, contact) in problem.contact_nodes().iter().enumerate() {
             let node = contact.node.index();
-            let frame = problem.surface().frame(at, &now.displacement[node]);
-            self.forced[at] |= now.reaction[at] != [0.0; D];
+            let frame = problem.frame(at);
+            self.forced[at] |= now.reaction[at] != [0.0; 3];
             self.press(at, &frame, &forces[at], before.as_ref().map(|(_, gaps)| gaps[at]));
-            let (Some(after), Some(motion)) = (window.after, motion) else { continue };
+            let (Some(after), Some(forward)) = (window.after, &forward) else { continue };
+            let moved = after.step().displacement;
             if !conditions.holds(at) {
                 continue;
             }
-            gaps[at] = conditions.gap(at, &after.displacement) + conditions.give(at, &forces);
-            let place = [gaps[at], along(&frame, problem.surface().point(at), &after.displacement[node])];
-            let path = frame.split(&conditions.relative(at, &after.displacement)).0;
+            gaps[at] = conditions.gap(at, moved) + conditions.give(at, &rows);
+            let place = [gaps[at], along(&frame, &problem.contact_point(at), &after.displacement[node], d)];
+            let path = frame.split(&conditions.relative(at, moved)).0;
             self.gap(at, (&frame, place, path), (&forces[at], terms.map(|terms| terms.rest(node))));
             if contact.free {
                 let earlier = before.as_ref().map(|(forces, _)| &forces[at]);
@@ -124,7 +126,7 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
                     (&forces[at], earlier),
                     faint(at, problem.mass()[node]),
                 );
-                let velocity = conditions.relative(at, &motion.forward);
+                let velocity = conditions.relative(at, forward);
                 self.slide(contact, &frame, (&forces[at], &velocity), [dt, least]);
             }
         }
@@ -132,9 +134,9 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
     }
 
     /// The cone, and penetration, from the gap at this instant (m).
-    fn press(&mut self, at: usize, frame: &Frame<D>, force: &[f64; D], gap: Option<f64>) {
-        let contact = &self.problem.surface().nodes()[at];
-        let [slip, tension] = self.problem.obstacles()[contact.obstacle].law().excess(frame, force);
+    fn press(&mut self, at: usize, frame: &Frame<3>, force: &Vector, gap: Option<f64>) {
+        let contact = &self.problem.contact_nodes()[at];
+        let [slip, tension] = self.problem.obstacle(contact.obstacle).law().excess(frame, force);
         let slip = if contact.guided { 0.0 } else { slip };
         let normal = frame.split(force).0;
         self.largest[0] = self.largest[0].max(normal);
@@ -155,10 +157,10 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
     fn gap(
         &mut self,
         at: usize,
-        (frame, place, path): (&Frame<D>, [f64; 2], f64),
-        (force, needed): (&[f64; D], Option<[f64; D]>),
+        (frame, place, path): (&Frame<3>, [f64; 2], f64),
+        (force, needed): (&Vector, Option<Vector>),
     ) {
-        let (contact, [gap, _]) = (&self.problem.surface().nodes()[at], place);
+        let (contact, [gap, _]) = (&self.problem.contact_nodes()[at], place);
         let normal = frame.split(force).0.max(0.0);
         self.largest[2] = self.largest[2].max(normal * gap);
         if !contact.free {
@@ -166,7 +168,7 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         }
         let plane = &mut self.planes[contact.obstacle];
         plane.forced.add(at, normal, place, path);
-        if *force == [0.0; D] {
+        if *force == [0.0; 3] {
             let needed = needed.map_or(0.0, |needed| frame.split(&needed).0.max(0.0));
             plane.missing.add(at, needed, place, path);
         }
@@ -174,10 +176,9 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
 
     /// Touching status at t_n and t_{n+1} against the force at t_n and the one before; forces below `faint` (N) are
     /// none or any.
-    fn status(&mut self, [now, after]: [bool; 2], (force, before): (&[f64; D], Option<&[f64; D]>), faint: f64) {
-        let disagree = |touches: bool, force: &[f64; D]| {
-            usize::from(if touches { *force == [0.0; D] } else { norm(force) > faint })
-        };
+    fn status(&mut self, [now, after]: [bool; 2], (force, before): (&Vector, Option<&Vector>), faint: f64) {
+        let disagree =
+            |touches: bool, force: &Vector| usize::from(if touches { *force == [0.0; 3] } else { norm(force) > faint });
         self.disagree[0] += disagree(after, force);
         self.disagree[1] += disagree(now, force);
         self.changes[0] += usize::from(after != now);
@@ -191,8 +192,8 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
     fn slide(
         &mut self,
         contact: &ContactNode,
-        frame: &Frame<D>,
-        (force, velocity): (&[f64; D], &[f64; D]),
+        frame: &Frame<3>,
+        (force, velocity): (&Vector, &Vector),
         [dt, least]: [f64; 2],
     ) {
         let ((normal, friction), (_, sliding)) = (frame.split(force), frame.split(velocity));
@@ -200,7 +201,7 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
         if contact.guided || normal <= 0.0 || speed <= least || speed * dt <= ADDED * self.unsure {
             return;
         }
-        let limit = self.problem.obstacles()[contact.obstacle].law().limit(normal);
+        let limit = self.problem.obstacle(contact.obstacle).law().limit(normal);
         let terms = [limit * speed, normal * speed, -dot(&friction, &sliding)];
         let sums = &mut self.planes[contact.obstacle].slide;
         sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term * dt);
@@ -237,16 +238,14 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
 
     /// Whether a force acts on surfaces that slide.
     pub(super) fn slides(&self) -> bool {
-        let mut positions = self.problem.surface().sliding().iter().flat_map(SlidingSurfaces::positions);
-        positions.any(|at| self.forced[at])
+        (0..self.forced.len()).any(|at| self.forced[at] && self.problem.sliding_of(at).is_some())
     }
 
     /// What is wrong with forces on surfaces that slide.
     pub(super) fn not_opposite(&self) -> String {
-        let surface = self.problem.surface();
-        let all = self.opposite.iter().zip(surface.sliding());
-        let worst = all.max_by(|(a, _), (b, _)| a.share().total_cmp(&b.share()));
-        worst.map_or(String::new(), |(opposite, sliding)| opposite.cause(surface, sliding))
+        let all = self.opposite.iter().enumerate();
+        let worst = all.max_by(|(_, a), (_, b)| a.share().total_cmp(&b.share()));
+        worst.map_or(String::new(), |(sliding, opposite)| opposite.cause(self.problem, sliding))
     }
 
     /// Enters the figures.
@@ -270,9 +269,9 @@ impl<'p, const D: usize, const N: usize> Contact<'p, D, N> {
 }
 
 /// The place of a node along its plane (m), from the left to the right as seen with the normal upwards; 0 of a bar.
-fn along<const D: usize>(frame: &Frame<D>, point: &[f64; D], displacement: &[f64; D]) -> f64 {
-    match (frame.normal().as_slice(), D) {
-        (&[x, y], 2) => y * (point[0] + displacement[0]) - x * (point[1] + displacement[1]),
+fn along(frame: &Frame<3>, point: &Vector, displacement: &Vector, dimension: usize) -> f64 {
+    match (frame.normal(), dimension) {
+        (&[x, y, _], 2) => y * (point[0] + displacement[0]) - x * (point[1] + displacement[1]),
         _ => 0.0,
     }
 }

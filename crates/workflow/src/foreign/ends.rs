@@ -4,22 +4,23 @@ use super::balance::{Balance, Motion, dot, norm, rate};
 use super::figures::Consistency;
 use super::limits::PLACE;
 use super::tried::FALL;
-use super::window::Window;
+use super::window::{Window, rows_of, vectors_of};
 use super::{ratio, widest};
 use crate::message::{trimmed, vector};
-use percute_core::problem::Problem;
+use percute_core::border::{Vector, row};
+use percute_core::problem::AnyProblem;
 
 /// Offsets that differ by less than this share are the same: digits of single precision, on the way of many steps.
 const RIGID: f64 = 1e-3;
 
 /// What start and end say.
 #[derive(Clone, Debug)]
-pub(super) struct Ends<const D: usize> {
+pub(super) struct Ends {
     /// Velocity of the first step without its forces, over v₀, at nodes without contact force: the best factor; none if
     /// none of them moves.
     pub(super) speed: Option<f64>,
     /// Means over these nodes, of v₀ as it is given over all: of that velocity, and of the stated v₀ (m/s).
-    pub(super) start: [[f64; D]; 2],
+    pub(super) start: [Vector; 2],
     /// The factor of the stated v₀ that gives the velocity at the start, as it is given, else as above; none if the
     /// two have different directions.
     pub(super) multiple: Option<f64>,
@@ -29,14 +30,14 @@ pub(super) struct Ends<const D: usize> {
     /// Largest difference of u_0 less the places of the nodes from that of the problem, over the size.
     pub(super) places: f64,
     /// u_0 less that of the problem (m).
-    pub(super) offset: Vec<[f64; D]>,
+    pub(super) offset: Vec<Vector>,
 }
 
-impl<const D: usize> Ends<D> {
+impl Ends {
     pub(super) fn new() -> Self {
         Self {
             speed: None,
-            start: [[0.0; D]; 2],
+            start: [[0.0; 3]; 2],
             multiple: None,
             reversed: [0.0; 2],
             places: f64::INFINITY,
@@ -46,28 +47,29 @@ impl<const D: usize> Ends<D> {
 
     /// Compares the state at t_0 with that of the problem; `reaction` is R_0 at all nodes (N), and
     /// follows from the balance at those that are `open`.
-    pub(super) fn start<const N: usize>(
+    pub(super) fn start(
         &mut self,
-        (balance, window): (&Balance<'_, D, N>, Window<'_, D>),
-        motion: &Motion<D>,
-        (reaction, open): (&[[f64; D]], &dyn Fn(usize) -> bool),
+        (balance, window): (&Balance<'_>, Window<'_>),
+        motion: &Motion,
+        (reaction, open): (&[Vector], &dyn Fn(usize) -> bool),
         found: &mut Consistency,
     ) {
         let (problem, now) = (balance.problem(), window.now);
-        let moved = widest(&now.displacement, problem.initial_displacement());
+        let moved = widest(now.step().displacement, problem.initial_displacement());
         found.initial_displacement = moved[0] / problem.mesh().size();
-        let less = |(a, b): (&[f64; D], &[f64; D])| std::array::from_fn(|c| a[c] - b[c]);
-        self.offset = now.displacement.iter().zip(problem.initial_displacement()).map(less).collect();
-        self.places = widest(&self.offset, problem.mesh().points())[0] / problem.mesh().size();
+        let less = |(a, b): (&Vector, &Vector)| std::array::from_fn(|c| a[c] - b[c]);
+        let d = problem.dimension();
+        self.offset = now.displacement.iter().zip(&vectors_of(problem.initial_displacement(), d)).map(less).collect();
+        self.places = widest(&rows_of(&self.offset, d), problem.mesh().points())[0] / problem.mesh().size();
         let (terms, h) = (balance.terms(now, &motion.forward), balance.times().velocity_step(0));
-        let without = |(node, v): (usize, &[f64; D])| {
+        let without = |(node, v): (usize, &Vector)| {
             let change = |c: usize| terms.load[node][c] - terms.stiffness[node][c] + reaction[node][c];
             std::array::from_fn(|c| v[c] - h / problem.mass()[node] * change(c))
         };
         let derived = supported(problem, motion.forward.iter().enumerate().map(without).collect());
         let given = now.velocity.clone().map(|given| supported(problem, given));
-        let stated = problem.initial_velocity();
-        let quiet = |node: usize| !open(node) && reaction[node] == [0.0; D];
+        let stated = &vectors_of(problem.initial_velocity(), d)[..];
+        let quiet = |node: usize| !open(node) && reaction[node] == [0.0; 3];
         self.speed = factor(&derived, stated, quiet);
         let started = given.clone().unwrap_or(derived);
         // At a node with a contact force, the velocity without forces depends on its mass.
@@ -83,29 +85,29 @@ impl<const D: usize> Ends<D> {
     }
 
     /// Compares the end with the start, as in a history that runs backwards.
-    pub(super) fn end<const N: usize>(&mut self, balance: &Balance<'_, D, N>, window: Window<'_, D>) {
+    pub(super) fn end(&mut self, balance: &Balance<'_>, window: Window<'_>) {
         let (Some(before), problem) = (window.before, balance.problem()) else { return };
         let back = rate(&window.now.displacement, &before.displacement, balance.times().step(window.now.index - 1));
-        let speed = apart(&back, problem.initial_velocity());
-        let [place, _] = widest(&window.now.displacement, problem.initial_displacement());
+        let speed = apart(&rows_of(&back, problem.dimension()), problem.initial_velocity());
+        let [place, _] = widest(window.now.step().displacement, problem.initial_displacement());
         self.reversed = [speed, place / problem.mesh().size()];
     }
 }
 
-impl<const D: usize> Ends<D> {
+impl Ends {
     /// That the displacements are those of the problem, shifted by the same everywhere.
-    pub(super) fn shift<const N: usize>(&self, problem: &Problem<D, N>) -> Option<String> {
+    pub(super) fn shift(&self, problem: &AnyProblem) -> Option<String> {
         let first = *self.offset.first()?;
         let size = norm(&first);
         let apart = self.offset.iter().flat_map(|u| u.iter().zip(first).map(|(a, b)| (a - b).abs()));
         if size <= PLACE * problem.mesh().size() || apart.fold(0.0, f64::max) > RIGID * size {
             return None;
         }
-        let axes: Vec<&str> = (0..D).filter(|&c| first[c].abs() > RIGID * size).map(|c| ["x", "y", "z"][c]).collect();
-        let (along, shift) = (axes.join(" and "), vector(&first, 6));
+        let axes: Vec<&str> = (0..3).filter(|&c| first[c].abs() > RIGID * size).map(|c| ["x", "y", "z"][c]).collect();
+        let (along, shift) = (axes.join(" and "), vector(&first[..problem.dimension()], 6));
         let subtract =
             format!("all displacements have the same offset of {shift} m, along {along}: subtract it from all");
-        let velocity = problem.initial_velocity()[0];
+        let velocity = row(problem.initial_velocity(), 0, problem.dimension());
         let time = dot(&first, &velocity) / dot(&velocity, &velocity);
         let way = first.iter().zip(velocity).map(|(u, v)| (u - time * v).abs()).fold(0.0, f64::max);
         Some(if time > 0.0 && way <= RIGID * size {
@@ -122,13 +124,14 @@ impl<const D: usize> Ends<D> {
 
 /// Whether the last two instants, dt (s) apart, have the initial velocity (m/s) of a history that runs backwards, but
 /// for nodes that touch in its first step.
-pub(crate) fn runs_backwards<const D: usize>(last: [&[[f64; D]]; 2], dt: f64, velocity: &[[f64; D]]) -> bool {
-    apart(&rate(last[1], last[0], dt), velocity) <= FALL
+pub(crate) fn runs_backwards(last: [&[f64]; 2], dt: f64, velocity: &[f64]) -> bool {
+    let back: Vec<f64> = last[1].iter().zip(last[0]).map(|(a, b)| (b - a) / dt).collect();
+    apart(&back, velocity) <= FALL
 }
 
 /// The norm of the difference of two fields over that of the second.
-fn apart<const D: usize>(field: &[[f64; D]], stated: &[[f64; D]]) -> f64 {
-    let squares = field.iter().flatten().zip(stated.iter().flatten()).fold([0.0; 2], |[difference, own], (v, v0)| {
+fn apart(field: &[f64], stated: &[f64]) -> f64 {
+    let squares = field.iter().zip(stated).fold([0.0; 2], |[difference, own], (v, v0)| {
         let rest: f64 = v - v0;
         [difference + rest * rest, own + v0 * v0]
     });
@@ -136,16 +139,16 @@ fn apart<const D: usize>(field: &[[f64; D]], stated: &[[f64; D]]) -> f64 {
 }
 
 /// The velocity with prescribed components as stated.
-fn supported<const D: usize, const N: usize>(problem: &Problem<D, N>, mut velocity: Vec<[f64; D]>) -> Vec<[f64; D]> {
+fn supported(problem: &AnyProblem, mut velocity: Vec<Vector>) -> Vec<Vector> {
     for p in problem.prescribed() {
         let (node, c) = (p.node.index(), p.component);
-        velocity[node][c] = problem.initial_velocity()[node][c];
+        velocity[node][c] = problem.initial_velocity()[problem.dimension() * node + c];
     }
     velocity
 }
 
 /// The factor of the second field that fits the first best at some nodes; none if it is zero there.
-fn factor<const D: usize>(field: &[[f64; D]], stated: &[[f64; D]], at: impl Fn(usize) -> bool) -> Option<f64> {
+fn factor(field: &[Vector], stated: &[Vector], at: impl Fn(usize) -> bool) -> Option<f64> {
     let nodes = (0..field.len()).filter(|&node| at(node));
     let (along, own) = nodes.fold((0.0, 0.0), |(along, own), node| {
         let v0 = &stated[node];
@@ -155,7 +158,7 @@ fn factor<const D: usize>(field: &[[f64; D]], stated: &[[f64; D]], at: impl Fn(u
 }
 
 /// That factor, if it leaves little of the difference of the fields.
-fn multiple<const D: usize>(field: &[[f64; D]], stated: &[[f64; D]], at: impl Fn(usize) -> bool) -> Option<f64> {
+fn multiple(field: &[Vector], stated: &[Vector], at: impl Fn(usize) -> bool) -> Option<f64> {
     let factor = factor(field, stated, &at)?;
     let nodes: Vec<usize> = (0..field.len()).filter(|&node| at(node)).collect();
     let apart = |factor: f64| -> f64 {
@@ -165,6 +168,6 @@ fn multiple<const D: usize>(field: &[[f64; D]], stated: &[[f64; D]], at: impl Fn
     (apart(factor) <= FALL * apart(1.0)).then_some(factor)
 }
 
-fn mean<const D: usize>(field: &[[f64; D]], nodes: &[usize]) -> [f64; D] {
+fn mean(field: &[Vector], nodes: &[usize]) -> Vector {
     std::array::from_fn(|c| nodes.iter().map(|&node| field[node][c]).sum::<f64>() / nodes.len().max(1) as f64)
 }

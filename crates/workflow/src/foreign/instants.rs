@@ -1,6 +1,5 @@
 //! Instants that are missing or doubled: the residual is at two or three instants alone.
 
-use super::balance::{dot, rate};
 use super::holding::{MOST, holding};
 use super::suspect::Suspect;
 use super::tried::Tried;
@@ -15,13 +14,13 @@ const FEW: usize = 3;
 const REST: f64 = 0.1;
 
 /// A history with other instants, and perhaps without one of its own.
-struct Retimed<'s, const D: usize> {
-    source: &'s dyn StepSource<D>,
+struct Retimed<'s> {
+    source: &'s dyn StepSource,
     times: TimeGrid,
     left_out: Option<usize>,
 }
 
-impl<const D: usize> StepSource<D> for Retimed<'_, D> {
+impl StepSource for Retimed<'_> {
     fn times(&self) -> &TimeGrid {
         &self.times
     }
@@ -30,7 +29,7 @@ impl<const D: usize> StepSource<D> for Retimed<'_, D> {
         self.source.count() - usize::from(self.left_out.is_some())
     }
 
-    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError> {
         self.source.replay(&mut |step| {
             let index = match self.left_out {
                 Some(out) if step.index == out => return Ok(()),
@@ -49,7 +48,7 @@ struct Jump {
 }
 
 /// An instant that is missing or doubled where the residual is.
-pub(super) fn tried<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Option<Tried>, SinkError> {
+pub(super) fn tried(suspect: &Suspect<'_>) -> Result<Option<Tried>, SinkError> {
     let (at, _) = holding(&suspect.evidence.residual.by_instant, MOST);
     let [Some(&first), Some(&last)] = [at.first(), at.last()] else { return Ok(None) };
     if last + 1 > first + FEW {
@@ -76,8 +75,8 @@ pub(super) fn tried<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
     Ok(None)
 }
 
-fn retimed<const D: usize, const N: usize>(
-    suspect: &Suspect<'_, D, N>,
+fn retimed(
+    suspect: &Suspect<'_>,
     instants: Vec<f64>,
     left_out: Option<usize>,
     text: String,
@@ -88,9 +87,9 @@ fn retimed<const D: usize, const N: usize>(
 
 /// The step whose motion differs most from that of the steps beside it, among those that change the balance at some
 /// instants.
-fn jump<const D: usize>(source: &dyn StepSource<D>, first: usize, last: usize) -> Result<Option<Jump>, SinkError> {
+fn jump(source: &dyn StepSource, first: usize, last: usize) -> Result<Option<Jump>, SinkError> {
     let start = first.saturating_sub(2);
-    let mut held: Vec<Vec<[f64; D]>> = Vec::new();
+    let mut held: Vec<Vec<f64>> = Vec::new();
     source.replay(&mut |step| {
         if (start..=last + 2).contains(&step.index) {
             held.push(step.displacement.to_vec());
@@ -98,13 +97,15 @@ fn jump<const D: usize>(source: &dyn StepSource<D>, first: usize, last: usize) -
         Ok(())
     })?;
     let times = source.times();
-    let rates: Vec<Vec<[f64; D]>> =
-        held.windows(2).enumerate().map(|(k, pair)| rate(&pair[0], &pair[1], times.step(start + k))).collect();
-    let of = |(k, beside): (usize, &[Vec<[f64; D]>])| {
-        let mean = |node: usize| std::array::from_fn(|c| 0.5 * (beside[0][node][c] + beside[2][node][c]));
-        let [along, own] = (0..beside[1].len()).fold([0.0; 2], |[along, own], node| {
-            let mean: [f64; D] = mean(node);
-            [along + dot(&beside[1][node], &mean), own + dot(&mean, &mean)]
+    let rates: Vec<Vec<f64>> = held
+        .windows(2)
+        .enumerate()
+        .map(|(k, pair)| pair[0].iter().zip(&pair[1]).map(|(a, b)| (b - a) / times.step(start + k)).collect())
+        .collect();
+    let of = |(k, beside): (usize, &[Vec<f64>])| {
+        let [along, own] = (0..beside[1].len()).fold([0.0; 2], |[along, own], at| {
+            let mean = 0.5 * (beside[0][at] + beside[2][at]);
+            [along + beside[1][at] * mean, own + mean * mean]
         });
         let step = start + k + 1;
         Jump { step, way: along / own }

@@ -6,7 +6,7 @@ use super::tried::Tried;
 use crate::message::{numbered, times, trimmed};
 
 /// Instants that were lost in long steps.
-pub(super) fn tried<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<Tried> {
+pub(super) fn tried(suspect: &Suspect<'_>) -> Option<Tried> {
     let (grid, residual) = (suspect.source.times(), &suspect.evidence.residual);
     let (long, sizes) = (LongSteps::of(grid, residual.by_instant.len()), &residual.largest_at);
     let level = long.level(sizes);

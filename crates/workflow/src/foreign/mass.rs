@@ -5,13 +5,14 @@ use super::measure::nodal;
 use super::suspect::Suspect;
 use super::tried::Tried;
 use super::window::windows;
+use percute_core::border::Vector;
 use percute_core::history::SinkError;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 
 /// The inertia of the consistent mass matrix.
-pub(super) fn consistent<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Tried, SinkError> {
+pub(super) fn consistent(suspect: &Suspect<'_>) -> Result<Tried, SinkError> {
     let (problem, evidence) = (suspect.problem, suspect.evidence);
     let balance = Balance::new(problem, suspect.source.times());
     let [mut lumped, mut other] = [evidence.residual.clone(), evidence.residual.emptied()];
@@ -19,7 +20,7 @@ pub(super) fn consistent<const D: usize, const N: usize>(suspect: &Suspect<'_, D
         lumped.leave_the_surface_open();
         other.leave_the_surface_open();
     }
-    windows(suspect.source, &mut |window| {
+    windows(suspect.source, problem.dimension(), &mut |window| {
         let now = window.now;
         let derived = if now.index > 0 { balance.motion(window).map(|motion| motion.acceleration) } else { None };
         let Some(used) = now.acceleration.as_ref().or(derived.as_ref()) else { return Ok(()) };
@@ -37,12 +38,13 @@ pub(super) fn consistent<const D: usize, const N: usize>(suspect: &Suspect<'_, D
 
 /// M_c a (N) of linear elements: m/(N(N+1)) times the sum over the nodes, with that of the node itself twice. It is 0
 /// at prescribed components.
-fn inertia<const D: usize, const N: usize>(problem: &Problem<D, N>, acceleration: &[[f64; D]]) -> Vec<[f64; D]> {
-    let mut inertia = vec![[0.0; D]; acceleration.len()];
-    for (e, nodes) in problem.mesh().cells().iter().enumerate() {
+fn inertia(problem: &AnyProblem, acceleration: &[Vector]) -> Vec<Vector> {
+    let mut inertia = vec![[0.0; 3]; acceleration.len()];
+    let n = problem.mesh().nodes_of_element();
+    for (e, nodes) in problem.mesh().cells().enumerate() {
         let id = ElementId::new(e);
-        let share = problem.material(id).density() * problem.volume(id) / (N * (N + 1)) as f64;
-        for c in 0..D {
+        let share = problem.material(id).density() * problem.volume(id) / (n * (n + 1)) as f64;
+        for c in 0..3 {
             let sum: f64 = nodes.iter().map(|node| acceleration[node.index()][c]).sum();
             nodes.iter().for_each(|n| inertia[n.index()][c] += share * (sum + acceleration[n.index()][c]));
         }

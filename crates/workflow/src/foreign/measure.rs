@@ -12,8 +12,9 @@ use super::tried::FALL;
 use super::velocities::Rates;
 use super::window::{Window, windows};
 use super::{take_in, widest};
+use percute_core::border::Vector;
 use percute_core::history::{SinkError, StepSource};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 
 /// Forces that would change the velocity of a node by this share in a step count as a term of the balance. In the
 /// flight of a rigid body all others are rounding, in single precision up to 1e-4 of it.
@@ -21,16 +22,16 @@ const FLIGHT: f64 = 1e-2;
 
 /// What likely causes follow from.
 #[derive(Debug)]
-pub(super) struct Evidence<'p, const D: usize, const N: usize> {
+pub(super) struct Evidence<'p> {
     pub(super) residual: Residual,
-    pub(super) contact: Contact<'p, D, N>,
-    pub(super) ends: Ends<D>,
-    pub(super) rates: Rates<D>,
+    pub(super) contact: Contact<'p>,
+    pub(super) ends: Ends,
+    pub(super) rates: Rates,
     /// Whether velocities and accelerations are given.
     pub(super) given: [bool; 2],
 }
 
-impl<const D: usize, const N: usize> Evidence<'_, D, N> {
+impl Evidence<'_> {
     /// Whether no contact force was given or found, but the balance fails inside: it says nothing where one may act.
     pub(super) fn silent(&self) -> bool {
         !self.contact.forced.contains(&true) && self.residual.inside() > FALL * self.residual.norm([1.0; 4])
@@ -38,9 +39,9 @@ impl<const D: usize, const N: usize> Evidence<'_, D, N> {
 }
 
 /// R at all nodes (N), from those of the surface; 0 at prescribed components.
-pub(super) fn nodal<const D: usize, const N: usize>(problem: &Problem<D, N>, reaction: &[[f64; D]]) -> Vec<[f64; D]> {
-    let mut nodal = vec![[0.0; D]; problem.mesh().node_count()];
-    for (contact, force) in problem.surface().nodes().iter().zip(reaction) {
+pub(super) fn nodal(problem: &AnyProblem, reaction: &[Vector]) -> Vec<Vector> {
+    let mut nodal = vec![[0.0; 3]; problem.mesh().node_count()];
+    for (contact, force) in problem.contact_nodes().iter().zip(reaction) {
         nodal[contact.node.index()] = *force;
     }
     problem.prescribed().iter().for_each(|p| nodal[p.node.index()][p.component] = 0.0);
@@ -48,14 +49,14 @@ pub(super) fn nodal<const D: usize, const N: usize>(problem: &Problem<D, N>, rea
 }
 
 /// Measures a history, of which parts were derived, with the contact forces of so many steps later.
-pub(super) fn measure<'p, const D: usize, const N: usize>(
-    problem: &'p Problem<D, N>,
-    source: &dyn StepSource<D>,
+pub(super) fn measure<'p>(
+    problem: &'p AnyProblem,
+    source: &dyn StepSource,
     derived: &[Derived],
     shift: isize,
-) -> Result<(Consistency, Evidence<'p, D, N>), SinkError> {
+) -> Result<(Consistency, Evidence<'p>), SinkError> {
     let mut surface = vec![false; problem.mesh().node_count()];
-    problem.surface().nodes().iter().for_each(|contact| surface[contact.node.index()] = true);
+    problem.contact_nodes().iter().for_each(|contact| surface[contact.node.index()] = true);
     let residual = Residual::new(surface, derived.contains(&Derived::Reaction));
     let mut pass = Pass {
         balance: Balance::new(problem, source.times()),
@@ -71,25 +72,25 @@ pub(super) fn measure<'p, const D: usize, const N: usize>(
         },
         acceleration: [0.0; 2],
     };
-    windows(source, &mut |window| {
+    windows(source, problem.dimension(), &mut |window| {
         pass.take(window);
         Ok(())
     })?;
     Ok(pass.finish())
 }
 
-struct Pass<'b, 'p, const D: usize, const N: usize> {
-    balance: Balance<'b, D, N>,
+struct Pass<'b, 'p> {
+    balance: Balance<'b>,
     shift: isize,
     last: usize,
     found: Consistency,
-    evidence: Evidence<'p, D, N>,
+    evidence: Evidence<'p>,
     /// Largest difference and largest value of given accelerations (m/s²).
     acceleration: [f64; 2],
 }
 
-impl<'p, const D: usize, const N: usize> Pass<'_, 'p, D, N> {
-    fn take(&mut self, window: Window<'_, D>) {
+impl<'p> Pass<'_, 'p> {
+    fn take(&mut self, window: Window<'_>) {
         let (now, n) = (window.now, window.now.index);
         self.evidence.given = [now.velocity.is_some(), now.acceleration.is_some()];
         let motion = self.balance.motion(window);
@@ -119,7 +120,7 @@ impl<'p, const D: usize, const N: usize> Pass<'_, 'p, D, N> {
 
     /// Compares given velocities and accelerations with those of the displacements, and the start with that of the
     /// problem.
-    fn compare(&mut self, window: Window<'_, D>, motion: &Motion<D>) {
+    fn compare(&mut self, window: Window<'_>, motion: &Motion) {
         let now = window.now;
         self.evidence.rates.take(window, motion, self.balance.times());
         if now.index == 0 {
@@ -130,11 +131,11 @@ impl<'p, const D: usize, const N: usize> Pass<'_, 'p, D, N> {
             return;
         }
         if let Some(given) = &now.acceleration {
-            take_in(&mut self.acceleration, widest(given, &motion.acceleration));
+            take_in(&mut self.acceleration, widest(given.as_flattened(), motion.acceleration.as_flattened()));
         }
     }
 
-    fn finish(self) -> (Consistency, Evidence<'p, D, N>) {
+    fn finish(self) -> (Consistency, Evidence<'p>) {
         let Self { mut found, evidence, acceleration, balance, .. } = self;
         let given = |[difference, largest]: [f64; 2]| (largest > 0.0).then(|| difference / largest);
         found.balance = evidence.residual.relative();

@@ -55,7 +55,7 @@ pub(crate) use limits::{by_a_penalty, is_off_contact, off_contact};
 use measure::measure;
 use percute_core::dynamics::{Balancing, Evaluation};
 use percute_core::history::{SinkError, StateSink, StepSource};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use std::cell::RefCell;
 use std::path::PathBuf;
 use suspect::Suspect;
@@ -129,9 +129,9 @@ impl From<SinkError> for Refusal {
 
 /// What can be told before any work: displacements that do not fit the velocities, and samples that are too far apart
 /// for an estimate, with the likely cause.
-pub(crate) fn first_look<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    source: &dyn StepSource<D>,
+pub(crate) fn first_look(
+    problem: &AnyProblem,
+    source: &dyn StepSource,
     critical: f64,
     origin: &Origin,
 ) -> Result<Option<Contradiction>, Refusal> {
@@ -156,9 +156,9 @@ pub(crate) fn first_look<const D: usize, const N: usize>(
 
 /// The figures of a history, of which parts were `derived`; figures over their limits are an error, with the likely
 /// cause, unless they are to be accepted.
-pub(crate) fn check<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    source: &dyn StepSource<D>,
+pub(crate) fn check(
+    problem: &AnyProblem,
+    source: &dyn StepSource,
     critical: f64,
     derived: &[Derived],
     accept: bool,
@@ -188,8 +188,8 @@ pub(crate) fn check<const D: usize, const N: usize>(
 }
 
 /// The figure over its limit that tells most, with its likely cause. What is `lacking` comes with a way out.
-fn contradiction<const D: usize, const N: usize>(
-    suspect: &Suspect<'_, D, N>,
+fn contradiction(
+    suspect: &Suspect<'_>,
     lacking: Option<(String, String)>,
     exceeded: &[Excess],
 ) -> Result<Option<Contradiction>, SinkError> {
@@ -214,8 +214,8 @@ fn ratio(a: f64, b: f64) -> f64 {
 }
 
 /// The largest difference of two fields and the largest component of the first.
-fn widest<const D: usize>(field: &[[f64; D]], other: &[[f64; D]]) -> [f64; 2] {
-    let pairs = field.iter().flatten().zip(other.iter().flatten());
+fn widest(field: &[f64], other: &[f64]) -> [f64; 2] {
+    let pairs = field.iter().zip(other);
     pairs.fold([0.0; 2], |[difference, most], (a, b): (&f64, &f64)| [(a - b).abs().max(difference), a.abs().max(most)])
 }
 

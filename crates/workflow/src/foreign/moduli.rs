@@ -5,12 +5,12 @@ use super::limits::BALANCE;
 use super::residual::{fit, norm};
 use super::suspect::Suspect;
 use super::tried::Tried;
-use super::window::windows;
+use super::window::{vectors_of, windows};
 use crate::message::trimmed;
-use percute_core::dynamics::Dynamics;
+use percute_core::dynamics::AnyStiffness;
 use percute_core::history::SinkError;
 use percute_core::material::{Elastic, Hypothesis, Law, LinearLaw};
-use percute_core::problem::Problem;
+use percute_core::problem::{AnyProblem, Statement};
 
 /// The terms M a, K_λ u, K_G u, and the forces: K = K_λ + K_G, of λ and of the shear modulus G.
 const OF_LAMBDA: usize = 1;
@@ -18,7 +18,7 @@ const OF_SHEAR: usize = 2;
 type Products = [[f64; 4]; 4];
 
 /// Other moduli of a plane body of one material.
-pub(super) fn tried<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Vec<Tried>, SinkError> {
+pub(super) fn tried(suspect: &Suspect<'_>) -> Result<Vec<Tried>, SinkError> {
     let [material] = suspect.problem.materials() else { return Ok(Vec::new()) };
     let Some(sheared) = sheared(suspect.problem, material) else { return Ok(Vec::new()) };
     let products = products(suspect, &sheared)?;
@@ -38,13 +38,14 @@ pub(super) fn tried<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
 }
 
 /// The body with the same shear modulus and without λ: plane stress with ν = 0. None for a bar.
-fn sheared<const D: usize, const N: usize>(problem: &Problem<D, N>, material: &Elastic) -> Option<Problem<D, N>> {
+fn sheared(problem: &AnyProblem, material: &Elastic) -> Option<AnyProblem> {
     if material.hypothesis() == Hypothesis::Bar {
         return None;
     }
     let (_, shear) = material.moduli();
     let without = Elastic::plane_stress(2.0 * shear, 0.0, material.density(), material.extent()).ok()?;
-    Problem::builder(problem.mesh().clone()).material(without).build().ok()
+    let stated = Statement { materials: vec![(None, without)], ..Statement::default() };
+    AnyProblem::new(problem.mesh(), &stated).ok()
 }
 
 /// The name of the other hypothesis, and its λ (Pa).
@@ -80,30 +81,28 @@ fn fitted(material: &Elastic, factors: [f64; 4]) -> Option<String> {
 }
 
 /// Scalar products of the terms with their signs (N²), where they do not follow from the balance.
-fn products<const D: usize, const N: usize>(
-    suspect: &Suspect<'_, D, N>,
-    sheared: &Problem<D, N>,
-) -> Result<Products, SinkError> {
+fn products(suspect: &Suspect<'_>, sheared: &AnyProblem) -> Result<Products, SinkError> {
     let balance = Balance::new(suspect.problem, suspect.source.times());
-    let dynamics = Dynamics::new(sheared, suspect.source.times());
-    let (surface, residual) = (suspect.problem.surface(), &suspect.evidence.residual);
+    let stiffness = AnyStiffness::new(sheared);
+    let (problem, residual) = (suspect.problem, &suspect.evidence.residual);
     let mut products = Products::default();
-    windows(suspect.source, &mut |window| {
+    windows(suspect.source, suspect.problem.dimension(), &mut |window| {
         let now = window.now;
         let derived = if now.index > 0 { balance.motion(window).map(|motion| motion.acceleration) } else { None };
         let Some(used) = now.acceleration.as_ref().or(derived.as_ref()) else { return Ok(()) };
         let terms = balance.terms(now, used);
-        let mut shear = vec![[0.0; D]; now.displacement.len()];
-        dynamics.stiffness().subtract_internal_forces(&now.displacement, &mut shear);
+        let mut shear = vec![0.0; now.step().displacement.len()];
+        stiffness.subtract_internal_forces(now.step().displacement, &mut shear);
+        let mut shear = vectors_of(&shear, problem.dimension());
         let mut force = terms.load.clone();
-        for (contact, reaction) in surface.nodes().iter().zip(&now.reaction) {
-            (0..D).for_each(|c| force[contact.node.index()][c] += reaction[c]);
+        for (contact, reaction) in problem.contact_nodes().iter().zip(&now.reaction) {
+            (0..3).for_each(|c| force[contact.node.index()][c] += reaction[c]);
         }
         for p in suspect.problem.prescribed() {
             (shear[p.node.index()][p.component], force[p.node.index()][p.component]) = (0.0, 0.0);
         }
         for node in (0..force.len()).filter(|&node| !residual.is_open(node)) {
-            for c in 0..D {
+            for c in 0..3 {
                 let of_shear = -shear[node][c];
                 let of_lambda = terms.stiffness[node][c] - of_shear;
                 let signed = [terms.inertia[node][c], of_lambda, of_shear, -force[node][c]];

@@ -2,8 +2,9 @@
 
 use super::balance::norm;
 use super::window::Held;
+use percute_core::border::Vector;
 use percute_core::ids::ElementId;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 
 /// Rounding of a number relative to its size, in double and in single precision.
 const ROUNDING: [f64; 2] = [f64::EPSILON, f32::EPSILON as f64];
@@ -22,7 +23,7 @@ pub(super) struct Nearness {
 }
 
 impl Nearness {
-    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub(super) fn new(problem: &AnyProblem) -> Self {
         Self { element: element_size(problem), contact: problem.contact_tolerance() }
     }
 
@@ -33,30 +34,31 @@ impl Nearness {
 }
 
 /// Rounding of displacements (m): that of single precision if all of them are such numbers.
-pub(super) fn rounding<const D: usize>(values: &[[f64; D]]) -> f64 {
+pub(super) fn rounding(values: &[Vector]) -> f64 {
     let single = values.iter().flatten().all(|&x| f64::from(x as f32) == x);
     ROUNDING[usize::from(single)] * size(values)
 }
 
 /// The largest rounding of the displacements of some steps (m).
-pub(super) fn unsure<'h, const D: usize>(held: impl IntoIterator<Item = Option<&'h Held<D>>>) -> f64 {
+pub(super) fn unsure<'h>(held: impl IntoIterator<Item = Option<&'h Held>>) -> f64 {
     held.into_iter().flatten().map(|held| rounding(&held.displacement)).fold(0.0, f64::max)
 }
 
 /// The largest component.
-fn size<const D: usize>(values: &[[f64; D]]) -> f64 {
+fn size(values: &[Vector]) -> f64 {
     values.iter().flatten().fold(0.0, |most, x| most.max(x.abs()))
 }
 
-fn element_size<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+fn element_size(problem: &AnyProblem) -> f64 {
     let mesh = problem.mesh();
     let edge = |element: ElementId| {
         let points = mesh.cell_points(element);
-        let pairs = (0..N).flat_map(|i| (0..i).map(move |j| (i, j)));
-        let length = |(i, j): (usize, usize)| norm(&std::array::from_fn::<_, D, _>(|c| points[i][c] - points[j][c]));
+        let count = points.len();
+        let pairs = (0..count).flat_map(|i| (0..i).map(move |j| (i, j)));
+        let length = |(i, j): (usize, usize)| norm(&std::array::from_fn::<_, 3, _>(|c| points[i][c] - points[j][c]));
         pairs.map(length).fold(f64::INFINITY, f64::min)
     };
-    let near = problem.surface().facets().iter().map(|f| mesh.facets()[f.facet.index()].owner);
+    let near = problem.contact_facets().into_iter().map(|f| mesh.facet(f.facet).owner);
     let smallest = near.map(edge).fold(f64::INFINITY, f64::min);
     if smallest.is_finite() { smallest } else { mesh.size() }
 }

@@ -22,7 +22,7 @@ const SHIFTED: f64 = 3.0;
 const ALL_WRONG: f64 = 0.3;
 
 /// The likely cause, if the numbers single one out.
-pub(super) fn cause<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Option<String>, SinkError> {
+pub(super) fn cause(suspect: &Suspect<'_>) -> Result<Option<String>, SinkError> {
     if let Some(text) = accelerations(suspect)? {
         return Ok(Some(text));
     }
@@ -36,9 +36,7 @@ pub(super) fn cause<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
 }
 
 /// The change that leaves the least residual, if it is little.
-pub(super) fn changed<const D: usize, const N: usize>(
-    suspect: &Suspect<'_, D, N>,
-) -> Result<Option<String>, SinkError> {
+pub(super) fn changed(suspect: &Suspect<'_>) -> Result<Option<String>, SinkError> {
     let mut tried = shifts(suspect)?;
     tried.extend(lost::tried(suspect));
     tried.extend(units::one_term(suspect.problem, suspect.evidence, suspect.derived));
@@ -57,7 +55,7 @@ pub(super) fn changed<const D: usize, const N: usize>(
 }
 
 /// Given accelerations without which the history is consistent.
-fn accelerations<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Option<String>, SinkError> {
+fn accelerations(suspect: &Suspect<'_>) -> Result<Option<String>, SinkError> {
     let Some(differs) = suspect.found.acceleration.filter(|differs| *differs > BALANCE) else { return Ok(None) };
     let without = Through::new(suspect.source, |step, take| take(&Step { acceleration: None, ..*step }));
     let text = format!(
@@ -69,7 +67,7 @@ fn accelerations<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) ->
 }
 
 /// Contact forces of the step before and after.
-fn shifts<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Vec<Tried>, SinkError> {
+fn shifts(suspect: &Suspect<'_>) -> Result<Vec<Tried>, SinkError> {
     if !suspect.has_forces() {
         return Ok(Vec::new());
     }
@@ -83,9 +81,7 @@ fn shifts<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result
 }
 
 /// A change to contact forces of another step that leaves much less of a residual within its limit.
-pub(super) fn shifted<const D: usize, const N: usize>(
-    suspect: &Suspect<'_, D, N>,
-) -> Result<Option<String>, SinkError> {
+pub(super) fn shifted(suspect: &Suspect<'_>) -> Result<Option<String>, SinkError> {
     // Without a term to compare with, as at the two instants of one step in flight, no change makes it smaller.
     if suspect.residual() <= ROUNDING || !suspect.residual().is_finite() {
         return Ok(None);
@@ -95,11 +91,11 @@ pub(super) fn shifted<const D: usize, const N: usize>(
 }
 
 /// Nodes of the surface on which no force acts, although they have the residual.
-fn at_silent_nodes<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<String> {
+fn at_silent_nodes(suspect: &Suspect<'_>) -> Option<String> {
     let squares = &suspect.evidence.residual.by_node;
     let total: f64 = squares.iter().sum();
-    let contact: &Contact<'_, D, N> = &suspect.evidence.contact;
-    let surface = suspect.problem.surface().nodes().iter().zip(&contact.forced);
+    let contact: &Contact<'_> = &suspect.evidence.contact;
+    let surface = suspect.problem.contact_nodes().iter().zip(&contact.forced);
     let silent: Vec<usize> = surface.filter(|(_, forced)| !**forced).map(|(c, _)| c.node.index()).collect();
     if silent.iter().map(|&node| squares[node]).sum::<f64>() < MOST * total {
         return None;
@@ -114,7 +110,7 @@ fn at_silent_nodes<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) 
 }
 
 /// A single value: few nodes at few instants.
-fn one_value<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<String> {
+fn one_value(suspect: &Suspect<'_>) -> Option<String> {
     let Residual { worst, by_instant, .. } = &suspect.evidence.residual;
     let (instants, _) = holding(by_instant, MOST);
     few_nodes(suspect)?;
@@ -128,7 +124,7 @@ fn one_value<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Opt
 }
 
 /// The nodes that have the residual and the share that they have of its square, if they are few of all.
-fn few_nodes<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<(Vec<usize>, f64)> {
+fn few_nodes(suspect: &Suspect<'_>) -> Option<(Vec<usize>, f64)> {
     let by_node = &suspect.evidence.residual.by_node;
     let (nodes, share) = holding(by_node, MOST);
     let few = FEW.max((FEW_OF_ALL * by_node.len() as f64) as usize).min(by_node.len() - 1);
@@ -136,7 +132,7 @@ fn few_nodes<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Opt
 }
 
 /// What to look at if no change helps: few nodes, or a history that has nothing to do with the mesh.
-pub(super) fn hint<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<String> {
+pub(super) fn hint(suspect: &Suspect<'_>) -> Option<String> {
     if let Some((nodes, share)) = few_nodes(suspect) {
         return Some(format!(
             "{} of {} nodes have {} of its square ({}): their rows, supports, loads or materials differ",
@@ -154,7 +150,7 @@ pub(super) fn hint<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) 
 }
 
 /// Which terms fail, where, and how much.
-pub(super) fn place<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> String {
+pub(super) fn place(suspect: &Suspect<'_>) -> String {
     let residual = &suspect.evidence.residual;
     let worst = &residual.worst;
     let [inertia, stiffness, load, reaction] = worst.terms.map(|term| trimmed(term, 4));

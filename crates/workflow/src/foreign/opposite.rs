@@ -1,7 +1,8 @@
 //! The forces on two surfaces that slide are those of the same multipliers.
 
 use super::balance::norm;
-use percute_core::contact::{ContactSurface, Side, SlidingSurfaces};
+use percute_core::border::Vector;
+use percute_core::problem::AnyProblem;
 
 /// Sums of forces on two surfaces that slide, against those of their multipliers: the largest of all instants.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,22 +17,15 @@ pub(super) struct Opposite {
 
 impl Opposite {
     /// Takes in an instant, with the forces on the nodes and those of the multipliers (N).
-    pub(super) fn take<const D: usize>(
-        &mut self,
-        sliding: &SlidingSurfaces<D>,
-        reaction: &[[f64; D]],
-        forces: &[[f64; D]],
-    ) {
-        let [slave, master] = [sliding.slave(), sliding.master()];
-        let total = |of: &[[f64; D]], side: &Side| -> [f64; D] {
-            let forces = &of[side.position(0)..side.position(side.len())];
-            std::array::from_fn(|c| forces.iter().map(|force| force[c]).sum())
+    pub(super) fn take(&mut self, [slave, master]: &[Vec<usize>; 2], reaction: &[Vector], forces: &[Vector]) {
+        let total = |of: &[Vector], side: &[usize]| -> Vector {
+            std::array::from_fn(|c| side.iter().map(|&at| of[at][c]).sum())
         };
         let (multipliers, on_slave, on_master) =
             (total(forces, slave), total(reaction, slave), total(reaction, master));
-        let size: f64 = sliding.positions().map(|at| norm(&reaction[at])).sum();
-        let lost = norm(&std::array::from_fn::<_, D, _>(|c| on_slave[c] - multipliers[c]));
-        let one_sided = norm(&std::array::from_fn::<_, D, _>(|c| on_master[c] + multipliers[c]));
+        let size: f64 = slave.iter().chain(master).map(|&at| norm(&reaction[at])).sum();
+        let lost = norm(&std::array::from_fn::<_, 3, _>(|c| on_slave[c] - multipliers[c]));
+        let one_sided = norm(&std::array::from_fn::<_, 3, _>(|c| on_master[c] + multipliers[c]));
         self.lost = self.lost.max(lost);
         self.one_sided = self.one_sided.max(one_sided);
         self.size = self.size.max(size);
@@ -43,8 +37,8 @@ impl Opposite {
     }
 
     /// What is wrong with the forces on these surfaces.
-    pub(super) fn cause<const D: usize>(&self, surface: &ContactSurface<D>, sliding: &SlidingSurfaces<D>) -> String {
-        let [slave, master] = groups(surface, sliding);
+    pub(super) fn cause(&self, problem: &AnyProblem, sliding: usize) -> String {
+        let [slave, master] = groups(problem, sliding);
         if self.lost >= self.one_sided {
             return format!(
                 "contact forces act on nodes of {slave} that do not face {master}: is the order of the rows that of \
@@ -59,16 +53,17 @@ impl Opposite {
 }
 
 /// The names of slave and master, for messages.
-pub(super) fn groups<const D: usize>(surface: &ContactSurface<D>, sliding: &SlidingSurfaces<D>) -> [String; 2] {
-    [sliding.slave(), sliding.master()].map(|side| {
-        let obstacle = surface.nodes()[side.position(0)].obstacle;
-        format!("\"{}\"", surface.obstacles()[obstacle].group().unwrap_or_default())
+pub(super) fn groups(problem: &AnyProblem, sliding: usize) -> [String; 2] {
+    problem.sides_of_sliding(sliding).map(|side| {
+        let obstacle = problem.obstacle(problem.contact_nodes()[side[0]].obstacle);
+        format!("\"{}\"", obstacle.group().unwrap_or_default())
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::foreign::window::vectors_of;
     use percute_core::contact::Interface;
     use percute_core::material::Elastic;
     use percute_core::mesh::TriangleMesh;
@@ -81,7 +76,7 @@ mod tests {
         let upper = translated(&TriangleMesh::rectangle(0.04, 0.025, 10, 2).unwrap(), [0.02, 0.026]).unwrap();
         let mesh = TriangleMesh::joined(&[("lower", &lower), ("upper", &upper)]).unwrap();
         let material = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
-        let interface = Interface::sliding::<2>("lower.top", "upper.bottom", 0.2).unwrap();
+        let interface = Interface::sliding(2, "lower.top", "upper.bottom", 0.2).unwrap();
         TriangleProblem::builder(mesh).material(material).interface(interface).build().unwrap()
     }
 
@@ -106,8 +101,11 @@ mod tests {
             change(force, facing.has_condition(at), sliding.slave().node_at(at).is_some());
         }
         let mut opposite = Opposite::default();
-        opposite.take(sliding, &reaction, &facing.forces(&reaction));
-        (opposite.share(), opposite.cause(surface, sliding))
+        let forces = facing.forces(&reaction);
+        let [reaction, forces] = [&reaction, &forces].map(|all| vectors_of(all.as_flattened(), 2));
+        let any = AnyProblem::from(problem.clone());
+        opposite.take(&any.sides_of_sliding(0), &reaction, &forces);
+        (opposite.share(), opposite.cause(&any, 0))
     }
 
     #[test]

@@ -4,17 +4,17 @@ use super::holding::descending;
 use super::limits::PLACE;
 use super::suspect::Suspect;
 use super::tried::Tried;
+use super::window::rows_of;
 use percute_core::history::SinkError;
 
 /// Of so many nodes with the largest residuals, each two are exchanged.
 const WORST: usize = 4;
 
 /// Displacements that are changed at all nodes in the same way.
-pub(super) fn places<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Vec<Tried>, SinkError> {
+pub(super) fn places(suspect: &Suspect<'_>) -> Result<Vec<Tried>, SinkError> {
     let (ends, size) = (&suspect.evidence.ends, suspect.problem.mesh().size());
-    let less = |field: &[[f64; D]], rest: &[[f64; D]]| -> Vec<[f64; D]> {
-        field.iter().zip(rest).map(|(u, x)| std::array::from_fn(|c| u[c] - x[c])).collect()
-    };
+    let d = suspect.problem.dimension();
+    let less = |field: &[f64], rest: &[f64]| -> Vec<f64> { field.iter().zip(rest).map(|(u, x)| u - x).collect() };
     let mut tried = Vec::new();
     if ends.places <= PLACE {
         let text = "the displacements are places: subtract those of the nodes, displacement - mesh.points".to_string();
@@ -22,19 +22,19 @@ pub(super) fn places<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>
     } else if suspect.found.initial_displacement > PLACE && size.is_finite() {
         let text =
             "all displacements have another origin: add the same field to all, so that u_0 is `initial_displacement`";
-        tried.push(suspect.tried_inside(text.to_string(), |u| less(u, &ends.offset))?);
+        tried.push(suspect.tried_inside(text.to_string(), |u| less(u, &rows_of(&ends.offset, d)))?);
     }
-    if D == 2 {
+    if d == 2 {
         let text = "the components of the displacements are exchanged: y comes before x".to_string();
-        tried.push(suspect.tried_inside(text, |u| u.iter().map(|u| std::array::from_fn(|c| u[D - 1 - c])).collect())?);
+        tried.push(suspect.tried_inside(text, |u| u.chunks_exact(d).flat_map(|u| u.iter().rev()).copied().collect())?);
     }
     Ok(tried)
 }
 
 /// Other orders of the nodes: all reversed, counted from another number, or two of those with the largest residuals
 /// exchanged.
-pub(super) fn orders<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Vec<Tried>, SinkError> {
-    let count = suspect.evidence.residual.by_node.len();
+pub(super) fn orders(suspect: &Suspect<'_>) -> Result<Vec<Tried>, SinkError> {
+    let (count, d) = (suspect.evidence.residual.by_node.len(), suspect.problem.dimension());
     let first: Vec<usize> = descending(&suspect.evidence.residual.by_node).into_iter().take(WORST).collect();
     let mut told: Vec<(Vec<usize>, String)> = vec![
         ((0..count).rev().collect(), "the displacements are in the opposite order of the nodes".to_string()),
@@ -55,7 +55,9 @@ pub(super) fn orders<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>
         }
     }
     let tried = told.into_iter().map(|(rows, text)| {
-        suspect.tried_inside(text, |field: &[[f64; D]]| rows.iter().map(|&row| field[row]).collect())
+        suspect.tried_inside(text, |field: &[f64]| {
+            rows.iter().flat_map(|&row| &field[d * row..d * (row + 1)]).copied().collect()
+        })
     });
     tried.collect()
 }

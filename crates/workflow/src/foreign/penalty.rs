@@ -3,14 +3,15 @@
 use super::limits::{DRIFT, Excess, by_a_penalty};
 use super::suspect::Suspect;
 use crate::message::{percent, trimmed};
-use percute_core::dynamics::{Dynamics, critical_time_step};
+use percute_core::border::row;
+use percute_core::dynamics::{AnyStiffness, critical_time_step};
 use percute_core::time::is_stable;
 
 /// The name of what is over its limit where a penalty makes the run unstable.
 pub(super) const UNSTABLE: &str = "penalty";
 
 /// That the energy drifts by a penalty that is too stiff for the steps.
-pub(super) fn excess<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<Excess> {
+pub(super) fn excess(suspect: &Suspect<'_>) -> Option<Excess> {
     if !by_a_penalty(suspect.found) || suspect.found.energy <= DRIFT {
         return None;
     }
@@ -25,12 +26,12 @@ pub(super) fn excess<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>
 ///
 /// ω² of the body with the springs is at least (k + n·K n)/m of any node: central differences are unstable above
 /// Δt = 2/ω.
-pub(super) fn cause<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Option<String> {
+pub(super) fn cause(suspect: &Suspect<'_>) -> Option<String> {
     let (problem, contact) = (suspect.problem, &suspect.evidence.contact);
-    let mass = |at: usize| problem.surface().moved_mass(at, problem.mass());
+    let mass = |at: usize| problem.moved_mass(at);
     let springs = contact.springs().filter(|(_, stiffness)| stiffness.is_finite());
     let (at, stiffness) = springs.max_by(|(a, k), (b, l)| (k / mass(*a)).total_cmp(&(l / mass(*b))))?;
-    let node = problem.surface().nodes()[at].node.index();
+    let node = problem.contact_nodes()[at].node.index();
     let (times, own) = (suspect.source.times(), own_stiffness(suspect, at));
     let (step, mass) = (times.longest_step(), mass(at));
     let stable = 2.0 * (mass / (stiffness + own)).sqrt();
@@ -56,17 +57,17 @@ pub(super) fn cause<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
 }
 
 /// n·K n of a node at a plane (N/m); 0 of two nodes, whose relative motion both share.
-fn own_stiffness<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, at: usize) -> f64 {
+fn own_stiffness(suspect: &Suspect<'_>, at: usize) -> f64 {
     let problem = suspect.problem;
-    let contact = &problem.surface().nodes()[at];
-    let (obstacle, node) = (&problem.obstacles()[contact.obstacle], contact.node.index());
-    if obstacle.as_plane().is_none() {
+    let contact = &problem.contact_nodes()[at];
+    let (obstacle, node) = (problem.obstacle(contact.obstacle), contact.node.index());
+    if !obstacle.is_plane() {
         return 0.0;
     }
-    let frame = obstacle.flat_frame();
-    let nodes = problem.mesh().node_count();
-    let (mut displacement, mut force) = (vec![[0.0; D]; nodes], vec![[0.0; D]; nodes]);
-    displacement[node] = *frame.normal();
-    Dynamics::new(problem, suspect.source.times()).stiffness().subtract_internal_forces(&displacement, &mut force);
-    -frame.split(&force[node]).0
+    let (frame, d) = (obstacle.frame(), problem.dimension());
+    let (mut displacement, mut force) = (vec![0.0; d * problem.mesh().node_count()], Vec::new());
+    force.resize(displacement.len(), 0.0);
+    displacement[d * node..d * (node + 1)].copy_from_slice(&frame.normal()[..d]);
+    AnyStiffness::new(problem).subtract_internal_forces(&displacement, &mut force);
+    -frame.split(&row(&force, node, d)).0
 }

@@ -6,14 +6,14 @@ use crate::message::{percent, trimmed, vector};
 
 /// A plane at another place: nodes under force, or where a force is missing, are at the same distance from it, or at
 /// one that grows along it.
-pub(super) fn place<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, missing: bool) -> Option<String> {
+pub(super) fn place(suspect: &Suspect<'_>, missing: bool) -> Option<String> {
     let (k, [gap, slope]) = suspect.evidence.contact.offset(missing)?;
     let which = which(suspect, k);
     if slope != 0.0 {
         let place = trimmed(gap.abs(), 4);
         let side = if gap > 0.0 { "above" } else { "below" };
-        let normal = suspect.problem.obstacles()[k].flat_frame();
-        let turned = turned(normal.normal(), slope.atan());
+        let normal = suspect.problem.obstacle(k).frame();
+        let turned = turned(&normal.normal()[..suspect.problem.dimension()], slope.atan());
         return Some(format!(
             "{} of {which} is off by {} rad: the gaps of nodes under force grow along it; it should be \
              {turned}, and the nodes are {place} m {side} {which} on average",
@@ -32,9 +32,9 @@ pub(super) fn place<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>,
 }
 
 /// A normal that is turned by an angle (rad), counterclockwise.
-fn turned<const D: usize>(normal: &[f64; D], angle: f64) -> String {
+fn turned(normal: &[f64], angle: f64) -> String {
     let (sin, cos) = angle.sin_cos();
-    let n: Vec<f64> = match normal.as_slice() {
+    let n: Vec<f64> = match normal {
         &[x, y] => vec![cos * x - sin * y, sin * x + cos * y],
         other => other.to_vec(),
     };
@@ -44,7 +44,7 @@ fn turned<const D: usize>(normal: &[f64; D], angle: f64) -> String {
 }
 
 /// Friction that does not fit either, as with another normal: the gaps of one or two nodes do not tell the two apart.
-fn of_friction<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> String {
+fn of_friction(suspect: &Suspect<'_>) -> String {
     let misfit = suspect.found.slip.filter(|misfit| *misfit > CONE);
     misfit.map_or(String::new(), |misfit| {
         format!(". Or its `normal` is off: where nodes slide, the friction is off by {}, too", percent(misfit))
@@ -52,28 +52,28 @@ fn of_friction<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> S
 }
 
 /// The key of a plane, or the same of a surface.
-fn told<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, k: usize, key: &str) -> String {
-    match suspect.problem.obstacles()[k].as_plane() {
-        Some(_) => format!("the `{key}`"),
-        None if key == "point" => "the place (`origin` of its body)".to_string(),
-        None => "the direction (`rotation` of its body)".to_string(),
+fn told(suspect: &Suspect<'_>, k: usize, key: &str) -> String {
+    match suspect.problem.obstacle(k).is_plane() {
+        true => format!("the `{key}`"),
+        false if key == "point" => "the place (`origin` of its body)".to_string(),
+        false => "the direction (`rotation` of its body)".to_string(),
     }
 }
 
 /// A plane, for messages.
-fn which<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, k: usize) -> String {
-    let obstacle = &suspect.problem.obstacles()[k];
-    match obstacle.group().filter(|_| obstacle.as_plane().is_none()) {
+fn which(suspect: &Suspect<'_>, k: usize) -> String {
+    let obstacle = suspect.problem.obstacle(k);
+    match obstacle.group().filter(|_| !obstacle.is_plane()) {
         Some(group) => format!("the surface that faces \"{group}\""),
-        None if suspect.problem.obstacles().len() > 1 => format!("plane {k} (from 0)"),
+        None if suspect.problem.obstacle_count() > 1 => format!("plane {k} (from 0)"),
         None => "the plane".to_string(),
     }
 }
 
 /// Another coefficient of friction, or something else.
-pub(super) fn friction<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, other: &str) -> String {
+pub(super) fn friction(suspect: &Suspect<'_>, other: &str) -> String {
     let told = suspect.evidence.contact.friction().map_or(String::new(), |(k, friction)| {
-        let stated = suspect.problem.obstacles()[k].law().friction();
+        let stated = suspect.problem.obstacle(k).law().friction();
         format!(
             ": where nodes slide on {}, |R_t|/R_n is {} on average, not {}",
             which(suspect, k),

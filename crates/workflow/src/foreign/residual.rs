@@ -2,6 +2,7 @@
 
 use super::balance::Terms;
 use super::ratio;
+use percute_core::border::Vector;
 
 /// M a.
 pub(super) const INERTIA: usize = 0;
@@ -61,13 +62,13 @@ impl Residual {
     }
 
     /// Adds an instant (s) with its contact forces at all nodes (N).
-    pub(super) fn add<const D: usize>(&mut self, terms: &Terms<D>, reaction: &[[f64; D]], index: usize, time: f64) {
+    pub(super) fn add(&mut self, terms: &Terms, reaction: &[Vector], index: usize, time: f64) {
         for sizes in [&mut self.by_instant, &mut self.largest_at] {
             sizes.resize(sizes.len().max(index + 1), 0.0);
         }
         for (node, force) in reaction.iter().enumerate() {
             for (component, r) in force.iter().enumerate() {
-                let of = |field: &[[f64; D]]| field[node][component];
+                let of = |field: &[Vector]| field[node][component];
                 let fields = [of(&terms.inertia), of(&terms.stiffness), of(&terms.load), *r];
                 let signed: [f64; 4] = std::array::from_fn(|k| SIGNS[k] * fields[k]);
                 let rest = signed[INERTIA] + signed[STIFFNESS] + signed[LOAD] + signed[REACTION];
@@ -182,9 +183,9 @@ mod tests {
     /// Terms of which M a is `factors[0]` times and R `factors[1]` times what balances the others.
     fn residual(factors: [f64; 2]) -> Residual {
         let mut residual = Residual::new(vec![false; 3], false);
-        let stiffness = vec![[1.0, -2.0], [0.5, 3.0], [-1.5, 0.25]];
-        let load = vec![[0.1, 0.2], [-0.3, 0.4], [0.5, 0.0]];
-        let reaction = [[0.0, 4.0], [1.0, 0.5], [0.0, 0.0]];
+        let stiffness = vec![[1.0, -2.0, 0.0], [0.5, 3.0, 0.0], [-1.5, 0.25, 0.0]];
+        let load = vec![[0.1, 0.2, 0.0], [-0.3, 0.4, 0.0], [0.5, 0.0, 0.0]];
+        let reaction = [[0.0, 4.0, 0.0], [1.0, 0.5, 0.0], [0.0, 0.0, 0.0]];
         let inertia = |node: usize, c: usize| load[node][c] + reaction[node][c] - stiffness[node][c];
         let terms = Terms {
             inertia: (0..3).map(|node| std::array::from_fn(|c| factors[0] * inertia(node, c))).collect(),

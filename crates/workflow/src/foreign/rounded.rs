@@ -12,14 +12,12 @@ const INSTANTS: usize = 16;
 const VALUES: usize = 2000;
 
 /// The number of digits, if their rounding is as large as the residual.
-pub(super) fn rounded<const D: usize, const N: usize>(
-    suspect: &Suspect<'_, D, N>,
-) -> Result<Option<String>, SinkError> {
+pub(super) fn rounded(suspect: &Suspect<'_>) -> Result<Option<String>, SinkError> {
     let (mut digits, mut largest) = (1, 0.0_f64);
     let every = suspect.source.count().div_ceil(INSTANTS).max(1);
     suspect.source.replay(&mut |step| {
         if step.index.is_multiple_of(every) && digits <= MOST_DIGITS {
-            for &value in step.displacement.iter().flatten().take(VALUES) {
+            for &value in step.displacement.iter().take(VALUES) {
                 largest = largest.max(value.abs());
                 while digits <= MOST_DIGITS && !has(value, digits) {
                     digits += 1;

@@ -36,12 +36,7 @@ pub struct Samples {
 impl Samples {
     /// The samples, if velocities and accelerations are `given` and the steps of the solver were shorter: beyond the
     /// critical step (s), or by the accelerations.
-    pub(super) fn of<const D: usize>(
-        source: &dyn StepSource<D>,
-        found: &Consistency,
-        given: [bool; 2],
-        critical: f64,
-    ) -> Option<Self> {
+    pub(super) fn of(source: &dyn StepSource, found: &Consistency, given: [bool; 2], critical: f64) -> Option<Self> {
         let (count, distance) = (source.count(), source.times().longest_step());
         let shorter = !is_stable(distance, critical) || found.acceleration.is_some_and(|differs| differs > BALANCE);
         let samples = Self { count, distance, critical_steps: distance / critical };
@@ -51,8 +46,8 @@ impl Samples {
 
 /// What samples without velocities or accelerations show, and the way out; a body that `touches` nothing may fly in
 /// long steps. Where surfaces that slide have contact forces, velocities and accelerations are not enough.
-pub(super) fn lacking<const D: usize>(
-    source: &dyn StepSource<D>,
+pub(super) fn lacking(
+    source: &dyn StepSource,
     found: &Consistency,
     (given, [touches, slides]): ([bool; 2], [bool; 2]),
     critical: f64,
@@ -129,8 +124,9 @@ pub(super) fn missing(given: [bool; 2]) -> &'static str {
 
 /// A history with instants between its samples, less than a critical step apart. The motion between two samples is the
 /// polynomial of degree 5 that has their displacements, velocities and accelerations. It has no contact forces.
-pub(crate) struct Between<'s, const D: usize> {
-    samples: &'s dyn StepSource<D>,
+pub(crate) struct Between<'s> {
+    samples: &'s dyn StepSource,
+    dimension: usize,
     /// The index of each sample among all instants.
     pub(crate) starts: Vec<usize>,
     times: TimeGrid,
@@ -140,9 +136,9 @@ pub(crate) struct Between<'s, const D: usize> {
 /// sample.
 type Weights = [f64; 6];
 
-impl<'s, const D: usize> Between<'s, D> {
+impl<'s> Between<'s> {
     /// Instants between samples for this critical step (s).
-    pub(crate) fn new(samples: &'s dyn StepSource<D>, critical: f64) -> Result<Self, TimeError> {
+    pub(crate) fn new(samples: &'s dyn StepSource, dimension: usize, critical: f64) -> Result<Self, TimeError> {
         let given = &samples.times().instants()[..samples.count()];
         let (mut instants, mut starts) = (vec![given[0]], vec![0]);
         for pair in given.windows(2) {
@@ -152,30 +148,28 @@ impl<'s, const D: usize> Between<'s, D> {
             instants.push(pair[1]);
             starts.push(instants.len() - 1);
         }
-        Ok(Self { samples, starts, times: TimeGrid::from_instants(instants)? })
+        Ok(Self { samples, dimension, starts, times: TimeGrid::from_instants(instants)? })
     }
 
     /// The motion at an instant between two samples.
-    fn motion(&self, from: &Held<D>, to: &Held<D>, index: usize) -> Option<[Vec<[f64; D]>; 3]> {
+    fn motion(&self, from: &Step<'_>, to: &Step<'_>, index: usize) -> Option<[Vec<f64>; 3]> {
         let dt = to.time - from.time;
         let s = (self.times.instants()[index] - from.time) / dt;
-        let (velocity, acceleration) = (from.velocity.as_ref()?, from.acceleration.as_ref()?);
-        let (next_velocity, next_acceleration) = (to.velocity.as_ref()?, to.acceleration.as_ref()?);
+        let (velocity, acceleration) = (from.velocity?, from.acceleration?);
+        let (next_velocity, next_acceleration) = (to.velocity?, to.acceleration?);
         let of = |weights: Weights, scale: f64| {
-            let node = |node: usize| {
-                std::array::from_fn(|c| {
-                    let values = [
-                        from.displacement[node][c],
-                        dt * velocity[node][c],
-                        dt * dt * acceleration[node][c],
-                        to.displacement[node][c],
-                        dt * next_velocity[node][c],
-                        dt * dt * next_acceleration[node][c],
-                    ];
-                    weights.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>() / scale
-                })
+            let value = |at: usize| {
+                let values = [
+                    from.displacement[at],
+                    dt * velocity[at],
+                    dt * dt * acceleration[at],
+                    to.displacement[at],
+                    dt * next_velocity[at],
+                    dt * dt * next_acceleration[at],
+                ];
+                weights.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>() / scale
             };
-            (0..from.displacement.len()).map(node).collect()
+            (0..from.displacement.len()).map(value).collect()
         };
         let [place, rate, curvature] = weights(s);
         Some([of(place, 1.0), of(rate, dt), of(curvature, dt * dt)])
@@ -203,7 +197,7 @@ fn weights(s: f64) -> [Weights; 3] {
     ]
 }
 
-impl<const D: usize> StepSource<D> for Between<'_, D> {
+impl StepSource for Between<'_> {
     fn times(&self) -> &TimeGrid {
         &self.times
     }
@@ -212,15 +206,15 @@ impl<const D: usize> StepSource<D> for Between<'_, D> {
         self.times.instants().len()
     }
 
-    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
-        windows(self.samples, &mut |window| {
-            let now = window.now;
-            let (reaction, touching) = (vec![[0.0; D]; now.reaction.len()], vec![false; now.touching.len()]);
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+        windows(self.samples, self.dimension, &mut |window| {
+            let now = window.now.step();
+            let (reaction, touching) = (vec![0.0; now.reaction.len()], vec![false; now.touching.len()]);
             let start = self.starts[now.index];
-            take(&Step { index: start, time: now.time, reaction: &reaction, touching: &touching, ..now.step() })?;
-            let Some(after) = window.after else { return Ok(()) };
+            take(&Step { index: start, time: now.time, reaction: &reaction, touching: &touching, ..now })?;
+            let Some(after) = window.after.map(Held::step) else { return Ok(()) };
             for index in start + 1..self.starts[after.index] {
-                let Some([displacement, velocity, acceleration]) = self.motion(now, after, index) else { continue };
+                let Some([displacement, velocity, acceleration]) = self.motion(&now, &after, index) else { continue };
                 take(&Step {
                     index,
                     time: self.times.instants()[index],

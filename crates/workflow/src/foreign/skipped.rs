@@ -9,8 +9,9 @@ use super::samples::missing;
 use super::suspect::Suspect;
 use super::tried::{FALL, ROUNDING, falls};
 use super::window::windows;
+use percute_core::border::Vector;
 use percute_core::history::SinkError;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 
 /// w of two steps, 1/16, to that of many, 1/12, a fifth less and more: up to the critical step, terms of higher order
@@ -20,9 +21,7 @@ const WEIGHTS: [f64; 2] = [0.8 / 16.0, 1.2 / 12.0];
 const EQUAL: f64 = 1e-2;
 
 /// That the instants are samples, if the residual away from the planes is that of samples.
-pub(super) fn skipped<const D: usize, const N: usize>(
-    suspect: &Suspect<'_, D, N>,
-) -> Result<Option<String>, SinkError> {
+pub(super) fn skipped(suspect: &Suspect<'_>) -> Result<Option<String>, SinkError> {
     let given = suspect.evidence.given;
     if given[1] {
         return Ok(None);
@@ -42,18 +41,18 @@ pub(super) fn skipped<const D: usize, const N: usize>(
 }
 
 /// The forces at all nodes at an instant (N).
-struct Forces<const D: usize> {
+struct Forces {
     /// F − K u.
-    given: Vec<[f64; D]>,
+    given: Vec<Vector>,
     /// M a, if the steps before and after are equal.
-    inertia: Option<Vec<[f64; D]>>,
+    inertia: Option<Vec<Vector>>,
 }
 
 /// Nodes of elements that cannot touch a plane: contact forces, which change at once, do not act on these elements.
-fn away<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<usize> {
+fn away(problem: &AnyProblem) -> Vec<usize> {
     let mut away = vec![true; problem.mesh().node_count()];
     let mut touches = vec![false; away.len()];
-    problem.surface().nodes().iter().for_each(|contact| touches[contact.node.index()] = true);
+    problem.contact_nodes().iter().for_each(|contact| touches[contact.node.index()] = true);
     for element in problem.mesh().cells() {
         if element.iter().any(|node| touches[node.index()]) {
             element.iter().for_each(|node| away[node.index()] = false);
@@ -64,17 +63,17 @@ fn away<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<usize> {
 
 /// Sums of squares of the terms and of the residual, its scalar product with the second difference of the forces, and
 /// the sum of squares of this (N²), away from the planes.
-fn products<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<[f64; 4], SinkError> {
+fn products(suspect: &Suspect<'_>) -> Result<[f64; 4], SinkError> {
     let (problem, grid) = (suspect.problem, suspect.source.times());
     let (balance, away) = (Balance::new(problem, grid), away(problem));
-    let rest = vec![[0.0; D]; problem.mesh().node_count()];
-    let mut held: Vec<Forces<D>> = Vec::new();
+    let rest = vec![[0.0; 3]; problem.mesh().node_count()];
+    let mut held: Vec<Forces> = Vec::new();
     let mut sums = [0.0; 4];
-    windows(suspect.source, &mut |window| {
+    windows(suspect.source, suspect.problem.dimension(), &mut |window| {
         let n = window.now.index;
         let motion = balance.motion(window).filter(|_| n > 0 && equal(grid, n));
         let terms = balance.terms(window.now, motion.as_ref().map_or(&rest, |motion| &motion.acceleration));
-        let of = |(f, ku): (&[f64; D], &[f64; D])| std::array::from_fn(|c| f[c] - ku[c]);
+        let of = |(f, ku): (&Vector, &Vector)| std::array::from_fn(|c| f[c] - ku[c]);
         let given = terms.load.iter().zip(&terms.stiffness).map(of).collect();
         if held.len() == 3 {
             held.remove(0);
@@ -85,7 +84,7 @@ fn products<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Resu
         else {
             return Ok(());
         };
-        for (&node, c) in away.iter().flat_map(|node| (0..D).map(move |c| (node, c))) {
+        for (&node, c) in away.iter().flat_map(|node| (0..3).map(move |c| (node, c))) {
             let [inertia, force] = [inertia[node][c], now[node][c]];
             let (rest, curvature) = (inertia - force, before[node][c] - 2.0 * force + after[node][c]);
             let terms = [inertia * inertia + force * force, rest * rest, rest * curvature, curvature * curvature];

@@ -4,22 +4,19 @@ use super::limits::{BALANCE, PLACE};
 use super::widest;
 use crate::through::{Take, Through};
 use percute_core::history::{Step, StepSource};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 
 /// A history that starts exactly as its problem states: what the limits of consistency let pass is within them.
-pub(crate) fn started<'s, const D: usize, const N: usize>(
-    problem: &'s Problem<D, N>,
-    source: &'s dyn StepSource<D>,
-) -> impl StepSource<D> + 's {
-    Through::new(source, move |step: &Step<'_, D>, take: &mut Take<'_, D>| {
+pub(crate) fn started<'s>(problem: &'s AnyProblem, source: &'s dyn StepSource) -> impl StepSource + 's {
+    Through::new(source, move |step: &Step<'_>, take: &mut Take<'_>| {
         if step.index > 0 {
             return take(step);
         }
         let (displacement, velocity) = (problem.initial_displacement(), problem.initial_velocity());
         let moved = widest(step.displacement, displacement)[0];
         let near = moved <= PLACE * problem.mesh().size();
-        let fastest = velocity.iter().flatten().fold(0.0_f64, |most, v| most.max(v.abs()));
-        let same = |given: &&[[f64; D]]| {
+        let fastest = velocity.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let same = |given: &&[f64]| {
             let [difference, largest] = widest(given, velocity);
             difference <= BALANCE * largest.max(fastest)
         };

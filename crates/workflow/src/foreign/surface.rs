@@ -8,8 +8,9 @@ use super::suspect::Suspect;
 use super::tried::Tried;
 use super::window::windows;
 use crate::message::times;
-use percute_core::contact::{ContactSurface, Side, SlidingSurfaces};
+use percute_core::border::Vector;
 use percute_core::history::SinkError;
+use percute_core::problem::AnyProblem;
 
 /// On larger surfaces, orders of the rows are not searched: their products take too much memory.
 const MOST: usize = 2000;
@@ -59,8 +60,8 @@ impl Needed {
 }
 
 /// Other orders of the rows of contact forces, other normal and tangential parts, and other axes.
-pub(super) fn tried<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Vec<Tried>, SinkError> {
-    let count = suspect.problem.surface().nodes().len();
+pub(super) fn tried(suspect: &Suspect<'_>) -> Result<Vec<Tried>, SinkError> {
+    let count = suspect.problem.contact_nodes().len();
     if count > MOST || !suspect.has_forces() {
         return Ok(Vec::new());
     }
@@ -72,9 +73,8 @@ pub(super) fn tried<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
         before: suspect.residual(),
         left: ((rest - own + left).max(0.0) / size).sqrt(),
     };
-    let nodes: Vec<usize> = suspect.problem.surface().nodes().iter().map(|contact| contact.node.index()).collect();
-    let parts =
-        sides(suspect.problem.surface(), &needed).into_iter().chain(Part::of_each().into_iter().zip(needed.parts));
+    let nodes: Vec<usize> = suspect.problem.contact_nodes().iter().map(|contact| contact.node.index()).collect();
+    let parts = sides(suspect.problem, &needed).into_iter().chain(Part::of_each().into_iter().zip(needed.parts));
     let parts = parts.filter_map(|(part, products)| part.tried(products, own));
     let mut all: Vec<Tried> = parts.map(|(text, left)| tried(text, left)).collect();
     all.extend(READINGS.iter().zip(needed.read).map(|(text, both)| tried(text.to_string(), needed.without(both))));
@@ -160,25 +160,25 @@ impl Part {
 }
 
 /// The forces on each of two surfaces that slide, with their sums: given, needed, and their product.
-fn sides<const D: usize>(surface: &ContactSurface<D>, needed: &Needed) -> Vec<(Part, [f64; 3])> {
-    let of_side = |(group, side): (&String, &Side)| {
-        let sums = (side.position(0)..side.position(side.len())).fold([0.0; 3], |[given, wanted, both], row| {
+fn sides(problem: &AnyProblem, needed: &Needed) -> Vec<(Part, [f64; 3])> {
+    let of_side = |(group, side): (&String, &Vec<usize>)| {
+        let sums = side.iter().fold([0.0; 3], |[given, wanted, both], &row| {
             let product = needed.both[row * needed.count + row];
             [given + needed.given[row], wanted + needed.needed[row], both + product]
         });
         (Part::on(group), sums)
     };
-    let of_both = |sliding: &SlidingSurfaces<D>| {
-        let groups = groups(surface, sliding);
-        [(&groups[0], sliding.slave()), (&groups[1], sliding.master())].map(of_side)
+    let of_both = |sliding: usize| {
+        let (groups, sides) = (groups(problem, sliding), problem.sides_of_sliding(sliding));
+        [(&groups[0], &sides[0]), (&groups[1], &sides[1])].map(of_side)
     };
-    surface.sliding().iter().flat_map(of_both).collect()
+    (0..problem.sliding_count()).flat_map(of_both).collect()
 }
 
-fn needed<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Needed, SinkError> {
-    let (problem, surface) = (suspect.problem, suspect.problem.surface());
+fn needed(suspect: &Suspect<'_>) -> Result<Needed, SinkError> {
+    let problem = suspect.problem;
     let balance = Balance::new(problem, suspect.source.times());
-    let count = surface.nodes().len();
+    let count = problem.contact_nodes().len();
     let mut sums = Needed {
         count,
         given: vec![0.0; count],
@@ -187,22 +187,23 @@ fn needed<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result
         parts: [[0.0; 3]; 2],
         read: [0.0; READINGS.len()],
     };
-    windows(suspect.source, &mut |window| {
+    windows(suspect.source, problem.dimension(), &mut |window| {
         let now = window.now;
         let derived = if now.index > 0 { balance.motion(window).map(|motion| motion.acceleration) } else { None };
         let Some(used) = now.acceleration.as_ref().or(derived.as_ref()) else { return Ok(()) };
         let terms = balance.terms(now, used);
-        let needed: Vec<[f64; D]> = surface.nodes().iter().map(|contact| terms.rest(contact.node.index())).collect();
+        let needed: Vec<Vector> =
+            problem.contact_nodes().iter().map(|contact| terms.rest(contact.node.index())).collect();
         for (row, force) in now.reaction.iter().enumerate() {
             sums.needed[row] += dot(&needed[row], &needed[row]);
-            if *force == [0.0; D] {
+            if *force == [0.0; 3] {
                 continue;
             }
             sums.given[row] += dot(force, force);
             for (at, other) in needed.iter().enumerate() {
                 sums.both[row * count + at] += dot(force, other);
             }
-            let frame = surface.frame(row, &now.displacement[surface.nodes()[row].node.index()]);
+            let frame = problem.frame(row);
             let ((pressed, own), (pressing, wanted)) = (frame.split(force), frame.split(&needed[row]));
             let products = [
                 [dot(&own, &own), dot(&wanted, &wanted), dot(&own, &wanted)],
@@ -210,7 +211,7 @@ fn needed<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result
             ];
             let parts = sums.parts.as_flattened_mut().iter_mut().zip(products.as_flattened());
             parts.for_each(|(sum, product)| *sum += product);
-            let read = read(force, frame.normal());
+            let read = read(force, frame.normal(), problem.dimension());
             sums.read.iter_mut().zip(&read).for_each(|(sum, read)| *sum += dot(read, &needed[row]));
         }
         Ok(())

@@ -76,15 +76,15 @@ fn same(factor: f64) -> bool {
 }
 
 /// A history in other units.
-struct Scaled<'s, const D: usize> {
-    source: &'s dyn StepSource<D>,
+struct Scaled<'s> {
+    source: &'s dyn StepSource,
     times: TimeGrid,
     system: System,
     /// Whether contact forces are left out.
     without_forces: bool,
 }
 
-impl<const D: usize> StepSource<D> for Scaled<'_, D> {
+impl StepSource for Scaled<'_> {
     fn times(&self) -> &TimeGrid {
         &self.times
     }
@@ -93,11 +93,9 @@ impl<const D: usize> StepSource<D> for Scaled<'_, D> {
         self.source.count()
     }
 
-    fn replay(&self, take: &mut dyn FnMut(&Step<'_, D>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError> {
         let system = self.system;
-        let of = |field: &[[f64; D]], factor: f64| -> Vec<[f64; D]> {
-            field.iter().map(|value| value.map(|x| factor * x)).collect()
-        };
+        let of = |field: &[f64], factor: f64| field.iter().map(|x| factor * x).collect::<Vec<f64>>();
         self.source.replay(&mut |step| {
             let velocity = step.velocity.map(|field| of(field, system.speed()));
             let acceleration = step.acceleration.map(|field| of(field, system.acceleration()));
@@ -114,7 +112,7 @@ impl<const D: usize> StepSource<D> for Scaled<'_, D> {
 }
 
 /// The systems in which the arrays fit the problem in all, if they do not as they are.
-pub(super) fn whole<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>) -> Result<Option<String>, SinkError> {
+pub(super) fn whole(suspect: &Suspect<'_>) -> Result<Option<String>, SinkError> {
     let (given, forces) = (suspect.evidence.given, suspect.has_forces());
     for inverse in [false, true] {
         let mut fit = Vec::new();
@@ -140,14 +138,14 @@ pub(super) fn whole<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>)
 }
 
 /// Whether the factors of all terms leave little of a residual inside the body.
-fn balances<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, system: System) -> bool {
+fn balances(suspect: &Suspect<'_>, system: System) -> bool {
     let mut factors = [1.0; 4];
     (factors[INERTIA], factors[STIFFNESS], factors[REACTION]) = (system.acceleration(), system.length, system.force);
     suspect.evidence.residual.inside_with(factors) <= FALL
 }
 
 /// The norm of the residual in SI units, if nothing contradicts the problem then.
-fn left<const D: usize, const N: usize>(suspect: &Suspect<'_, D, N>, system: System) -> Result<Option<f64>, SinkError> {
+fn left(suspect: &Suspect<'_>, system: System) -> Result<Option<f64>, SinkError> {
     let (problem, source) = (suspect.problem, suspect.source);
     // What was derived in the units that are given is derived again, also if that was nothing.
     let silent = !suspect.evidence.contact.forced.contains(&true);

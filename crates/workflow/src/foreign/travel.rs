@@ -3,13 +3,12 @@
 //! The integrals are trapezoidal sums from t_0 on: errors of samples far apart do not add up there, as those of single
 //! steps do.
 
-use super::balance::dot;
 use super::quantity::{Quantity, agree, should};
 use super::units::{displaced, steps};
 use super::{Contradiction, ratio};
 use crate::message::times;
 use percute_core::history::{SinkError, StepSource};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 
 /// Limit of the factor between displacements and integral, less 1. Histories of percute (bar, block, tilted block and
 /// disc, normal and oblique, 0.1 to 0.9 Δt_c) have at most 0.01 at the distance of 1.8 Δt_c, and 0.046 at that of 9.
@@ -22,30 +21,28 @@ const TELLS: f64 = 0.5;
 
 /// Sums over all nodes and instants of a field and of the integral of its rate.
 #[derive(Clone, Debug)]
-struct Integral<const D: usize> {
-    start: Vec<[f64; D]>,
-    rate: Vec<[f64; D]>,
-    sum: Vec<[f64; D]>,
+struct Integral {
+    start: Vec<f64>,
+    rate: Vec<f64>,
+    sum: Vec<f64>,
     /// ∑x·s, ∑s², ∑x² of the change x of the field and of the integral s.
     products: [f64; 3],
 }
 
-impl<const D: usize> Integral<D> {
-    fn new(field: &[[f64; D]], rate: &[[f64; D]]) -> Self {
+impl Integral {
+    fn new(field: &[f64], rate: &[f64]) -> Self {
         let [start, rate] = [field, rate].map(<[_]>::to_vec);
-        Self { sum: vec![[0.0; D]; start.len()], start, rate, products: [0.0; 3] }
+        Self { sum: vec![0.0; start.len()], start, rate, products: [0.0; 3] }
     }
 
     /// Takes in the field and its rate dt (s) later.
-    fn take(&mut self, field: &[[f64; D]], rate: &[[f64; D]], dt: f64) {
-        for (node, (value, now)) in field.iter().zip(rate).enumerate() {
-            for c in 0..D {
-                self.sum[node][c] += 0.5 * dt * (self.rate[node][c] + now[c]);
-                let (x, s) = (value[c] - self.start[node][c], self.sum[node][c]);
-                self.products[0] += x * s;
-                self.products[1] += s * s;
-                self.products[2] += x * x;
-            }
+    fn take(&mut self, field: &[f64], rate: &[f64], dt: f64) {
+        for (at, (value, now)) in field.iter().zip(rate).enumerate() {
+            self.sum[at] += 0.5 * dt * (self.rate[at] + now);
+            let (x, s) = (value - self.start[at], self.sum[at]);
+            self.products[0] += x * s;
+            self.products[1] += s * s;
+            self.products[2] += x * x;
         }
         self.rate.copy_from_slice(rate);
     }
@@ -71,10 +68,7 @@ struct Travel {
 
 /// That the displacements have a factor against the integral of the velocities, with its likely cause; none without
 /// velocities.
-pub(super) fn contradiction<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    source: &dyn StepSource<D>,
-) -> Result<Option<Contradiction>, SinkError> {
+pub(super) fn contradiction(problem: &AnyProblem, source: &dyn StepSource) -> Result<Option<Contradiction>, SinkError> {
     let Some(travel) = Travel::of(problem, source)? else { return Ok(None) };
     let ([factor, rest], limit) = (travel.way, travel.limit());
     Ok(((factor - 1.0).abs() > limit).then(|| Contradiction {
@@ -91,10 +85,7 @@ pub(super) fn contradiction<const D: usize, const N: usize>(
 }
 
 impl Travel {
-    fn of<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
-        source: &dyn StepSource<D>,
-    ) -> Result<Option<Self>, SinkError> {
+    fn of(problem: &AnyProblem, source: &dyn StepSource) -> Result<Option<Self>, SinkError> {
         let (mut way, mut speed, mut start) = (None, None, None);
         let (mut before, mut absent) = (0.0, false);
         let read = source.replay(&mut |step| {
@@ -174,9 +165,9 @@ fn known(factor: f64) -> f64 {
 }
 
 /// The factor of the second field that fits the first best; none if it is zero.
-fn share<const D: usize>(field: &[[f64; D]], stated: &[[f64; D]]) -> Option<f64> {
+fn share(field: &[f64], stated: &[f64]) -> Option<f64> {
     let pairs = field.iter().zip(stated);
-    let [along, own] = pairs.fold([0.0; 2], |[along, own], (v, v0)| [along + dot(v, v0), own + dot(v0, v0)]);
+    let [along, own] = pairs.fold([0.0; 2], |[along, own], (v, v0)| [along + v * v0, own + v0 * v0]);
     (own > 0.0).then(|| ratio(along, own))
 }
 
@@ -218,12 +209,12 @@ mod tests {
 
     #[test]
     fn the_trapezoidal_sum_is_exact_for_a_constant_acceleration() {
-        let at = |t: f64| ([[3.0 * t + t * t]], [[3.0 + 2.0 * t]]);
+        let at = |t: f64| ([3.0 * t + t * t], [3.0 + 2.0 * t]);
         let ((u, v), dt) = (at(0.0), 0.5);
         let mut way = Integral::new(&u, &v);
         for n in 1..5 {
             let (u, v) = at(n as f64 * dt);
-            way.take(&u.map(|u| u.map(|u| 0.8 * u)), &v, dt);
+            way.take(&u.map(|u| 0.8 * u), &v, dt);
         }
         let [factor, rest] = way.factor().unwrap();
         assert!((factor - 0.8).abs() < 1e-14 && rest < 1e-14, "{factor} {rest}");

@@ -8,7 +8,7 @@ use super::residual::{INERTIA, LOAD, REACTION, STIFFNESS};
 use super::tried::{FALL, Tried};
 use crate::message::times;
 use percute_core::material::{Elastic, Law};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 
 /// What has the unit of length.
 const ALL_LENGTHS: &str = "all lengths (mesh, planes, displacements and `initial_velocity`)";
@@ -32,21 +32,18 @@ struct Context {
 }
 
 impl Context {
-    fn of<const D: usize, const N: usize>(problem: &Problem<D, N>, evidence: &Evidence<'_, D, N>, open: bool) -> Self {
+    fn of(problem: &AnyProblem, evidence: &Evidence<'_>, open: bool) -> Self {
         let extent = problem.materials().first().map(Law::extent);
-        let same = |extent: &f64| D == 2 && problem.materials().iter().all(|other| other.extent() == *extent);
+        let d = problem.dimension();
+        let same = |extent: &f64| d == 2 && problem.materials().iter().all(|other| other.extent() == *extent);
         let path = evidence.contact.paths().first().copied();
         let solid = problem.materials().iter().all(is_solid);
-        Self { speed: evidence.ends.speed, open, dimension: D, path, thickness: extent.filter(same), solid }
+        Self { speed: evidence.ends.speed, open, dimension: d, path, thickness: extent.filter(same), solid }
     }
 }
 
 /// Factors of one term that leave the least residual.
-pub(super) fn one_term<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    evidence: &Evidence<'_, D, N>,
-    derived: &[Derived],
-) -> Vec<Tried> {
+pub(super) fn one_term(problem: &AnyProblem, evidence: &Evidence<'_>, derived: &[Derived]) -> Vec<Tried> {
     let mut residual = evidence.residual.clone();
     let silent = evidence.silent();
     if silent {
@@ -70,23 +67,22 @@ pub(super) fn one_term<const D: usize, const N: usize>(
 }
 
 /// Factors of two terms, over the stiffness: lengths in another unit, or another modulus and another density.
-pub(super) fn two_terms<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    evidence: &Evidence<'_, D, N>,
-) -> Option<Tried> {
+pub(super) fn two_terms(problem: &AnyProblem, evidence: &Evidence<'_>) -> Option<Tried> {
     let residual = &evidence.residual;
     let factors = residual.fit(&[INERTIA, REACTION])?;
     let (of_m, of_r) = (factors[INERTIA], factors[REACTION]);
     let text = match (of_m > 0.0 && of_r > 0.0, evidence.ends.speed) {
         (false, _) => return None,
         // The mass of a plane body grows by the square of lengths, the stiffness does not.
-        (true, Some(speed)) if agree(of_m * of_r * of_r, 1.0) && D == 2 && agree(speed, of_r) => {
+        (true, Some(speed)) if agree(of_m * of_r * of_r, 1.0) && problem.dimension() == 2 && agree(speed, of_r) => {
             format!("mesh and displacements {}", should(1.0 / of_r, Quantity::Length))
         }
-        (true, Some(speed)) if agree(of_m * of_r * of_r, 1.0) && D == 2 && agree(speed, 1.0) => {
+        (true, Some(speed)) if agree(of_m * of_r * of_r, 1.0) && problem.dimension() == 2 && agree(speed, 1.0) => {
             format!("{ALL_LENGTHS} {}", should(1.0 / of_r, Quantity::Length))
         }
-        (true, Some(speed)) if agree(of_m, of_r * of_r) && D == 1 && agree(speed, 1.0) && of_unit(of_r) => {
+        (true, Some(speed))
+            if agree(of_m, of_r * of_r) && problem.dimension() == 1 && agree(speed, 1.0) && of_unit(of_r) =>
+        {
             format!("the mesh {}", should(of_r, Quantity::Length))
         }
         _ if residual_is_of_materials(problem, of_m, of_r) => format!(
@@ -100,12 +96,12 @@ pub(super) fn two_terms<const D: usize, const N: usize>(
 }
 
 /// Whether both factors are no rounding, and no loads tell otherwise.
-fn residual_is_of_materials<const D: usize, const N: usize>(problem: &Problem<D, N>, of_m: f64, of_r: f64) -> bool {
+fn residual_is_of_materials(problem: &AnyProblem, of_m: f64, of_r: f64) -> bool {
     !problem.is_loaded() && [of_m / of_r, of_r].into_iter().all(|factor| (factor - 1.0).abs() > BALANCE)
 }
 
 /// A displacement in another unit, by the velocity at the start and by the place of contact.
-pub(super) fn displacements<const D: usize, const N: usize>(evidence: &Evidence<'_, D, N>) -> Option<String> {
+pub(super) fn displacements(evidence: &Evidence<'_>) -> Option<String> {
     let speed = evidence.ends.speed.filter(|speed| speed.is_finite() && (speed - 1.0).abs() > BALANCE)?;
     // Without any contact force, those of the first step change the velocity.
     let paths = evidence.contact.paths();

@@ -5,6 +5,7 @@ use super::tried::{FALL, falls};
 use super::window::Window;
 use super::{take_in, widest};
 use crate::message::percent;
+use percute_core::border::Vector;
 use percute_core::time::TimeGrid;
 
 /// What rows of velocities may hold instead of v_n.
@@ -19,19 +20,19 @@ const ELSEWHERE: [&str; 4] = [
 
 /// Largest differences of given velocities from those of the displacements, each with the largest velocity (m/s).
 #[derive(Clone, Debug, Default)]
-pub(super) struct Rates<const D: usize> {
+pub(super) struct Rates {
     at_once: [f64; 2],
     elsewhere: [[f64; 2]; 4],
     /// The given velocities and those of the displacements at the instant before.
-    before: Option<[Vec<[f64; D]>; 2]>,
+    before: Option<[Vec<Vector>; 2]>,
 }
 
-impl<const D: usize> Rates<D> {
+impl Rates {
     /// Takes in an instant with its motion.
-    pub(super) fn take(&mut self, window: Window<'_, D>, motion: &Motion<D>, times: &TimeGrid) {
+    pub(super) fn take(&mut self, window: Window<'_>, motion: &Motion, times: &TimeGrid) {
         let now = window.now;
         let Some(given) = &now.velocity else { return };
-        let derived: Vec<[f64; D]> = match now.index.checked_sub(1) {
+        let derived: Vec<Vector> = match now.index.checked_sub(1) {
             None => motion.back.clone(),
             Some(before) => {
                 let half = 0.5 * times.step(before);
@@ -39,14 +40,14 @@ impl<const D: usize> Rates<D> {
                 pairs.map(|(v, a)| std::array::from_fn(|c| v[c] + half * a[c])).collect()
             }
         };
-        take_in(&mut self.elsewhere[1], widest(given, &motion.forward));
+        take_in(&mut self.elsewhere[1], widest(given.as_flattened(), motion.forward.as_flattened()));
         if now.index > 0 {
-            take_in(&mut self.at_once, widest(given, &derived));
-            take_in(&mut self.elsewhere[0], widest(given, &motion.back));
+            take_in(&mut self.at_once, widest(given.as_flattened(), derived.as_flattened()));
+            take_in(&mut self.elsewhere[0], widest(given.as_flattened(), motion.back.as_flattened()));
         }
         if let Some([earlier, made]) = &self.before {
-            take_in(&mut self.elsewhere[2], widest(given, made));
-            take_in(&mut self.elsewhere[3], widest(earlier, &derived));
+            take_in(&mut self.elsewhere[2], widest(given.as_flattened(), made.as_flattened()));
+            take_in(&mut self.elsewhere[3], widest(earlier.as_flattened(), derived.as_flattened()));
         }
         self.before = Some([given.clone(), derived]);
     }

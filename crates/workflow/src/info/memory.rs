@@ -1,21 +1,20 @@
 //! How much memory a run will take, before it begins.
 
-use crate::case::CaseOf;
+use crate::case::Case;
 use crate::message::bytes;
 use percute_core::contact::{ContactSteps, Resultant};
 use percute_core::dynamics::Balance;
 use percute_core::ids::{ElementId, FacetId, NodeId};
 use percute_core::memory::can_be_had;
-use percute_core::mesh::Facet;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 
 /// Beside the prediction.
 const MARGIN: u64 = 16 << 20;
 
 /// About how many bytes a run and its estimate take; with `in_memory`, its history too.
-pub(crate) fn of_case<const D: usize, const N: usize>(case: &CaseOf<D, N>, in_memory: bool) -> u64 {
-    let CaseOf { problem, times, options, .. } = case;
+pub(crate) fn of_case(case: &Case, in_memory: bool) -> u64 {
+    let Case { problem, times, options, .. } = case;
     let estimate = percute_estimator::memory(problem, times, options) as u64;
     let history = if in_memory { of_history(problem, times) } else { 0 };
     let contact = case.output.estimate.as_ref().map_or(0, |_| of_contact(problem, times));
@@ -24,9 +23,9 @@ pub(crate) fn of_case<const D: usize, const N: usize>(case: &CaseOf<D, N>, in_me
 
 /// How many bytes a history takes in memory.
 #[must_use]
-pub fn of_history<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> u64 {
-    let (nodes, contact) = (problem.mesh().node_count(), problem.surface().nodes().len());
-    let instant = (nodes + contact) * size_of::<[f64; D]>() + contact * size_of::<bool>();
+pub fn of_history(problem: &AnyProblem, times: &TimeGrid) -> u64 {
+    let (nodes, contact) = (problem.mesh().node_count(), problem.contact_nodes().len());
+    let instant = (nodes + contact) * problem.dimension() * size_of::<f64>() + contact * size_of::<bool>();
     (times.step_count() as u64 + 1).saturating_mul(instant as u64)
 }
 
@@ -65,43 +64,44 @@ pub fn refusal(needed: u64) -> Option<String> {
 }
 
 /// How many bytes the contact results of all nodes at all instants take, which an estimate file asks for.
-pub(super) fn of_contact<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> u64 {
-    let rows = (problem.surface().nodes().len() as u64).saturating_mul(times.step_count() as u64 + 1);
-    rows.saturating_mul(ContactSteps::<D>::BYTES as u64)
+pub(super) fn of_contact(problem: &AnyProblem, times: &TimeGrid) -> u64 {
+    let rows = (problem.contact_nodes().len() as u64).saturating_mul(times.step_count() as u64 + 1);
+    rows.saturating_mul(ContactSteps::bytes(problem.dimension()) as u64)
 }
 
 /// About how many bytes problem and simulation take, most of it in proportion to the mesh.
 #[must_use]
-pub fn of_run<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> u64 {
+pub fn of_run(problem: &AnyProblem, times: &TimeGrid) -> u64 {
     let mesh = problem.mesh();
-    let vector = size_of::<[f64; D]>();
+    let (d, n) = (mesh.dimension(), mesh.nodes_of_element());
+    let vector = d * size_of::<f64>();
     // Coordinates, initial fields, mass and its inverse; u, v, a and the force of the integrator.
     let node = 8 * vector + 2 * size_of::<f64>() + 2 * size_of::<u32>();
     // Nodes, facets and place in the stars; the element of the stiffness.
-    let element = N
+    let element = n
         * (size_of::<NodeId>() + size_of::<FacetId>() + size_of::<ElementId>() + size_of::<Option<FacetId>>())
         + size_of::<u16>()
-        + (N + 1) * size_of::<u32>()
-        + D * vector;
+        + (n + 1) * size_of::<u32>()
+        + d * vector;
     // With what is supported of it.
-    let facet = size_of::<Facet<D>>() + D;
+    let facet = d * size_of::<NodeId>() + 2 * size_of::<ElementId>() + d;
     let instant = size_of::<f64>()
         + size_of::<Balance>()
         + size_of::<f64>()
-        + (1 + problem.obstacles().len()) * size_of::<Resultant<D>>();
+        + (1 + problem.obstacle_count()) * size_of::<Resultant>();
     // The problem in a local order, beside that of the user: all but the vectors of the integrator, and old numbers.
-    let ordered = if mesh.is_local() {
+    let ordered = if mesh.local_numbering().is_none() {
         [0; 3]
     } else {
-        [node - 5 * vector + size_of::<NodeId>(), element - D * vector + size_of::<ElementId>(), facet]
+        [node - 5 * vector + size_of::<NodeId>(), element - d * vector + size_of::<ElementId>(), facet]
     };
     let total = [
         (mesh.node_count(), ordered[0]),
         (mesh.element_count(), ordered[1]),
-        (mesh.facets().len(), ordered[2]),
+        (mesh.facet_count(), ordered[2]),
         (mesh.node_count(), node),
         (mesh.element_count(), element),
-        (mesh.facets().len(), facet),
+        (mesh.facet_count(), facet),
         (times.step_count() + 1, instant),
     ];
     total.iter().map(|&(count, size)| (count as u64).saturating_mul(size as u64)).sum()

@@ -3,8 +3,6 @@
 use crate::message::{counted, short};
 use crate::report::summary::counts;
 use crate::report::{FORMAT, Versions, Warning, reported};
-use percute_core::each_dimension;
-use percute_core::mesh::Mesh;
 use percute_io::gmsh::MeshFile;
 use serde::Serialize;
 use std::path::Path;
@@ -38,19 +36,16 @@ pub struct GroupInfo {
 /// What a mesh file holds.
 #[must_use]
 pub fn of_mesh(path: &Path, file: &MeshFile) -> MeshInfo {
-    each_dimension!(file, read => told(path, &read.mesh))
-}
-
-fn told<const D: usize, const N: usize>(path: &Path, mesh: &Mesh<D, N>) -> MeshInfo {
+    let mesh = &file.mesh;
     let corner = |start: f64, pick: fn(f64, f64) -> f64| {
-        (0..D).map(|c| mesh.points().iter().map(|p| p[c]).fold(start, pick)).collect()
+        (0..mesh.dimension()).map(|c| mesh.places().map(|p| p[c]).fold(start, pick)).collect()
     };
     let group = |(name, members): (&String, usize)| GroupInfo { name: name.clone(), members };
     MeshInfo {
         format: FORMAT,
         versions: Versions::of_this_program(),
         file: path.display().to_string(),
-        dimension: D,
+        dimension: mesh.dimension(),
         nodes: mesh.node_count(),
         elements: mesh.element_count(),
         reoriented_elements: mesh.reoriented_elements(),

@@ -10,7 +10,7 @@ pub use estimate::{EstimateInfo, of_estimate};
 pub use mesh::{GroupInfo, MeshInfo, of_mesh};
 pub use setting::{MaterialInfo, PlaneInfo};
 
-use crate::case::{CaseOf, FIELDS, NotRepresentable, Output};
+use crate::case::{Case, FIELDS, NotRepresentable, Output};
 use crate::effort::{Effort, duration};
 use crate::history::{Stored, plan};
 use crate::message::{bytes, counted, printable, trimmed};
@@ -92,7 +92,7 @@ pub struct KeptInfo {
 }
 
 /// The instants and fields of a history.
-fn kept<const D: usize, const N: usize>(stored: &Stored<D, N>) -> KeptInfo {
+fn kept(stored: &Stored) -> KeptInfo {
     let [velocity, acceleration] = stored.file.stored();
     let there = [true, velocity, acceleration, !stored.file.lacks_reactions()];
     let fields = FIELDS.into_iter().zip(there).filter(|(_, there)| *there).map(|(name, _)| name).collect();
@@ -142,7 +142,7 @@ fn writer(Provenance { program, architecture, system }: &Provenance) -> String {
 ///
 /// # Errors
 /// A problem that cannot be stored.
-pub fn of_case<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Result<Info, NotRepresentable> {
+pub fn of_case(case: &Case) -> Result<Info, NotRepresentable> {
     let Output { history, estimate, .. } = &case.output;
     let name = |file: &Option<std::path::PathBuf>| file.as_ref().map(|file| file.display().to_string());
     let effort = Effort::of(&case.problem, &case.times, case.options.every);
@@ -172,7 +172,7 @@ pub fn of_case<const D: usize, const N: usize>(case: &CaseOf<D, N>) -> Result<In
 
 /// What a history holds.
 #[must_use]
-pub fn of_history<const D: usize, const N: usize>(stored: &Stored<D, N>) -> Info {
+pub fn of_history(stored: &Stored) -> Info {
     let (file, problem, subject) = (&stored.file, &stored.problem, stored.subject());
     let [velocity, acceleration] = file.given();
     Info::History(Box::new(HistoryInfo {

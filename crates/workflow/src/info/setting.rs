@@ -3,7 +3,7 @@
 use crate::message::{counted, trimmed};
 use percute_core::contact::Interface;
 use percute_core::material::Law;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use serde::Serialize;
 
 /// A material.
@@ -32,8 +32,8 @@ pub struct PlaneInfo {
 }
 
 /// The materials as they were stated.
-pub(super) fn materials<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<MaterialInfo> {
-    let stated = problem.statement().materials.iter();
+pub(super) fn materials(problem: &AnyProblem) -> Vec<MaterialInfo> {
+    let stated = problem.conditions().materials.iter();
     let told = stated.map(|(group, law)| MaterialInfo {
         group: group.clone(),
         young: law.young(),
@@ -44,10 +44,10 @@ pub(super) fn materials<const D: usize, const N: usize>(problem: &Problem<D, N>)
 }
 
 /// The planes, in their order, and the surfaces of different bodies.
-pub(super) fn planes<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<PlaneInfo> {
+pub(super) fn planes(problem: &AnyProblem) -> Vec<PlaneInfo> {
     let starts = problem.starts_of_contact();
     let told = |obstacle: usize| {
-        let surface = problem.surface().nodes().iter().enumerate();
+        let surface = problem.contact_nodes().iter().enumerate();
         let mine = surface.filter(|(_, node)| node.obstacle == obstacle && node.free);
         let speeds = mine.clone().map(|(at, _)| -starts[at].1);
         PlaneInfo {
@@ -59,7 +59,7 @@ pub(super) fn planes<const D: usize, const N: usize>(problem: &Problem<D, N>) ->
         }
     };
     // The two sides of a pair have the same gaps; of surfaces that slide, those of the slave count.
-    (0..problem.obstacles().len()).filter(|&obstacle| problem.leads_interface(obstacle)).map(told).collect()
+    (0..problem.obstacle_count()).filter(|&obstacle| problem.leads_interface(obstacle)).map(told).collect()
 }
 
 impl MaterialInfo {

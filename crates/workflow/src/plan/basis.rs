@@ -4,7 +4,7 @@ use super::{Branch, MOST};
 use crate::message::whole_percent;
 use percute_core::contact::ContactResults;
 use percute_core::ids::NodeId;
-use percute_core::mesh::Mesh;
+use percute_core::mesh::AnyMesh;
 use percute_estimator::{Estimate, Separation};
 
 /// The elements of a run, their parts of the squared mean error, and its sources.
@@ -29,11 +29,7 @@ pub struct Basis {
 impl Basis {
     /// Of an estimated run; none without sources, or without an error.
     #[must_use]
-    pub fn new<const D: usize, const N: usize>(
-        mesh: &Mesh<D, N>,
-        estimate: &Estimate<D>,
-        contact: &ContactResults<D>,
-    ) -> Option<Self> {
+    pub fn new(mesh: &AnyMesh, estimate: &Estimate, contact: &ContactResults) -> Option<Self> {
         let sources = estimate.sources.clone()?;
         let squared: Vec<f64> = estimate.by_element.iter().map(|e| e * e).collect();
         let total = sources.mean.total();
@@ -46,10 +42,10 @@ impl Basis {
         nodes.dedup();
         let mut touches = vec![false; mesh.element_count()];
         for node in &nodes {
-            mesh.stars().star(*node).elements.iter().for_each(|element| touches[element.index()] = true);
+            mesh.elements_around(*node).iter().for_each(|element| touches[element.index()] = true);
         }
         let element_steps = mesh.element_count() as f64 * estimate.steps as f64;
-        Some(Self { dimension: D, size: sizes(mesh), squared, touches, nodes, sources, element_steps })
+        Some(Self { dimension: mesh.dimension(), size: sizes(mesh), squared, touches, nodes, sources, element_steps })
     }
 
     /// How elements are made smaller, by the largest source.
@@ -109,6 +105,6 @@ pub(crate) fn shares_told(shares: &[f64; 4]) -> String {
 }
 
 /// h of each element: the root of its area, or its length (m).
-pub(crate) fn sizes<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Vec<f64> {
-    mesh.volumes().into_iter().map(|volume| volume.powf(1.0 / D as f64)).collect()
+pub(crate) fn sizes(mesh: &AnyMesh) -> Vec<f64> {
+    mesh.volumes().into_iter().map(|volume| volume.powf(1.0 / mesh.dimension() as f64)).collect()
 }

@@ -1,8 +1,9 @@
 //! The wanted size of elements at each point.
 
 use super::{Basis, Branch, Plan, sizes};
+use percute_core::border::Vector;
 use percute_core::ids::{ElementId, NodeId};
-use percute_core::mesh::{Locator, Mesh};
+use percute_core::mesh::{AnyLocator, AnyMesh};
 use std::collections::BTreeMap;
 
 /// Growth of the size with the distance from a node that touches, in a graded mesh.
@@ -15,32 +16,33 @@ const TOWARDS: f64 = 0.9;
 /// It is constant in each element of the mesh of a run. In a graded mesh, the elements that touch keep their size, but
 /// towards nodes that touch it falls to that which is planned there.
 #[derive(Clone, Debug)]
-pub(crate) struct Wanted<'m, const D: usize, const N: usize> {
-    locator: Locator<'m, D, N>,
+pub(crate) struct Wanted<'m> {
+    mesh: &'m AnyMesh,
+    locator: AnyLocator<'m>,
     size: Vec<f64>,
     /// For each element the nodes that touch in the elements around it, and the planned size there (m).
     near: BTreeMap<ElementId, Vec<(NodeId, f64)>>,
 }
 
-impl<'m, const D: usize, const N: usize> Wanted<'m, D, N> {
+impl<'m> Wanted<'m> {
     /// Of a plan for the mesh of a run.
-    pub(crate) fn new(mesh: &'m Mesh<D, N>, basis: &Basis, plan: &Plan) -> Self {
+    pub(crate) fn new(mesh: &'m AnyMesh, basis: &Basis, plan: &Plan) -> Self {
         let planned: Vec<f64> = plan.ratio.iter().zip(&basis.size).map(|(r, h)| r * h).collect();
-        let locator = Locator::new(mesh);
+        let locator = AnyLocator::new(mesh);
         if plan.branch != Branch::Graded {
-            return Self { locator, size: planned, near: BTreeMap::new() };
+            return Self { mesh, locator, size: planned, near: BTreeMap::new() };
         }
         let kept = |e: usize| if basis.touches[e] && plan.ratio[e] < 1.0 { basis.size[e] } else { planned[e] };
         let size = (0..planned.len()).map(kept).collect();
-        Self { locator, size, near: near(mesh, basis, &planned) }
+        Self { mesh, locator, size, near: near(mesh, basis, &planned) }
     }
 
     /// The size at a point (m).
-    pub(crate) fn at(&self, point: &[f64; D]) -> f64 {
+    pub(crate) fn at(&self, point: &Vector) -> f64 {
         let element = self.locator.element_near(point);
         let from = |(node, size): &(NodeId, f64)| {
-            let place = &self.locator.mesh().points()[node.index()];
-            let square: f64 = (0..D).map(|c| (point[c] - place[c]).powi(2)).sum();
+            let place = self.mesh.point(*node);
+            let square: f64 = (0..3).map(|c| (point[c] - place[c]).powi(2)).sum();
             size + SLOPE * square.sqrt()
         };
         let towards = self.near.get(&element).into_iter().flatten().map(from);
@@ -53,38 +55,33 @@ impl<'m, const D: usize, const N: usize> Wanted<'m, D, N> {
     }
 
     /// Whether each element of a mesh has more than so many times the wanted size.
-    pub(crate) fn too_large(&self, mesh: &Mesh<D, N>, times: f64) -> Vec<bool> {
+    pub(crate) fn too_large(&self, mesh: &AnyMesh, times: f64) -> Vec<bool> {
         let is_too_large = |(e, size): (usize, f64)| size > times * self.within(mesh, ElementId::new(e));
         sizes(mesh).into_iter().enumerate().map(is_too_large).collect()
     }
 
     /// The smallest size in an element of a mesh (m).
-    fn within(&self, mesh: &Mesh<D, N>, element: ElementId) -> f64 {
+    fn within(&self, mesh: &AnyMesh, element: ElementId) -> f64 {
         let middle = mesh.centroid(element);
         let towards =
-            |corner: &[f64; D]| self.at(&std::array::from_fn(|c| middle[c] + TOWARDS * (corner[c] - middle[c])));
+            |corner: &Vector| self.at(&std::array::from_fn(|c| middle[c] + TOWARDS * (corner[c] - middle[c])));
         mesh.cell_points(element).iter().map(towards).fold(self.at(&middle), f64::min)
     }
 
     /// The element of the mesh of the run that an element of a mesh lies in.
-    pub(crate) fn element_of(&self, mesh: &Mesh<D, N>, element: ElementId) -> ElementId {
+    pub(crate) fn element_of(&self, mesh: &AnyMesh, element: ElementId) -> ElementId {
         self.locator.element_near(&mesh.centroid(element))
     }
 }
 
 /// The nodes that touch around each element, each with the smallest planned size of its elements.
-fn near<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
-    basis: &Basis,
-    planned: &[f64],
-) -> BTreeMap<ElementId, Vec<(NodeId, f64)>> {
+fn near(mesh: &AnyMesh, basis: &Basis, planned: &[f64]) -> BTreeMap<ElementId, Vec<(NodeId, f64)>> {
     let mut near: BTreeMap<ElementId, Vec<(NodeId, f64)>> = BTreeMap::new();
     for &node in &basis.nodes {
-        let around = &mesh.stars().star(node).elements;
+        let around = mesh.elements_around(node);
         let size = around.iter().map(|e| planned[e.index()]).fold(f64::INFINITY, f64::min);
-        let corners = around.iter().flat_map(|e| mesh.cells()[e.index()]);
-        let mut patch: Vec<ElementId> =
-            corners.flat_map(|corner| mesh.stars().star(corner).elements.to_vec()).collect();
+        let corners = around.iter().flat_map(|e| mesh.cell(*e));
+        let mut patch: Vec<ElementId> = corners.flat_map(|corner| mesh.elements_around(*corner)).copied().collect();
         patch.sort_unstable();
         patch.dedup();
         patch.into_iter().for_each(|element| near.entry(element).or_default().push((node, size)));

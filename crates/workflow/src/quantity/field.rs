@@ -1,10 +1,11 @@
 //! The fields of a probe.
 
 use crate::message::{hint, list};
+use percute_core::border::row;
 use percute_core::element_state::ElementState;
 use percute_core::history::State;
-use percute_core::mesh::Around;
-use percute_core::problem::Problem;
+use percute_core::mesh::AnyAround;
+use percute_core::problem::AnyProblem;
 use std::str::FromStr;
 
 /// A field at a point, by the names of `history.plot` in Python.
@@ -96,40 +97,31 @@ impl Field {
     }
 
     /// Its value at a point, with its sign: the mean of the elements that contain the point, by their shares.
-    pub(super) fn at<const D: usize, const N: usize>(
-        self,
-        problem: &Problem<D, N>,
-        around: &[Around<N>],
-        state: &State<'_, D>,
-    ) -> f64 {
+    pub(super) fn at(self, problem: &AnyProblem, around: &[AnyAround], state: &State<'_>) -> f64 {
         let displacement = state.step().displacement;
-        let stress = |of: fn(&ElementState<D>) -> f64| -> f64 {
-            let value = |a: &Around<N>| a.share * of(&ElementState::new(problem, a.element, displacement));
+        let stress = |of: fn(&ElementState) -> f64| -> f64 {
+            let value = |a: &AnyAround| a.share * of(&ElementState::new(problem, a.element, displacement));
             around.iter().map(value).sum()
         };
         match self {
             Self::VonMises => stress(ElementState::von_mises),
             Self::Pressure => stress(ElementState::pressure),
             Self::Stress | Self::StressXx => stress(|element| element.stress[0][0]),
-            Self::StressYy => stress(|element| element.stress[1 % D][1 % D]),
-            Self::StressXy => stress(|element| element.stress[0][1 % D]),
-            Self::Displacement => magnitude(problem, around, |node| displacement[node]),
-            Self::Velocity => magnitude(problem, around, |node| state.velocity_of(node)),
+            Self::StressYy => stress(|element| element.stress[1][1]),
+            Self::StressXy => stress(|element| element.stress[0][1]),
+            Self::Displacement => magnitude(problem, around, displacement),
+            Self::Velocity => magnitude(problem, around, &state.velocity()),
         }
     }
 }
 
 /// The magnitude of a nodal field at a point.
-fn magnitude<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    around: &[Around<N>],
-    field: impl Fn(usize) -> [f64; D],
-) -> f64 {
-    let mut mean = [0.0; D];
-    for Around { element, shapes, share } in around {
-        for (node, shape) in problem.mesh().cells()[element.index()].iter().zip(shapes) {
-            let value = field(node.index());
-            (0..D).for_each(|c| mean[c] += share * shape * value[c]);
+fn magnitude(problem: &AnyProblem, around: &[AnyAround], field: &[f64]) -> f64 {
+    let mut mean = [0.0; 3];
+    for AnyAround { element, shapes, share } in around {
+        for (node, shape) in problem.mesh().cell(*element).iter().zip(shapes) {
+            let value = row(field, node.index(), problem.dimension());
+            (0..3).for_each(|c| mean[c] += share * shape * value[c]);
         }
     }
     mean.iter().map(|x| x * x).sum::<f64>().sqrt()

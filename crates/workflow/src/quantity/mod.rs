@@ -14,8 +14,8 @@ pub use probe::{Probe, ProbeSink};
 use crate::failure::Failure;
 use crate::message::{hint, percent};
 use crate::report::{ContactResultants, ObstacleSummary, Report};
-use percute_core::mesh::Mesh;
-use percute_core::problem::Problem;
+use percute_core::mesh::AnyMesh;
+use percute_core::problem::AnyProblem;
 use percute_core::units::Units;
 use std::fmt::{self, Display, Formatter};
 use std::str::FromStr;
@@ -66,10 +66,7 @@ impl Quantity {
     ///
     /// # Errors
     /// A probe that does not fit the body.
-    pub fn sink<'p, const D: usize, const N: usize>(
-        &self,
-        problem: &'p Problem<D, N>,
-    ) -> Result<Option<ProbeSink<'p, D, N>>, Failure> {
+    pub fn sink<'p>(&self, problem: &'p AnyProblem) -> Result<Option<ProbeSink<'p>>, Failure> {
         let Self::Probe(probe) = self else { return Ok(None) };
         ProbeSink::new(problem, probe).map(Some).map_err(Failure::Argument)
     }
@@ -77,11 +74,7 @@ impl Quantity {
     /// Its value after a run, from the report and the sink that followed the steps; none without contact, a rebound
     /// without a coefficient of restitution.
     #[must_use]
-    pub fn value<const D: usize, const N: usize>(
-        &self,
-        report: &Report,
-        sink: Option<&ProbeSink<'_, D, N>>,
-    ) -> Option<f64> {
+    pub fn value(&self, report: &Report, sink: Option<&ProbeSink<'_>>) -> Option<f64> {
         let contact = report.contact.as_ref().filter(|contact| contact.first_touch.is_some());
         match self {
             Self::PeakForce => Some(contact?.averaged_peak?.force),
@@ -93,11 +86,7 @@ impl Quantity {
 
     /// What may keep it from converging, from the mesh and the report of the finest run.
     #[must_use]
-    pub fn obstruction<const D: usize, const N: usize>(
-        &self,
-        mesh: &Mesh<D, N>,
-        report: &Report,
-    ) -> Option<Obstruction> {
+    pub fn obstruction(&self, mesh: &AnyMesh, report: &Report) -> Option<Obstruction> {
         match self {
             Self::PeakForce => obstruction::of_force(report),
             Self::Probe(probe) => obstruction::of_probe(probe, mesh),
@@ -175,11 +164,7 @@ impl FromStr for Quantity {
 ///
 /// # Errors
 /// A text that is no probe, one that does not fit the body, one that is given twice.
-pub fn probes<const D: usize, const N: usize>(
-    texts: &[String],
-    mesh: &Mesh<D, N>,
-    what: &str,
-) -> Result<Vec<Probe>, Failure> {
+pub fn probes(texts: &[String], mesh: &AnyMesh, what: &str) -> Result<Vec<Probe>, Failure> {
     let refused = |told: String| Failure::Argument(format!("{what}: {told}"));
     let mut found: Vec<Probe> = Vec::new();
     for text in texts {

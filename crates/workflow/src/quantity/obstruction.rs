@@ -3,9 +3,10 @@
 use super::probe::Probe;
 use crate::message::{short, vector};
 use crate::report::{Report, Touches};
+use percute_core::border::Vector;
 use percute_core::contact::CORNER;
 use percute_core::ids::NodeId;
-use percute_core::mesh::Mesh;
+use percute_core::mesh::AnyMesh;
 use std::f64::consts::PI;
 
 /// A corner is near to a probe within so many elements: the error of P1 elements at a singular stress is largest there.
@@ -49,26 +50,25 @@ pub(super) fn of_force(report: &Report) -> Option<Obstruction> {
 }
 
 /// That of the stress at a point.
-pub(super) fn of_probe<const D: usize, const N: usize>(probe: &Probe, mesh: &Mesh<D, N>) -> Option<Obstruction> {
-    let point = <[f64; D]>::try_from(probe.point()).ok().filter(|_| probe.field().is_stress())?;
-    let away = |node: &NodeId| distance(&mesh.points()[node.index()], &point);
+pub(super) fn of_probe(probe: &Probe, mesh: &AnyMesh) -> Option<Obstruction> {
+    let point = probe.place(mesh).filter(|_| probe.field().is_stress())?;
+    let away = |node: &NodeId| distance(&mesh.point(*node), &point);
     let corner = mesh.corners_above(PI + CORNER).into_iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
-    let (place, distance) = (mesh.points()[corner.index()], away(&corner));
+    let (place, distance) = (mesh.point(corner)[..mesh.dimension()].to_vec(), away(&corner));
     if distance <= AT * mesh.size() {
-        return Some(Obstruction::ReEntrant { corner: place.to_vec() });
+        return Some(Obstruction::ReEntrant { corner: place });
     }
-    (distance <= NEAR * longest_edge(mesh, corner))
-        .then(|| Obstruction::NearReEntrant { corner: place.to_vec(), distance })
+    (distance <= NEAR * longest_edge(mesh, corner)).then_some(Obstruction::NearReEntrant { corner: place, distance })
 }
 
-fn longest_edge<const D: usize, const N: usize>(mesh: &Mesh<D, N>, node: NodeId) -> f64 {
-    let nodes = mesh.stars().star(node).elements.iter().flat_map(|element| mesh.cells()[element.index()]);
-    let lengths = nodes.map(|other| distance(&mesh.points()[other.index()], &mesh.points()[node.index()]));
+fn longest_edge(mesh: &AnyMesh, node: NodeId) -> f64 {
+    let nodes = mesh.elements_around(node).iter().flat_map(|element| mesh.cell(*element));
+    let lengths = nodes.map(|other| distance(&mesh.point(*other), &mesh.point(node)));
     lengths.fold(0.0, f64::max)
 }
 
-fn distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
-    (0..D).map(|c| (a[c] - b[c]).powi(2)).sum::<f64>().sqrt()
+fn distance(a: &Vector, b: &Vector) -> f64 {
+    (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f64>().sqrt()
 }
 
 impl Obstruction {

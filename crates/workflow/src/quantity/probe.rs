@@ -2,9 +2,10 @@
 
 use super::field::Field;
 use crate::message::{counted, short, vector};
+use percute_core::border::{Vector, row};
 use percute_core::history::{SinkError, State, StateSink};
-use percute_core::mesh::{Around, Mesh};
-use percute_core::problem::Problem;
+use percute_core::mesh::{AnyAround, AnyMesh};
+use percute_core::problem::AnyProblem;
 use std::fmt::{self, Display, Formatter};
 use std::str::FromStr;
 
@@ -25,6 +26,11 @@ impl Probe {
         &self.point
     }
 
+    /// The point in a mesh; none of another dimension.
+    pub(super) fn place(&self, mesh: &AnyMesh) -> Option<Vector> {
+        (self.point.len() == mesh.dimension()).then(|| row(&self.point, 0, mesh.dimension()))
+    }
+
     /// Its field.
     #[must_use]
     pub fn field(&self) -> Field {
@@ -41,16 +47,17 @@ impl Probe {
     ///
     /// # Errors
     /// A point of another dimension or outside the body, a field that such bodies do not have.
-    pub fn around<const D: usize, const N: usize>(&self, mesh: &Mesh<D, N>) -> Result<Vec<Around<N>>, String> {
-        let (body, needed) = if D == 1 { ("a bar", "one coordinate") } else { ("a plane body", "two coordinates") };
+    pub fn around(&self, mesh: &AnyMesh) -> Result<Vec<AnyAround>, String> {
+        let d = mesh.dimension();
+        let (body, needed) = if d == 1 { ("a bar", "one coordinate") } else { ("a plane body", "two coordinates") };
         let name = self.field.name();
-        let Ok(point) = <[f64; D]>::try_from(&self.point[..]) else {
-            let example = if D == 1 { "0.1:stress" } else { EXAMPLE };
+        let Some(point) = self.place(mesh) else {
+            let example = if d == 1 { "0.1:stress" } else { EXAMPLE };
             let given = counted(self.point.len(), "coordinate");
             return Err(format!("the point of {self} has {given}; {body} needs {needed} (m), as in {example}"));
         };
-        if !self.field.is_of(D) {
-            return Err(format!("{body} has no field {name:?}; {}", Field::choose(name, &[D])));
+        if !self.field.is_of(d) {
+            return Err(format!("{body} has no field {name:?}; {}", Field::choose(name, &[d])));
         }
         let around = mesh.around(&point);
         if around.is_empty() {
@@ -58,7 +65,7 @@ impl Probe {
             return Err(format!(
                 "the point of {self} is {} m outside the undeformed body; its nearest point is {} (m)",
                 short(distance, 3),
-                vector(&nearest, 6)
+                vector(&nearest[..d], 6)
             ));
         }
         Ok(around)
@@ -104,19 +111,19 @@ impl FromStr for Probe {
 
 /// Follows a probe at each step of a run.
 #[derive(Clone, Debug)]
-pub struct ProbeSink<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
-    around: Vec<Around<N>>,
+pub struct ProbeSink<'p> {
+    problem: &'p AnyProblem,
+    around: Vec<AnyAround>,
     field: Field,
     largest: Option<f64>,
 }
 
-impl<'p, const D: usize, const N: usize> ProbeSink<'p, D, N> {
+impl<'p> ProbeSink<'p> {
     /// That of a problem.
     ///
     /// # Errors
     /// As [`Probe::around`].
-    pub fn new(problem: &'p Problem<D, N>, probe: &Probe) -> Result<Self, String> {
+    pub fn new(problem: &'p AnyProblem, probe: &Probe) -> Result<Self, String> {
         Ok(Self { problem, around: probe.around(problem.mesh())?, field: probe.field, largest: None })
     }
 
@@ -127,8 +134,8 @@ impl<'p, const D: usize, const N: usize> ProbeSink<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> StateSink<D> for ProbeSink<'_, D, N> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
+impl StateSink for ProbeSink<'_> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         let value = self.field.at(self.problem, &self.around, state).abs();
         self.largest = Some(self.largest.map_or(value, |largest| largest.max(value)));
         Ok(())
@@ -138,7 +145,7 @@ impl<const D: usize, const N: usize> StateSink<D> for ProbeSink<'_, D, N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::mesh::{BarMesh, TriangleMesh};
+    use percute_core::mesh::Diagonals;
     use proptest::prelude::*;
 
     proptest! {
@@ -165,8 +172,8 @@ mod tests {
 
     #[test]
     fn a_probe_must_fit_the_body() {
-        let plane = TriangleMesh::rectangle(0.05, 0.04, 2, 2).unwrap();
-        let bar = BarMesh::uniform_bar(0.1, 4).unwrap();
+        let plane = AnyMesh::rectangle_cut([0.05, 0.04], [2, 2], Diagonals::default()).unwrap();
+        let bar = AnyMesh::uniform_bar(0.1, 4).unwrap();
         let refused = |text: &str, words: &[&str]| {
             let probe = text.parse::<Probe>();
             let told = probe.and_then(|probe| probe.around(&plane).map(drop)).unwrap_err();

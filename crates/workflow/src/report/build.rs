@@ -13,11 +13,12 @@ use super::{
     Report, SlidingReport, SourceReport, Subject, Verdict, Versions, WorstElement, meaning, verdict,
 };
 use crate::foreign::Checked;
+use percute_core::contact::AnyObstacle;
 use percute_core::dynamics::Balance;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
-use percute_core::mesh::Mesh;
-use percute_core::problem::{PlausibilityWarning, Problem, plausibility_warnings};
+use percute_core::mesh::AnyMesh;
+use percute_core::problem::{AnyProblem, PlausibilityWarning, plausibility_warnings};
 use percute_estimator::{Estimate, Options};
 
 /// How many elements the report names.
@@ -27,12 +28,7 @@ impl Report {
     /// Puts together what a run, or the estimate of a history, gave.
     #[must_use]
     #[allow(clippy::too_many_lines, reason = "a line for each key")]
-    pub fn new<const D: usize, const N: usize>(
-        subject: &Subject<'_, D, N>,
-        options: Options,
-        findings: Findings<'_, D>,
-        seconds: f64,
-    ) -> Self {
+    pub fn new(subject: &Subject<'_>, options: Options, findings: Findings<'_>, seconds: f64) -> Self {
         let Findings { simulation, estimate, contact, deformation, outline } = findings;
         let Subject { name, times, critical_step, held, checked, problem: problem_of, .. } = *subject;
         let (largest_residual, problem) = (largest_residual(estimate), problem_summary(subject));
@@ -46,7 +42,7 @@ impl Report {
             simulated_by: checked.and_then(|checked| checked.program.clone()),
             problem,
             warnings,
-            options: options.filled(D),
+            options: options.filled(subject.problem.dimension()),
             time_step: times.longest_step(),
             critical_time_step: critical_step,
             steps: estimate.steps,
@@ -87,11 +83,11 @@ impl Report {
 }
 
 /// The rebound and the verdict.
-fn judged<const D: usize, const N: usize>(
-    subject: &Subject<'_, D, N>,
+fn judged(
+    subject: &Subject<'_>,
     options: Options,
     admissible: bool,
-    findings: Findings<'_, D>,
+    findings: Findings<'_>,
 ) -> (Option<Rebound>, Verdict) {
     let Findings { simulation, estimate, contact, deformation, .. } = findings;
     let Subject { problem, times, critical_step, checked, .. } = *subject;
@@ -114,34 +110,27 @@ fn judged<const D: usize, const N: usize>(
 }
 
 /// The plausibility warnings; a contact that came is not foreseen to fail.
-fn foreseen<const D: usize, const N: usize>(
-    subject: &Subject<'_, D, N>,
-    estimate: &Estimate<D>,
-) -> Vec<PlausibilityWarning> {
+fn foreseen(subject: &Subject<'_>, estimate: &Estimate) -> Vec<PlausibilityWarning> {
     let mut all = plausibility_warnings(subject.problem, subject.times);
     all.retain(|warning| warning.name != "never_touches" || estimate.kept_impulse.is_none());
     all
 }
 
 /// The warnings of a result: those that only the result shows, and those that a run is told of before.
-pub fn warnings_of<const D: usize, const N: usize>(
-    subject: &Subject<'_, D, N>,
-    options: Options,
-    findings: Findings<'_, D>,
-) -> [Vec<Warning>; 2] {
+pub fn warnings_of(subject: &Subject<'_>, options: Options, findings: Findings<'_>) -> [Vec<Warning>; 2] {
     warnings(subject, options, findings, rebound_of(subject.problem, findings).as_ref())
 }
 
-fn rebound_of<const D: usize, const N: usize>(problem: &Problem<D, N>, findings: Findings<'_, D>) -> Option<Rebound> {
+fn rebound_of(problem: &AnyProblem, findings: Findings<'_>) -> Option<Rebound> {
     let Findings { simulation, contact, deformation, .. } = findings;
     Rebound::new(problem, &simulation.balance_over_time, contact, Some(deformation))
 }
 
 /// [`warnings_of`], with the rebound.
-fn warnings<const D: usize, const N: usize>(
-    subject: &Subject<'_, D, N>,
+fn warnings(
+    subject: &Subject<'_>,
     options: Options,
-    Findings { simulation, estimate, contact, deformation, .. }: Findings<'_, D>,
+    Findings { simulation, estimate, contact, deformation, .. }: Findings<'_>,
     rebound: Option<&Rebound>,
 ) -> [Vec<Warning>; 2] {
     let balance = &simulation.balance;
@@ -188,30 +177,32 @@ fn contact_energy(balance: &Balance, checked: Option<&Checked>) -> f64 {
     if energy > 0.0 && checked.is_none() { balance.given_by_contact() / energy } else { 0.0 }
 }
 
-pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<'_, D, N>) -> ProblemSummary {
+pub(crate) fn problem_summary(subject: &Subject<'_>) -> ProblemSummary {
     let (problem, mesh) = (subject.problem, subject.problem.mesh());
-    let extreme =
-        |c: usize, pick: fn(f64, f64) -> f64| mesh.points().iter().map(|p| p[c]).fold(mesh.points()[0][c], pick);
-    let obstacle = |obstacle: &percute_core::contact::Obstacle<D>| ObstacleSummary {
-        point: obstacle.as_plane().map(|plane| plane.point().to_vec()),
+    let d = mesh.dimension();
+    let corner = |pick: fn(f64, f64) -> f64| -> Vec<f64> {
+        (0..d).map(|c| mesh.places().map(|place| place[c]).reduce(pick).unwrap_or_default()).collect()
+    };
+    let obstacle = |obstacle: AnyObstacle| ObstacleSummary {
+        point: obstacle.as_plane().map(|[point, _]| point[..d].to_vec()),
         // Without negative zeros.
-        normal: obstacle.flat_frame().normal().map(|x| x + 0.0).to_vec(),
+        normal: obstacle.frame().normal()[..d].iter().map(|x| x + 0.0).collect(),
         friction: obstacle.law().friction(),
         group: obstacle.group().map(str::to_string),
     };
     ProblemSummary {
-        dimension: D,
+        dimension: d,
         nodes: mesh.node_count(),
         elements: mesh.element_count(),
         reoriented_elements: mesh.reoriented_elements(),
-        lower_corner: (0..D).map(|c| extreme(c, f64::min)).collect(),
-        upper_corner: (0..D).map(|c| extreme(c, f64::max)).collect(),
+        lower_corner: corner(f64::min),
+        upper_corner: corner(f64::max),
         per_metre: problem.units().per_metre,
         mass: problem.mass().iter().sum(),
         wave_speed: problem.materials().iter().map(|m| m.wave_speed()).fold(0.0, f64::max),
         materials: problem.materials().len(),
-        obstacles: problem.obstacles().iter().map(obstacle).collect(),
-        contact_nodes: problem.surface().nodes().len(),
+        obstacles: problem.obstacles().map(obstacle).collect(),
+        contact_nodes: problem.contact_nodes().len(),
         prescribed_components: problem.prescribed().len(),
         loaded_facets: problem.facet_loads().len(),
         body_forces: problem.body_loads().len(),
@@ -219,16 +210,16 @@ pub(crate) fn problem_summary<const D: usize, const N: usize>(subject: &Subject<
     }
 }
 
-fn worst<const D: usize, const N: usize>(mesh: &Mesh<D, N>, estimate: &Estimate<D>) -> Vec<WorstElement> {
+fn worst(mesh: &AnyMesh, estimate: &Estimate) -> Vec<WorstElement> {
     let named = |(id, error): (ElementId, f64)| {
-        let centroid = mesh.centroid(id).to_vec();
+        let centroid = mesh.centroid(id)[..mesh.dimension()].to_vec();
         WorstElement { element: id.index(), error, centroid }
     };
     estimate.worst_elements(WORST).into_iter().map(named).collect()
 }
 
 /// The largest residual; one that is no number counts as largest, so that it cannot hide.
-fn largest_residual<const D: usize>(estimate: &Estimate<D>) -> LargestResidual {
+fn largest_residual(estimate: &Estimate) -> LargestResidual {
     let rank = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
     let entries = estimate.residuals.entries();
     let (name, value) =

@@ -74,7 +74,7 @@ pub struct ContactNodes {
 
 impl ContactReport {
     /// None without planes.
-    pub(super) fn new<const D: usize>(results: &ContactResults<D>) -> Option<Self> {
+    pub(super) fn new(results: &ContactResults) -> Option<Self> {
         if results.obstacles.is_empty() {
             return None;
         }
@@ -100,8 +100,8 @@ impl ContactReport {
 }
 
 impl ContactResultants {
-    fn new<const D: usize>(over_time: &[Resultant<D>]) -> Self {
-        let column = |of: fn(&Resultant<D>) -> f64| over_time.iter().map(of).collect();
+    fn new(over_time: &[Resultant]) -> Self {
+        let column = |of: fn(&Resultant) -> f64| over_time.iter().map(of).collect();
         Self {
             force: over_time.iter().map(|r| r.force.to_vec()).collect(),
             normal_force: column(|r| r.normal_force),
@@ -116,9 +116,9 @@ impl ContactResultants {
 }
 
 impl ContactNodes {
-    fn new<const D: usize>(results: &ContactResults<D>) -> Self {
+    fn new(results: &ContactResults) -> Self {
         let ContactResults { nodes, summary, .. } = results;
-        let column = |of: fn(&NodeSummary<D>) -> f64| summary.iter().map(of).collect();
+        let column = |of: fn(&NodeSummary) -> f64| summary.iter().map(of).collect();
         Self {
             node: nodes.iter().map(|place| place.node.index()).collect(),
             obstacle: nodes.iter().map(|place| place.obstacle).collect(),

@@ -2,8 +2,9 @@
 
 use super::rebound::time_of_phases;
 use crate::deformation::Deformation;
+use percute_core::border::Vector;
 use percute_core::contact::{ContactResults, Frame};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use serde::Serialize;
 use std::collections::BTreeSet;
 
@@ -62,23 +63,19 @@ pub struct InterfaceRebound {
 impl Impacts {
     /// Those of a run; none without interfaces.
     #[must_use]
-    pub fn new<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
-        contact: &ContactResults<D>,
-        deformation: Option<&Deformation>,
-    ) -> Option<Self> {
-        let interfaces = &problem.statement().interfaces;
+    pub fn new(problem: &AnyProblem, contact: &ContactResults, deformation: Option<&Deformation>) -> Option<Self> {
+        let interfaces = &problem.conditions().interfaces;
         if interfaces.is_empty() {
             return None;
         }
-        let centres = Centres::new(problem, contact);
+        let (centres, d) = (Centres::new(problem, contact), problem.dimension());
         let names = problem.mesh().part_names();
         let bodies = names.into_iter().enumerate().map(|(body, name)| BodyMotion {
             name,
             mass: centres.mass[body],
-            velocity_before: centres.start[body].to_vec(),
-            velocity_after: centres.after[body].map(|v| v.to_vec()),
-            angular_velocity_after: deformation.filter(|_| D > 1).map(|all| all.bodies[body].angular_velocity),
+            velocity_before: centres.start[body][..d].to_vec(),
+            velocity_after: centres.after[body].map(|v| v[..d].to_vec()),
+            angular_velocity_after: deformation.filter(|_| d > 1).map(|all| all.bodies[body].angular_velocity),
         });
         let rebounds = interfaces.iter().zip(problem.sides_of_interfaces()).map(|(interface, sides)| {
             rebound(problem, contact, &centres, (interface.groups().map(str::to_string), sides))
@@ -98,44 +95,41 @@ enum Beside {
 }
 
 /// What acts on each body beside contact.
-fn beside_contact<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    of_node: &[usize],
-    bodies: usize,
-) -> Vec<Beside> {
+fn beside_contact(problem: &AnyProblem, of_node: &[usize], bodies: usize) -> Vec<Beside> {
     let mut beside = vec![Beside::Nothing; bodies];
     for held in problem.prescribed().iter().filter(|held| held.motion.is_none()) {
         beside[of_node[held.node.index()]] = Beside::Fixed;
     }
     let moved = problem.prescribed().iter().filter(|held| held.motion.is_some()).map(|held| held.node);
-    let facets = problem.mesh().facets();
-    let pulled = problem.facet_loads().iter().map(|load| facets[load.facet.index()].nodes[0]);
+    let pulled = problem.facet_loads().into_iter().map(|load| problem.mesh().facet(load.facet).nodes[0]);
     let weighed = problem.body_loads().iter().flat_map(|load| load.nodal_volume.iter().map(|(node, _)| *node));
     moved.chain(pulled).chain(weighed).for_each(|node| beside[of_node[node.index()]] = Beside::Other);
     beside
 }
 
 /// The motion of the centres of mass: contact forces alone change it, unless there are supports or loads.
-struct Centres<'c, const D: usize> {
-    contact: &'c ContactResults<D>,
+struct Centres<'c> {
+    contact: &'c ContactResults,
     /// The bodies that each obstacle acts on, ascending.
     of_obstacle: Vec<BTreeSet<usize>>,
     mass: Vec<f64>,
     /// Velocity at the start (m/s), and at the last instant if contact alone changes it.
-    start: Vec<[f64; D]>,
-    after: Vec<Option<[f64; D]>>,
+    start: Vec<Vector>,
+    after: Vec<Option<Vector>>,
     /// What else acts on each body.
     beside: Vec<Beside>,
 }
 
-impl<'c, const D: usize> Centres<'c, D> {
-    fn new<const N: usize>(problem: &Problem<D, N>, contact: &'c ContactResults<D>) -> Self {
+impl<'c> Centres<'c> {
+    fn new(problem: &AnyProblem, contact: &'c ContactResults) -> Self {
         let of_node = problem.mesh().part_numbers();
         let count = of_node.iter().max().map_or(0, |last| last + 1);
-        let (mut mass, mut start) = (vec![0.0; count], vec![[0.0; D]; count]);
-        for ((&body, m), v) in of_node.iter().zip(problem.mass()).zip(problem.initial_velocity()) {
+        let (mut mass, mut start) = (vec![0.0; count], vec![[0.0; 3]; count]);
+        for ((&body, m), v) in
+            of_node.iter().zip(problem.mass()).zip(problem.initial_velocity().chunks_exact(problem.dimension()))
+        {
             mass[body] += m;
-            (0..D).for_each(|c| start[body][c] += m * v[c]);
+            start[body].iter_mut().zip(v).for_each(|(sum, v)| *sum += m * v);
         }
         start.iter_mut().zip(&mass).for_each(|(v, m)| *v = v.map(|x| x / m));
         let mut of_obstacle = vec![BTreeSet::new(); contact.obstacles.len()];
@@ -146,30 +140,30 @@ impl<'c, const D: usize> Centres<'c, D> {
         let mut after = start.clone();
         for (point, summary) in contact.nodes.iter().zip(&contact.summary) {
             let body = of_node[point.node.index()];
-            (0..D).for_each(|c| after[body][c] += summary.impulse[c] / mass[body]);
+            (0..3).for_each(|c| after[body][c] += summary.impulse[c] / mass[body]);
         }
-        let known = |(velocity, beside): ([f64; D], &Beside)| (*beside == Beside::Nothing).then_some(velocity);
+        let known = |(velocity, beside): (Vector, &Beside)| (*beside == Beside::Nothing).then_some(velocity);
         let after = after.into_iter().zip(&beside).map(known).collect();
         Self { contact, of_obstacle, mass, start, after, beside }
     }
 
     /// Velocity of the bodies of an obstacle at an instant (m/s), that of their common centre of mass; none if another
     /// obstacle acts on some of them and on others together.
-    fn at(&self, obstacle: usize, n: usize) -> Option<[f64; D]> {
+    fn at(&self, obstacle: usize, n: usize) -> Option<Vector> {
         let bodies = &self.of_obstacle[obstacle];
         if bodies.iter().all(|&body| self.beside[body] == Beside::Fixed) {
             // What holds it has no velocity.
-            return Some([0.0; D]);
+            return Some([0.0; 3]);
         }
         let total: f64 = bodies.iter().map(|&body| self.mass[body]).sum();
-        let mut velocity = [0.0; D];
+        let mut velocity = [0.0; 3];
         for &body in bodies {
-            (0..D).for_each(|c| velocity[c] += self.mass[body] / total * self.start[body][c]);
+            (0..3).for_each(|c| velocity[c] += self.mass[body] / total * self.start[body][c]);
         }
         let all = self.contact.obstacles.iter().zip(&self.of_obstacle);
         for (over_time, of) in all.filter(|(_, of)| !of.is_disjoint(bodies)) {
             let impulse = over_time.get(n).filter(|_| of.is_subset(bodies))?.impulse;
-            (0..D).for_each(|c| velocity[c] += impulse[c] / total);
+            (0..3).for_each(|c| velocity[c] += impulse[c] / total);
         }
         self.moved_by_contact(obstacle).then_some(velocity)
     }
@@ -199,21 +193,21 @@ impl<'c, const D: usize> Centres<'c, D> {
     }
 
     /// Relative velocity of the bodies of two obstacles along a normal (m/s).
-    fn relative(&self, sides: [usize; 2], frame: &Frame<D>, n: usize) -> Option<f64> {
+    fn relative(&self, sides: [usize; 2], frame: &Frame<3>, n: usize) -> Option<f64> {
         let [first, second] = sides.map(|side| self.at(side, n));
         let (first, second) = (first?, second?);
         Some(frame.split(&std::array::from_fn(|c| first[c] - second[c])).0)
     }
 }
 
-fn rebound<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    contact: &ContactResults<D>,
-    centres: &Centres<'_, D>,
+fn rebound(
+    problem: &AnyProblem,
+    contact: &ContactResults,
+    centres: &Centres<'_>,
     (groups, sides): ([String; 2], [usize; 2]),
 ) -> InterfaceRebound {
-    let frame = problem.obstacles()[sides[0]].flat_frame();
-    let normal = frame.normal().map(|x| x + 0.0).to_vec();
+    let frame = problem.obstacle(sides[0]).frame();
+    let normal = frame.normal()[..problem.dimension()].iter().map(|x| x + 0.0).collect();
     let over_time = &contact.obstacles[sides[0]];
     let acting = |n: &usize| over_time[*n].in_contact > 0;
     let steps = over_time.len();

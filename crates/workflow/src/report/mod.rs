@@ -43,7 +43,7 @@ use crate::foreign::{Checked, Consistency, Derived, Samples};
 use crate::outline::Outline;
 use percute_core::contact::ContactResults;
 use percute_core::dynamics::{Balance, Simulation};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_core::units::Units;
 use percute_estimator::{ErrorMeasures, Estimate, Given, Options, Parts, Residuals, Sample};
@@ -56,11 +56,11 @@ pub(crate) const ADMISSIBLE: f64 = 1e-10;
 
 /// What a report is about.
 #[derive(Clone, Copy, Debug)]
-pub struct Subject<'a, const D: usize, const N: usize> {
+pub struct Subject<'a> {
     /// Name of the case or of the history, as it was given.
     pub name: &'a str,
     /// The problem.
-    pub problem: &'a Problem<D, N>,
+    pub problem: &'a AnyProblem,
     /// The instants, those that were not reached too.
     pub times: &'a TimeGrid,
     /// Δt_c (s), eq. \[34\].
@@ -75,13 +75,13 @@ pub struct Subject<'a, const D: usize, const N: usize> {
 
 /// What a report is made of: the results of a run, or of the estimate of a history.
 #[derive(Clone, Copy, Debug)]
-pub struct Findings<'a, const D: usize> {
+pub struct Findings<'a> {
     /// Balance and number of the steps.
     pub simulation: &'a Simulation,
     /// The estimate of the error.
-    pub estimate: &'a Estimate<D>,
+    pub estimate: &'a Estimate,
     /// The contact results.
-    pub contact: &'a ContactResults<D>,
+    pub contact: &'a ContactResults,
     /// The deformation and the stress.
     pub deformation: &'a Deformation,
     /// The outline of a plane body at the last step.

@@ -2,7 +2,7 @@
 
 use super::flat::{self, angles};
 use percute_core::ids::ElementId;
-use percute_core::mesh::Mesh;
+use percute_core::mesh::AnyMesh;
 use serde::Serialize;
 
 /// Elements whose longest edge is more than so many times as long as the shortest one are long. The evidence has up to
@@ -29,16 +29,16 @@ pub struct PoorElement {
 }
 
 /// Those with the largest parts of the squared mean error, largest first; `by_element` has the contribution of each.
-pub(super) fn poor_elements<const D: usize, const N: usize>(mesh: &Mesh<D, N>, by_element: &[f64]) -> Vec<PoorElement> {
+pub(super) fn poor_elements(mesh: &AnyMesh, by_element: &[f64]) -> Vec<PoorElement> {
     let total: f64 = by_element.iter().map(|error| error * error).sum();
-    if N != 3 || total <= 0.0 {
+    if mesh.dimension() != 2 || total <= 0.0 {
         return Vec::new();
     }
     let poor = |element: usize| {
         let (aspect, angles) = (aspect(mesh, element), angles(mesh, element));
         let smallest_angle = angles.iter().copied().fold(f64::INFINITY, f64::min);
         let largest_angle = angles.iter().copied().fold(0.0, f64::max);
-        let centroid = mesh.centroid(ElementId::new(element)).to_vec();
+        let centroid = mesh.centroid(ElementId::new(element))[..2].to_vec();
         let share = by_element[element] * by_element[element] / total;
         let is_poor = aspect > LONG || largest_angle > flat::ANGLE;
         is_poor.then_some(PoorElement { element, centroid, aspect, smallest_angle, largest_angle, share })
@@ -50,9 +50,10 @@ pub(super) fn poor_elements<const D: usize, const N: usize>(mesh: &Mesh<D, N>, b
 }
 
 /// The longest edge of an element over its shortest one.
-pub(super) fn aspect<const D: usize, const N: usize>(mesh: &Mesh<D, N>, element: usize) -> f64 {
+pub(super) fn aspect(mesh: &AnyMesh, element: usize) -> f64 {
     let points = mesh.cell_points(ElementId::new(element));
-    let between = |a: usize, b: usize| (0..D).map(|c| (points[a][c] - points[b][c]).powi(2)).sum::<f64>().sqrt();
-    let edges = || (0..N).flat_map(|b| (0..b).map(move |a| (a, b))).map(|(a, b)| between(a, b));
+    let between = |a: usize, b: usize| (0..3).map(|c| (points[a][c] - points[b][c]).powi(2)).sum::<f64>().sqrt();
+    let count = points.len();
+    let edges = || (0..count).flat_map(|b| (0..b).map(move |a| (a, b))).map(|(a, b)| between(a, b));
     edges().fold(0.0, f64::max) / edges().fold(f64::INFINITY, f64::min)
 }

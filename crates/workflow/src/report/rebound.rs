@@ -3,9 +3,10 @@
 use super::Impacts;
 use crate::deformation::Deformation;
 use crate::flight::NextTouch;
+use percute_core::border::Vector;
 use percute_core::contact::{ContactResults, Frame, Resultant};
 use percute_core::dynamics::Balance;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use serde::Serialize;
 
 /// Velocities of the centre of mass, V = Σ m v / Σ m (m/s), before the first contact and after the last one.
@@ -61,13 +62,13 @@ impl Rebound {
 
     /// The rebound of a run from rigid planes; none without contact.
     #[must_use]
-    pub fn new<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
+    pub fn new(
+        problem: &AnyProblem,
         balance: &[Balance],
-        contact: &ContactResults<D>,
+        contact: &ContactResults,
         deformation: Option<&Deformation>,
     ) -> Option<Self> {
-        if !problem.statement().interfaces.is_empty() {
+        if !problem.conditions().interfaces.is_empty() {
             // Bodies that strike each other have velocities of their own.
             return None;
         }
@@ -75,15 +76,15 @@ impl Rebound {
         let steps = contact.total.len().min(balance.len());
         let (first, last) = ((0..steps).find(acting)?, (0..steps).rfind(acting)?);
         let mass: f64 = problem.mass().iter().sum();
-        let velocity = |n: usize| -> [f64; D] { std::array::from_fn(|c| balance[n].momentum[c] / mass) };
-        let frame = strongest(problem, contact)?;
+        let velocity = |n: usize| -> Vector { std::array::from_fn(|c| balance[n].momentum[c] / mass) };
+        let (frame, d) = (strongest(problem, contact)?, problem.dimension());
         let before = velocity(first.saturating_sub(1));
         // The reaction R_n holds a node to the plane at t_{n+1}.
         let ended = last + 1 < steps;
         let time = |n: usize| contact.instants[n.min(steps - 1)];
         let after = ended.then(|| velocity(last + 1));
         let (normal_before, normal_after) = (frame.split(&before).0, after.map(|v| frame.split(&v).0));
-        let pushes = |over_time: &Vec<Resultant<D>>| over_time.last().is_some_and(|last| last.impulse != [0.0; D]);
+        let pushes = |over_time: &Vec<Resultant>| over_time.last().is_some_and(|last| last.impulse != [0.0; 3]);
         let planes = contact.obstacles.iter().filter(|over_time| pushes(over_time)).count();
         let no_restitution = match normal_after {
             _ if !problem.prescribed().is_empty() => Some("supports change the velocity, too"),
@@ -98,10 +99,11 @@ impl Rebound {
         };
         let restitution = normal_after.filter(|_| no_restitution.is_none()).map(|v| -v / normal_before);
         let (first_touch, release) = (time(first + 1), time(last + 1));
-        let turning = deformation.filter(|deformation| ended && D > 1 && deformation.bodies.len() == 1);
+        let turning =
+            deformation.filter(|deformation| ended && problem.dimension() > 1 && deformation.bodies.len() == 1);
         Some(Self {
-            velocity_before: before.to_vec(),
-            velocity_after: after.map(|v| v.to_vec()),
+            velocity_before: before[..d].to_vec(),
+            velocity_after: after.map(|v| v[..d].to_vec()),
             normal_before,
             normal_after,
             restitution,
@@ -118,9 +120,9 @@ impl Rebound {
 }
 
 /// Whether loads have more than a hundredth of the impulse between two instants, before contact and after it.
-fn loaded<const D: usize>(contact: &ContactResults<D>, before: &Balance, after: &Balance) -> bool {
+fn loaded(contact: &ContactResults, before: &Balance, after: &Balance) -> bool {
     let Some(given) = contact.total.last().map(|sum| sum.impulse) else { return false };
-    let norm = |x: [f64; D]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let norm = |x: Vector| x.iter().map(|x| x * x).sum::<f64>().sqrt();
     norm(std::array::from_fn(|c| after.momentum[c] - before.momentum[c] - given[c])) > OF_IMPULSE * norm(given)
 }
 
@@ -155,12 +157,9 @@ pub fn rebound_to_json(rebound: Option<&Rebound>, impacts: Option<&Impacts>) -> 
 }
 
 /// The frame of the plane that gives the largest normal impulse.
-pub(super) fn strongest<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    contact: &ContactResults<D>,
-) -> Option<Frame<D>> {
-    let frames = problem.obstacles().iter().map(|obstacle| obstacle.flat_frame());
-    let impulse = |frame: &Frame<D>, last: Option<&Resultant<D>>| last.map_or(0.0, |r| frame.split(&r.impulse).0);
+pub(super) fn strongest(problem: &AnyProblem, contact: &ContactResults) -> Option<Frame<3>> {
+    let frames = problem.obstacles().map(|obstacle| obstacle.frame());
+    let impulse = |frame: &Frame<3>, last: Option<&Resultant>| last.map_or(0.0, |r| frame.split(&r.impulse).0);
     let all = frames.zip(&contact.obstacles).map(|(frame, over_time)| (impulse(&frame, over_time.last()), frame));
     all.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, frame)| frame)
 }

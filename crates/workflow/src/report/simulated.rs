@@ -9,12 +9,7 @@ use std::path::Path;
 
 /// The summary of a run that is not estimated, with the file of its history and the time it took (s).
 #[must_use]
-pub fn simulated<const D: usize, const N: usize>(
-    subject: &Subject<'_, D, N>,
-    simulation: &Simulation,
-    file: &Path,
-    seconds: f64,
-) -> String {
+pub fn simulated(subject: &Subject<'_>, simulation: &Simulation, file: &Path, seconds: f64) -> String {
     let (times, balance) = (subject.times, &simulation.balance);
     let (steps, planned) = (simulation.steps, times.step_count());
     let reached = trimmed(times.instants()[steps], 5);

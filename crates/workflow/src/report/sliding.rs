@@ -1,7 +1,7 @@
 //! Contact and estimate at surfaces that slide along each other.
 
 use percute_core::contact::{ContactResults, Frame, Interface, Resultant};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::ratio;
 use percute_estimator::SurfaceEstimate;
 use serde::Serialize;
@@ -21,16 +21,12 @@ pub struct SlidingReport {
 impl SlidingReport {
     /// All of a run, in the order of the interfaces.
     #[must_use]
-    pub fn all<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
-        contact: &ContactResults<D>,
-        estimates: &[SurfaceEstimate],
-    ) -> Vec<Self> {
-        let interfaces = problem.statement().interfaces.iter().zip(problem.sides_of_interfaces());
+    pub fn all(problem: &AnyProblem, contact: &ContactResults, estimates: &[SurfaceEstimate]) -> Vec<Self> {
+        let interfaces = problem.conditions().interfaces.iter().zip(problem.sides_of_interfaces());
         let of = |(interface, sides): (&Interface, [usize; 2])| {
-            let first = &problem.obstacles()[sides[0]];
+            let first = problem.obstacle(sides[0]);
             let estimate = *estimates.get(first.sliding()?)?;
-            let couple = couple(&first.flat_frame(), sides.map(|side| &contact.obstacles[side][..]));
+            let couple = couple(&first.frame(), sides.map(|side| &contact.obstacles[side][..]));
             Some(Self { groups: interface.groups().map(str::to_string), couple, estimate })
         };
         interfaces.filter_map(of).collect()
@@ -38,7 +34,7 @@ impl SlidingReport {
 }
 
 /// The largest couple of the normal forces of two sides, over the largest force (m).
-fn couple<const D: usize>(frame: &Frame<D>, [own, other]: [&[Resultant<D>]; 2]) -> f64 {
+fn couple(frame: &Frame<3>, [own, other]: [&[Resultant]; 2]) -> f64 {
     let (mut couple, mut force) = (0.0_f64, 0.0_f64);
     for (own, other) in own.iter().zip(other) {
         let (Some(here), Some(there)) = (own.centre, other.centre) else { continue };

@@ -114,7 +114,7 @@ fn given(part: f64) -> Option<Symptom> {
 }
 
 /// The part of the energy that contact gives the auxiliary solution. The springs of a penalty give back energy: 0.
-pub(super) fn auxiliary_contact_energy<const D: usize>(estimate: &Estimate<D>, checked: Option<&Checked>) -> f64 {
+pub(super) fn auxiliary_contact_energy(estimate: &Estimate, checked: Option<&Checked>) -> f64 {
     let springs = checked.is_some_and(|checked| by_a_penalty(&checked.consistency));
     if springs { 0.0 } else { estimate.auxiliary_contact_energy }
 }

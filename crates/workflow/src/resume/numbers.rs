@@ -1,15 +1,17 @@
 //! The first difference between meshes, initial fields, instants and kept steps, in words.
 
 use crate::difference::OF_RUN;
-use percute_core::ids::NodeId;
-use percute_core::mesh::Mesh;
+use percute_core::mesh::AnyMesh;
 use percute_core::time::TimeGrid;
 use percute_io::history::Kept;
 use std::collections::BTreeMap;
 use std::fmt::{Debug, Display};
 
 /// The first difference between two meshes.
-pub(super) fn of_meshes<const D: usize, const N: usize>(case: &Mesh<D, N>, history: &Mesh<D, N>) -> Option<String> {
+pub(super) fn of_meshes(case: &AnyMesh, history: &AnyMesh) -> Option<String> {
+    if case.dimension() != history.dimension() {
+        return Some(told("[mesh], the dimension", case.dimension(), history.dimension()));
+    }
     let counts = [
         ("nodes", case.node_count(), history.node_count()),
         ("elements", case.element_count(), history.element_count()),
@@ -17,23 +19,24 @@ pub(super) fn of_meshes<const D: usize, const N: usize>(case: &Mesh<D, N>, histo
     if let Some((of, one, other)) = counts.into_iter().find(|(_, one, other)| one != other) {
         return Some(told(&format!("[mesh], the number of {of}"), one, other));
     }
-    let nodes = |cell: &[NodeId; N]| cell.map(NodeId::index);
-    of_lists("[mesh], node", "m", case.points(), history.points(), |point| *point)
-        .or_else(|| of_lists("[mesh], the list of nodes of element", "", case.cells(), history.cells(), nodes))
+    let points = |mesh: &AnyMesh| of_rows(mesh.points(), mesh.dimension());
+    let cells = |mesh: &AnyMesh| mesh.cells().map(|cell| cell.iter().map(|node| node.index()).collect()).collect();
+    let (one, other): (Vec<Vec<usize>>, Vec<Vec<usize>>) = (cells(case), cells(history));
+    of_lists("[mesh], node", "m", &points(case), &points(history))
+        .or_else(|| of_lists("[mesh], the list of nodes of element", "", &one, &other))
         .or_else(|| of_groups(case.facet_groups(), history.facet_groups()))
         .or_else(|| of_groups(case.element_groups(), history.element_groups()))
 }
 
+/// The rows of a field.
+fn of_rows(field: &[f64], dimension: usize) -> Vec<Vec<f64>> {
+    field.chunks_exact(dimension).map(<[f64]>::to_vec).collect()
+}
+
 /// The first entry in which two lists differ.
-fn of_lists<T: PartialEq, S: Debug>(
-    what: &str,
-    unit: &str,
-    case: &[T],
-    history: &[T],
-    shown: impl Fn(&T) -> S,
-) -> Option<String> {
+fn of_lists<T: PartialEq + Debug>(what: &str, unit: &str, case: &[T], history: &[T]) -> Option<String> {
     let at = case.iter().zip(history).position(|(one, other)| one != other)?;
-    let value = |of: &T| format!("{:?} {unit}", shown(of)).trim_end().to_string();
+    let value = |of: &T| format!("{of:?} {unit}").trim_end().to_string();
     Some(told(&format!("{what} {at}"), value(&case[at]), value(&history[at])))
 }
 
@@ -50,18 +53,14 @@ fn of_groups<T: PartialEq + Debug + Copy>(
     let what = format!("[mesh], the group \"{name}\"");
     let value = |of: Option<&Vec<T>>| of.map_or("missing".to_string(), |of| format!("one of {}", of.len()));
     let members = one.zip(other).filter(|(one, other)| one.len() == other.len());
-    let first = members.and_then(|(one, other)| of_lists(&format!("{what}, entry"), "", one, other, |of| *of));
+    let first = members.and_then(|(one, other)| of_lists(&format!("{what}, entry"), "", one, other));
     Some(first.unwrap_or_else(|| told(&what, value(one), value(other))))
 }
 
 /// The first node at which two initial fields differ.
-pub(super) fn of_starts<const D: usize>(
-    name: &str,
-    unit: &str,
-    case: &[[f64; D]],
-    history: &[[f64; D]],
-) -> Option<String> {
-    of_lists(&format!("the initial `{name}` of node"), unit, case, history, |value| *value)
+pub(super) fn of_starts(name: &str, unit: &str, [case, history]: [&[f64]; 2], dimension: usize) -> Option<String> {
+    let [case, history] = [case, history].map(|field| of_rows(field, dimension));
+    of_lists(&format!("the initial `{name}` of node"), unit, &case, &history)
 }
 
 /// The first difference between the instants of two runs.
@@ -88,7 +87,7 @@ pub(super) fn of_kept(case: &Kept, history: &Kept) -> Option<String> {
     let field = fields.into_iter().find(|(_, (one, other))| one != other);
     field
         .map(|(name, (one, other))| told(&format!("[output], `fields`: {name}"), kept(one), kept(other)))
-        .or_else(|| of_lists("[output], the step of instant", "", &case.steps, &history.steps, |step| *step))
+        .or_else(|| of_lists("[output], the step of instant", "", &case.steps, &history.steps))
 }
 
 fn told(what: &str, case: impl Display, history: impl Display) -> String {
@@ -102,12 +101,12 @@ mod tests {
 
     type Change<'c> = &'c dyn Fn(&mut Vec<[f64; 2]>, &mut Vec<[usize; 3]>, &mut BTreeMap<String, Vec<[usize; 2]>>);
 
-    fn square(change: Change<'_>) -> TriangleMesh {
+    fn square(change: Change<'_>) -> AnyMesh {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let (mut points, mut cells) = (points, vec![[0, 1, 2], [0, 2, 3]]);
         let mut groups = BTreeMap::from([("low".to_string(), vec![[0, 1]])]);
         change(&mut points, &mut cells, &mut groups);
-        TriangleMesh::new(points, &cells, &groups, &BTreeMap::new()).unwrap()
+        TriangleMesh::new(points, &cells, &groups, &BTreeMap::new()).unwrap().into()
     }
 
     #[test]

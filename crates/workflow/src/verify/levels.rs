@@ -4,7 +4,7 @@ use super::criterion::{Settled, order};
 use crate::info::memory;
 use crate::quantity::{Judgement, Obstruction, Probe, Quantity, judge};
 use crate::report::Report;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_core::units::Units;
 use percute_estimator::Options;
@@ -151,11 +151,7 @@ pub struct Work {
 }
 
 impl Work {
-    pub(super) fn new<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
-        times: &TimeGrid,
-        options: &Options,
-    ) -> Self {
+    pub(super) fn new(problem: &AnyProblem, times: &TimeGrid, options: &Options) -> Self {
         let run = memory::of_run(problem, times) + percute_estimator::memory(problem, times, options) as u64;
         let (elements, steps) = (problem.mesh().element_count(), times.step_count());
         Self { elements, steps, run, history: memory::of_history(problem, times) }

@@ -23,7 +23,7 @@ use levels::Followed;
 use percute_core::dynamics::critical_time_step;
 use percute_core::mesh::room;
 use percute_core::observer::Observer;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_estimator::reference::{Comparison, Motion};
@@ -33,8 +33,8 @@ pub const MOST_LEVELS: usize = 5;
 
 /// A problem on one of the meshes, ready to run.
 #[derive(Clone, Debug)]
-pub struct Prepared<const D: usize, const N: usize> {
-    problem: Problem<D, N>,
+pub struct Prepared {
+    problem: AnyProblem,
     times: TimeGrid,
     critical_step: f64,
 }
@@ -44,19 +44,21 @@ pub struct Prepared<const D: usize, const N: usize> {
 /// # Errors
 /// A number of refinements out of range or with much work that was not asked for, a problem that the case language
 /// cannot say, a mesh that cannot be refined.
-pub fn prepare<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub fn prepare(
+    problem: &AnyProblem,
     times: &TimeGrid,
     options: &Options,
     (levels, long): (usize, Long),
-) -> Result<Vec<Prepared<D, N>>, Failure> {
+) -> Result<Vec<Prepared>, Failure> {
     if !(1..=MOST_LEVELS).contains(&levels) {
         return Err(Failure::Argument(format!("`levels` is {levels}; give 1 to {MOST_LEVELS} refinements")));
     }
-    if let Some(told) = Effort::of(problem, times, options.every).refined(D, levels).refusal_of_levels(levels, long) {
+    if let Some(told) =
+        Effort::of(problem, times, options.every).refined(problem.dimension(), levels).refusal_of_levels(levels, long)
+    {
         return Err(Failure::Argument(told));
     }
-    room(problem.mesh().element_count() << (D * levels))
+    room(problem.mesh().element_count() << (problem.dimension() * levels))
         .map_err(|error| Failure::Memory(format!("{levels} refinements: {error}, or give fewer levels")))?;
     let stated = Source::new("the refined problem", statement(problem, None)?);
     let critical_step = critical_time_step(problem);
@@ -68,7 +70,7 @@ pub fn prepare<const D: usize, const N: usize>(
         let fine = mesh.refined().map_err(|error| Failure::Argument(format!("the mesh cannot be refined: {error}")))?;
         let initial = [coarse.initial_displacement(), coarse.initial_velocity()].map(|field| mesh.prolonged(field));
         let [displacement, velocity] = initial;
-        let (problem, _) = problem_from(&stated, fine, displacement, velocity)?;
+        let (problem, _) = problem_from(&stated, &fine, displacement, velocity)?;
         let critical_step = critical_time_step(&problem);
         let times = TimeGrid::with_step(times.end(), courant * critical_step);
         let times = times.map_err(|error| Failure::Argument(error.to_string()))?;
@@ -79,7 +81,7 @@ pub fn prepare<const D: usize, const N: usize>(
 
 /// The work before it starts.
 #[must_use]
-pub fn cost<const D: usize, const N: usize>(prepared: &[Prepared<D, N>], options: &Options) -> Cost {
+pub fn cost(prepared: &[Prepared], options: &Options) -> Cost {
     Cost::new(prepared.iter().map(|each| levels::Work::new(&each.problem, &each.times, options)).collect())
 }
 
@@ -88,8 +90,8 @@ pub fn cost<const D: usize, const N: usize>(prepared: &[Prepared<D, N>], options
 ///
 /// # Errors
 /// A probe that does not fit the body; as [`run`](crate::run::run) and [`true_errors`](crate::run::true_errors).
-pub fn verify<const D: usize, const N: usize>(
-    prepared: &[Prepared<D, N>],
+pub fn verify(
+    prepared: &[Prepared],
     options: Options,
     probes: &[Probe],
     observer: &mut dyn Observer,
@@ -124,19 +126,19 @@ pub fn verify<const D: usize, const N: usize>(
     Ok(so_far(&levels, &first_errors))
 }
 
-impl<const D: usize, const N: usize> Prepared<D, N> {
+impl Prepared {
     fn level(
         &self,
         options: Options,
-        results: &Results<D>,
+        results: &Results,
         quantities: &[Quantity],
-        sinks: &[Option<ProbeSink<'_, D, N>>],
+        sinks: &[Option<ProbeSink<'_>>],
     ) -> Level {
         let Self { problem, times, critical_step } = self;
         let (name, critical_step) = ("", *critical_step);
         let subject = Subject { name, problem, times, critical_step, held: None, checked: None, unended: None };
         let report = Report::new(&subject, options, results.findings(), 0.0);
-        let followed = |(quantity, sink): (&Quantity, &Option<ProbeSink<'_, D, N>>)| Followed {
+        let followed = |(quantity, sink): (&Quantity, &Option<ProbeSink<'_>>)| Followed {
             quantity: quantity.clone(),
             value: quantity.value(&report, sink.as_ref()),
             obstruction: quantity.obstruction(problem.mesh(), &report),

@@ -18,22 +18,25 @@ pub use resultant::Resultant;
 pub use summary::NodeSummary;
 
 use super::coulomb::Status;
+use crate::border::Vector;
 use crate::ids::NodeId;
 
 /// Contact results of a run or a history, up to its last step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ContactResults<const D: usize> {
+pub struct ContactResults {
+    /// Of the body.
+    pub dimension: usize,
     /// t_n (s).
     pub instants: Vec<f64>,
     /// The nodes of the contact surface, in its order.
-    pub nodes: Vec<ContactPoint<D>>,
+    pub nodes: Vec<ContactPoint>,
     /// One summary for each of them.
-    pub summary: Vec<NodeSummary<D>>,
+    pub summary: Vec<NodeSummary>,
     /// Resultants of all obstacles at each instant. Of two bodies that touch, they are those of the forces on the first
     /// one.
-    pub total: Vec<Resultant<D>>,
+    pub total: Vec<Resultant>,
     /// Resultants of each obstacle at each instant: each plane, and each side of each interface.
-    pub obstacles: Vec<Vec<Resultant<D>>>,
+    pub obstacles: Vec<Vec<Resultant>>,
     /// The farthest that two nodes of different bodies in contact were moved along their interface, over the length of
     /// their shortest edge; 0 without such nodes.
     pub slip: f64,
@@ -52,55 +55,58 @@ pub struct ContactResults<const D: usize> {
     /// The gap that is left where nothing has touched; none without contact surface, or after any touch or force.
     pub nearest: Option<Nearest>,
     /// All nodes at all instants, if requested.
-    pub steps: Option<ContactSteps<D>>,
+    pub steps: Option<ContactSteps>,
 }
 
 /// A node of the contact surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactPoint<const D: usize> {
+pub struct ContactPoint {
     /// The node.
     pub node: NodeId,
     /// The obstacle that it may touch.
     pub obstacle: usize,
     /// Its place in the undeformed mesh (m).
-    pub point: [f64; D],
+    pub point: Vector,
     /// Unit normal there, from the obstacle to the body.
-    pub normal: [f64; D],
+    pub normal: Vector,
     /// ℓ_k: its share of the candidate facets, with thickness or section (m²), eq. \[45\].
     pub area: f64,
 }
 
 /// All contact nodes at all instants, node by node and instant after instant.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ContactSteps<const D: usize> {
+pub struct ContactSteps {
     /// R_n (N), global axes. Over [`ContactPoint::area`] it is the density (Pa), eq. \[45\].
-    pub force: Vec<[f64; D]>,
+    pub force: Vec<f64>,
     /// Gap at t_n (m), eq. \[3\]; infinite at a node that faces nothing.
     pub gap: Vec<f64>,
     /// Tangential part of (u_{n+1} − u_n)/Δt_n (m/s), global axes, at the last instant that of the last step; 0 at a
     /// free node.
-    pub sliding_velocity: Vec<[f64; D]>,
+    pub sliding_velocity: Vec<f64>,
     /// Status under R_n.
     pub status: Vec<Status>,
     /// Energy dissipated by friction up to t_n (J).
     pub friction_energy: Vec<f64>,
 }
 
-impl<const D: usize> ContactSteps<D> {
+impl ContactSteps {
     /// Bytes of one node at one instant.
-    pub const BYTES: usize = 2 * size_of::<[f64; D]>() + 2 * size_of::<f64>() + size_of::<Status>();
+    #[must_use]
+    pub const fn bytes(dimension: usize) -> usize {
+        (2 * dimension + 2) * size_of::<f64>() + size_of::<Status>()
+    }
 
     /// Reserves memory for this many rows.
-    fn reserve(&mut self, rows: usize) -> Result<(), std::collections::TryReserveError> {
-        self.force.try_reserve_exact(rows)?;
+    fn reserve(&mut self, rows: usize, dimension: usize) -> Result<(), std::collections::TryReserveError> {
+        self.force.try_reserve_exact(rows * dimension)?;
         self.gap.try_reserve_exact(rows)?;
-        self.sliding_velocity.try_reserve_exact(rows)?;
+        self.sliding_velocity.try_reserve_exact(rows * dimension)?;
         self.status.try_reserve_exact(rows)?;
         self.friction_energy.try_reserve_exact(rows)
     }
 }
 
-impl<const D: usize> ContactResults<D> {
+impl ContactResults {
     /// The instant at which the sum of all normal forces is largest. None without any force.
     #[must_use]
     pub fn peak(&self) -> Option<usize> {

@@ -29,14 +29,14 @@ impl Nearest {
 
     /// From stored results; none if anything touched.
     #[must_use]
-    pub fn of_steps<const D: usize>(
+    pub fn of_steps(
         instants: &[f64],
-        nodes: &[ContactPoint<D>],
-        summary: &[NodeSummary<D>],
-        steps: &ContactSteps<D>,
+        nodes: &[ContactPoint],
+        summary: &[NodeSummary],
+        steps: &ContactSteps,
     ) -> Option<Self> {
         let touched = summary.iter().any(|summary| summary.first_touch.is_some())
-            || steps.force.iter().flatten().any(|force| *force != 0.0);
+            || steps.force.iter().any(|force| *force != 0.0);
         let row = |back: usize| {
             let n = instants.len().checked_sub(back)?;
             Some((instants[n], &steps.gap[n * nodes.len()..(n + 1) * nodes.len()]))

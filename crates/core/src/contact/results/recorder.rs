@@ -4,13 +4,16 @@ use super::averaged::Averages;
 use super::nearest::Gaps;
 use super::resultant::{Share, Sum};
 use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
+use crate::border::padded;
 use crate::contact::coulomb::{Coulomb, Status, dissipation};
 use crate::contact::frame::{Frame, dot};
 use crate::contact::leaning::Leaning;
 use crate::contact::mortar::{Facing, LEAST_PART, SlidingSurfaces};
 use crate::history::{SinkError, State, StateSink, Step, StepCheck, StepSource};
-use crate::problem::Problem;
+use crate::on_problem;
+use crate::problem::{Problem, ProblemRef};
 use crate::time::TimeGrid;
+use std::fmt;
 use thiserror::Error;
 
 /// No room for all nodes at all instants.
@@ -30,8 +33,60 @@ pub struct ContactMemoryError {
 
 /// Keeps the contact results of the steps that it takes: beside a run or from its history the same, bit by bit. They
 /// follow from displacements, reactions and touching status alone.
-#[derive(Clone, Debug)]
-pub struct ContactRecorder<'p, const D: usize, const N: usize> {
+#[derive(Debug)]
+pub struct ContactRecorder<'p>(Box<dyn Record + 'p>);
+
+impl<'p> ContactRecorder<'p> {
+    /// Before the first step. Resultants and summaries are kept.
+    #[must_use]
+    pub fn new(problem: impl Into<ProblemRef<'p>>, times: &'p TimeGrid) -> Self {
+        Self(on_problem!(problem.into(), problem => Box::new(Recorder::new(problem, times))))
+    }
+
+    /// Keeps all nodes at all instants too.
+    ///
+    /// # Errors
+    /// No room for them.
+    pub fn keeping_steps(mut self) -> Result<Self, ContactMemoryError> {
+        self.0.keep_steps()?;
+        Ok(self)
+    }
+
+    /// The contact results of the steps taken.
+    #[must_use]
+    pub fn finish(self) -> ContactResults {
+        self.0.finish()
+    }
+
+    /// The contact results of a history. No force is computed: its steps are only checked.
+    ///
+    /// # Errors
+    /// A step that cannot be read or does not fit.
+    pub fn replay(mut self, source: &dyn StepSource) -> Result<ContactResults, SinkError> {
+        let mut check = StepCheck::default();
+        source.replay(&mut |step| self.0.record_checked(&mut check, step))?;
+        Ok(self.finish())
+    }
+}
+
+impl StateSink for ContactRecorder<'_> {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
+        self.0.record(state.step());
+        Ok(())
+    }
+}
+
+/// A recorder of either dimension.
+trait Record: fmt::Debug + Send {
+    fn keep_steps(&mut self) -> Result<(), ContactMemoryError>;
+    fn record(&mut self, step: &Step<'_>);
+    fn record_checked(&mut self, check: &mut StepCheck, step: &Step<'_>) -> Result<(), SinkError>;
+    fn finish(self: Box<Self>) -> ContactResults;
+}
+
+/// The recorder with its dimension.
+#[derive(Debug)]
+struct Recorder<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     times: &'p TimeGrid,
     laws: Vec<TangentialLaw>,
@@ -43,7 +98,7 @@ pub struct ContactRecorder<'p, const D: usize, const N: usize> {
     leaning: Leaning<'p, D>,
     gaps: Gaps,
     averages: Averages,
-    results: ContactResults<D>,
+    results: ContactResults,
 }
 
 /// What is known of a node at the last instant taken.
@@ -55,13 +110,12 @@ struct NodeState<const D: usize> {
     status: Status,
 }
 
-impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
-    /// Before the first step. Resultants and summaries are kept.
-    #[must_use]
-    pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid) -> Self {
+impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
+    fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid) -> Self {
         let nodes = points(problem);
         let start = NodeState { relative: [0.0; D], force: [0.0; D], status: Status::Free };
         let results = ContactResults {
+            dimension: D,
             instants: Vec::new(),
             summary: vec![NodeSummary::new(); nodes.len()],
             total: Vec::new(),
@@ -82,40 +136,20 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
         Self { problem, times, laws, now, facing, shortest, leaning, gaps, averages, results }
     }
 
-    /// Keeps all nodes at all instants too.
-    ///
-    /// # Errors
-    /// No room for them.
-    pub fn keeping_steps(mut self) -> Result<Self, ContactMemoryError> {
-        let (nodes, instants) = (self.now.len(), self.times.step_count() + 1);
-        let rows = nodes.saturating_mul(instants);
-        let mut steps = ContactSteps::default();
-        let bytes = rows.saturating_mul(ContactSteps::<D>::BYTES);
-        steps.reserve(rows).map_err(|_| ContactMemoryError { bytes, nodes, instants })?;
-        self.results.steps = Some(steps);
-        Ok(self)
-    }
-
-    /// What contact did at the steps taken.
-    #[must_use]
-    pub fn finish(self) -> ContactResults<D> {
-        ContactResults { nearest: self.gaps.nearest(), averaged_peak: self.averages.peak(), ..self.results }
-    }
-
     /// The normal force of each obstacle (N) up to which its nodes are free.
-    fn least_forces(&self, step: &Step<'_, D>) -> Vec<f64> {
+    fn least_forces(&self, step: &Step<'_>) -> Vec<f64> {
         let (surface, mut least) = (self.problem.surface(), vec![0.0_f64; self.results.obstacles.len()]);
         for at in surface.sliding().iter().flat_map(SlidingSurfaces::positions) {
             let (obstacle, frame) = (self.results.nodes[at].obstacle, surface.frame(at, &[0.0; D]));
-            least[obstacle] = least[obstacle].max(LEAST_PART * frame.split(&step.reaction[at]).0);
+            least[obstacle] = least[obstacle].max(LEAST_PART * frame.split(&step.reaction()[at]).0);
         }
         least
     }
 
     /// Records the gaps, as long as nothing touches.
-    fn gap_left(&mut self, step: &Step<'_, D>) {
-        let touches = step.touching.contains(&true) || step.reaction.iter().flatten().any(|force| *force != 0.0);
-        let gaps = (0..self.now.len()).map(|at| self.facing.gap(at, step.displacement));
+    fn gap_left(&mut self, step: &Step<'_>) {
+        let touches = step.touching.contains(&true) || step.reaction.iter().any(|force| *force != 0.0);
+        let gaps = (0..self.now.len()).map(|at| self.facing.gap(at, step.displacement()));
         self.gaps.advance(step.time, touches, gaps);
     }
 
@@ -126,11 +160,11 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
     }
 
     /// Records one node, which is free up to this normal force (N); returns its share of the resultants.
-    fn node(&mut self, at: usize, step: &Step<'_, D>, least: f64) -> Share<D> {
+    fn node(&mut self, at: usize, step: &Step<'_>, least: f64) -> Share {
         let ContactPoint { node, area, point, .. } = self.results.nodes[at];
-        let (displacement, force) = (step.displacement[node.index()], step.reaction[at]);
+        let (displacement, force) = (step.displacement::<D>()[node.index()], step.reaction::<D>()[at]);
         let surface = self.problem.surface();
-        let relative = self.facing.relative(at, step.displacement);
+        let relative = self.facing.relative(at, step.displacement());
         let frame = surface.frame(at, &relative);
         let normal_force = frame.split(&force).0;
         let status = if normal_force <= least { Status::Free } else { self.laws[at].status(&frame, &force) };
@@ -140,7 +174,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             let slip = dot(&aside, &aside).sqrt() / self.shortest[at];
             self.results.slip = self.results.slip.max(slip);
         }
-        let depth = self.facing.depth(at, step.displacement) / self.shortest[at];
+        let depth = self.facing.depth(at, step.displacement()) / self.shortest[at];
         self.results.depth = self.results.depth.max(depth);
         let summary = &mut self.results.summary[at];
         summary.at(step.time, step.touching[at], normal_force, area);
@@ -152,7 +186,7 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             let path = std::array::from_fn(|c| relative[c] - before.relative[c]);
             let mean = std::array::from_fn(|c| 0.5 * (before.force[c] + force[c]));
             summary.friction_energy += dissipation(&frame, &mean, &path);
-            summary.over(dt, [&before.force, &force], [before.status, status]);
+            summary.over(dt, [&before.force, &force].map(padded), [before.status, status]);
             sliding = frame.split(&path).1.map(|way| way / dt);
         }
         let friction_energy = summary.friction_energy;
@@ -161,46 +195,45 @@ impl<'p, const D: usize, const N: usize> ContactRecorder<'p, D, N> {
             if step.index > 0 {
                 // The step that ends now is the one after the instant before.
                 let row = (step.index - 1) * self.now.len() + at;
-                steps.sliding_velocity[row] = slides(before.status);
+                steps.sliding_velocity[D * row..D * (row + 1)].copy_from_slice(&slides(before.status));
             }
-            steps.force.push(force);
-            steps.gap.push(self.facing.gap(at, step.displacement));
-            steps.sliding_velocity.push(slides(status));
+            steps.force.extend(force);
+            steps.gap.push(self.facing.gap(at, step.displacement()));
+            steps.sliding_velocity.extend(slides(status));
             steps.status.push(status);
             steps.friction_energy.push(friction_energy);
         }
-        let place = std::array::from_fn(|c| point[c] + displacement[c]);
-        Share { force, normal_force, area, status, friction_energy, place }
+        let place = std::array::from_fn(|c| if c < D { point[c] + displacement[c] } else { 0.0 });
+        Share { force: padded(&force), normal_force, area, status, friction_energy, place }
     }
 }
 
-impl<const D: usize, const N: usize> StateSink<D> for ContactRecorder<'_, D, N> {
-    fn accept(&mut self, state: &State<'_, D>) -> Result<(), SinkError> {
-        self.record(state.step());
+impl<const D: usize, const N: usize> Record for Recorder<'_, D, N> {
+    fn keep_steps(&mut self) -> Result<(), ContactMemoryError> {
+        let (nodes, instants) = (self.now.len(), self.times.step_count() + 1);
+        let rows = nodes.saturating_mul(instants);
+        let mut steps = ContactSteps::default();
+        let bytes = rows.saturating_mul(ContactSteps::bytes(D));
+        steps.reserve(rows, D).map_err(|_| ContactMemoryError { bytes, nodes, instants })?;
+        self.results.steps = Some(steps);
         Ok(())
     }
-}
 
-impl<const D: usize, const N: usize> ContactRecorder<'_, D, N> {
-    /// The contact results of a history. No force is computed: its steps are only checked.
-    ///
-    /// # Errors
-    /// A step that cannot be read or does not fit.
-    pub fn replay(mut self, source: &dyn StepSource<D>) -> Result<ContactResults<D>, SinkError> {
-        let mut check = StepCheck::default();
-        source.replay(&mut |step| {
-            check.advance(self.problem, self.times, step)?;
-            self.record(step);
-            Ok(())
-        })?;
-        Ok(self.finish())
+    fn record_checked(&mut self, check: &mut StepCheck, step: &Step<'_>) -> Result<(), SinkError> {
+        check.advance(self.problem, self.times, step)?;
+        self.record(step);
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> ContactResults {
+        ContactResults { nearest: self.gaps.nearest(), averaged_peak: self.averages.peak(), ..self.results }
     }
 
     /// Records a checked step.
-    fn record(&mut self, step: &Step<'_, D>) {
+    fn record(&mut self, step: &Step<'_>) {
         let mut sums = vec![Sum::new(); self.results.obstacles.len()];
         let mut total = Sum::new();
-        self.facing.update(step.displacement);
+        self.facing.update(step.displacement());
         self.gap_left(step);
         let least = self.least_forces(step);
         let length = self.times.velocity_step(step.index);
@@ -229,12 +262,12 @@ impl<const D: usize, const N: usize> ContactRecorder<'_, D, N> {
 }
 
 /// The nodes of the contact surface with their shares of the candidate facets.
-fn points<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<ContactPoint<D>> {
+fn points<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<ContactPoint> {
     let surface = problem.surface();
     let point = |(at, area): (usize, f64)| {
-        let (node, obstacle, point) = (surface.nodes()[at].node, surface.nodes()[at].obstacle, *surface.point(at));
-        let normal = *surface.obstacles()[obstacle].frame_at(&point).normal();
-        ContactPoint { node, obstacle, point, normal, area }
+        let (node, obstacle, point) = (surface.nodes()[at].node, surface.nodes()[at].obstacle, surface.point(at));
+        let normal = padded(surface.obstacles()[obstacle].frame_at(point).normal());
+        ContactPoint { node, obstacle, point: padded(point), normal, area }
     };
     surface.tributary_areas().into_iter().enumerate().map(point).collect()
 }

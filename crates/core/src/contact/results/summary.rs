@@ -1,10 +1,11 @@
 //! Summary of one node.
 
+use crate::border::Vector;
 use crate::contact::coulomb::Status;
 
 /// The contact of one node up to the last instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NodeSummary<const D: usize> {
+pub struct NodeSummary {
     /// The first t_n at which it touches (s).
     pub first_touch: Option<f64>,
     /// Time during which it was not free (s).
@@ -16,12 +17,12 @@ pub struct NodeSummary<const D: usize> {
     /// Largest pressure (Pa): of the normal component of the density, eq. \[45\].
     pub peak_pressure: f64,
     /// Impulse (N s), global axes.
-    pub impulse: [f64; D],
+    pub impulse: Vector,
     /// Energy dissipated by friction (J).
     pub friction_energy: f64,
 }
 
-impl<const D: usize> NodeSummary<D> {
+impl NodeSummary {
     pub(super) fn new() -> Self {
         Self {
             first_touch: None,
@@ -29,7 +30,7 @@ impl<const D: usize> NodeSummary<D> {
             peak_normal_force: 0.0,
             time_of_peak: None,
             peak_pressure: 0.0,
-            impulse: [0.0; D],
+            impulse: [0.0; 3],
             friction_energy: 0.0,
         }
     }
@@ -48,8 +49,8 @@ impl<const D: usize> NodeSummary<D> {
 
     /// Adds a step of `dt` seconds with the forces and status at both ends. All integrals are trapezoids, like the
     /// impulse of the scheme.
-    pub(super) fn over(&mut self, dt: f64, forces: [&[f64; D]; 2], status: [Status; 2]) {
-        (0..D).for_each(|c| self.impulse[c] += 0.5 * dt * (forces[0][c] + forces[1][c]));
+    pub(super) fn over(&mut self, dt: f64, forces: [Vector; 2], status: [Status; 2]) {
+        (0..3).for_each(|c| self.impulse[c] += 0.5 * dt * (forces[0][c] + forces[1][c]));
         let ends = status.iter().filter(|s| **s != Status::Free).count();
         self.time_in_contact += 0.5 * dt * ends as f64;
     }

@@ -32,19 +32,25 @@ impl Contact {
     ///
     /// # Errors
     /// Negative friction, or one that is not finite; friction in 1D.
-    pub fn new<const D: usize>(between: Between, friction: f64, matching: Option<bool>) -> Result<Self, ObstacleError> {
+    pub fn new(
+        dimension: usize,
+        between: Between,
+        friction: f64,
+        matching: Option<bool>,
+    ) -> Result<Self, ObstacleError> {
         let contact = Self { between, friction, matching };
-        contact.interface::<D>(["", ""], true).map(|_| contact)
+        contact.interface(dimension, ["", ""], true).map(|_| contact)
     }
 
     /// The same between two groups of facets.
-    pub(in crate::problem) fn interface<const D: usize>(
+    pub(in crate::problem) fn interface(
         &self,
+        dimension: usize,
         [first, second]: [&str; 2],
         matching: bool,
     ) -> Result<Interface, ObstacleError> {
-        let make = if matching { Interface::matching::<D> } else { Interface::sliding::<D> };
-        make(first, second, self.friction)
+        let make = if matching { Interface::matching } else { Interface::sliding };
+        make(dimension, first, second, self.friction)
     }
 
     /// The coefficient of friction.

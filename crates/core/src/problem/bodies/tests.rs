@@ -40,17 +40,17 @@ fn bodies(blocks: &[Block]) -> Builder<2, 3> {
 }
 
 fn all(friction: f64) -> Contact {
-    Contact::new::<2>(Between::All, friction, None).unwrap()
+    Contact::new(2, Between::All, friction, None).unwrap()
 }
 
 fn of(first: &str, second: &str) -> Contact {
-    Contact::new::<2>(Between::Bodies([first.to_string(), second.to_string()]), 0.3, None).unwrap()
+    Contact::new(2, Between::Bodies([first.to_string(), second.to_string()]), 0.3, None).unwrap()
 }
 
 /// The groups of all interfaces, and whether they match.
 fn found(builder: Builder<2, 3>) -> Vec<(String, String, bool)> {
     let problem = builder.build().unwrap();
-    let interfaces = problem.statement().interfaces.iter().map(|interface| {
+    let interfaces = problem.conditions().interfaces.iter().map(|interface| {
         let [first, second] = interface.groups().map(str::to_string);
         (first, second, interface.is_matching())
     });
@@ -98,7 +98,7 @@ fn surfaces_end_beyond_the_other_body() {
     };
     let (first, last) = edges(&problem, "plate sliding on block");
     assert!((first - 0.05).abs() < 1e-12 && (last - 0.12).abs() < 1e-12, "{first} {last}");
-    assert_eq!(problem.statement().interfaces[0].groups(), ["plate sliding on block", "block.bottom"]);
+    assert_eq!(problem.conditions().interfaces[0].groups(), ["plate sliding on block", "block.bottom"]);
     // Where nodes face each other in pairs, only they are in it.
     let plate = block("plate", [0.16, 0.02], [16, 2], [0.0, 0.0], [0.0, 0.0]);
     let problem = bodies(&[plate, falls([3, 2], 0.07, [0.0, -10.0])]).contact(all(0.2)).build().unwrap();
@@ -131,13 +131,13 @@ fn a_named_contact_has_its_own_friction() {
     let at = |k: usize| [0.0, 0.021 * k as f64];
     let blocks = [wide("a", at(0), [0.0; 2]), wide("b", at(1), [0.0; 2]), wide("c", at(2), [0.0, -1.0])];
     let problem = bodies(&blocks).contact(all(0.1)).contact(of("c", "b")).build().unwrap();
-    let stated: Vec<_> = problem.statement().interfaces.iter().map(|i| (i.groups(), i.law().friction())).collect();
+    let stated: Vec<_> = problem.conditions().interfaces.iter().map(|i| (i.groups(), i.law().friction())).collect();
     assert_eq!(stated, [(["c.bottom", "b.top"], 0.3), (["a.top", "b.bottom"], 0.1)]);
     let places: Vec<_> = [0, 2].map(|obstacle| problem.place_of_obstacle(obstacle)).to_vec();
     assert_eq!((places[0].index, places[0].key, places[1].index, places[1].key), (Some(1), "bodies", Some(0), ""));
     // The same problem again from the surfaces that were found.
     let again = problem
-        .statement()
+        .conditions()
         .interfaces
         .iter()
         .fold(Problem::builder(problem.mesh().clone()), |b, i| b.interface(i.clone()));
@@ -179,7 +179,7 @@ fn a_block_on_two_blocks_has_one_interface() {
         ]
     };
     let expected = |problem: &Problem<2, 3>| {
-        let interfaces: Vec<_> = problem.statement().interfaces.iter().map(|interface| interface.groups()).collect();
+        let interfaces: Vec<_> = problem.conditions().interfaces.iter().map(|interface| interface.groups()).collect();
         assert_eq!(interfaces, [["a facing b", "b facing a"], ["a and b sliding on c", "c.bottom"]]);
         let sliding = &problem.surface().sliding()[0];
         assert_eq!((sliding.slave().parts().len(), sliding.master().len()), (2, 5));
@@ -191,15 +191,15 @@ fn a_block_on_two_blocks_has_one_interface() {
     }
     let problem = bodies(&blocks(1e-4)).contact(of("c", "a")).contact(of("c", "b")).contact(all(0.2));
     let problem = problem.build().unwrap();
-    let interface = &problem.statement().interfaces[0];
+    let interface = &problem.conditions().interfaces[0];
     assert_eq!(interface.groups(), ["c.bottom", "a and b sliding on c"]);
     let groups = |second: &str, friction: f64| {
         let groups = Between::Groups(["c.bottom".to_string(), second.to_string()]);
-        Contact::new::<2>(groups, friction, None).unwrap()
+        Contact::new(2, groups, friction, None).unwrap()
     };
     let stated = bodies(&blocks(1e-4)).contact(groups("a.top", 0.2)).contact(groups("b.top", 0.2)).contact(all(0.2));
     let stated = stated.build().unwrap();
-    assert_eq!(stated.statement().interfaces[0].groups(), ["c.bottom", "a.top and b.top"]);
+    assert_eq!(stated.conditions().interfaces[0].groups(), ["c.bottom", "a.top and b.top"]);
     let differ = bodies(&blocks(1e-4)).contact(groups("a.top", 0.2)).contact(groups("b.top", 0.1)).contact(all(0.2));
     let error = differ.build().unwrap_err();
     assert_eq!((error.place.index, matches!(error.cause, Cause::FrictionsDiffer { .. })), (Some(1), true));

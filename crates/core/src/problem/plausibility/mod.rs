@@ -9,7 +9,8 @@ mod units;
 
 pub use spin::SMALL_ROTATION;
 
-use super::{Place, Problem};
+use super::{Place, Problem, ProblemRef};
+use crate::on_problem;
 use crate::time::TimeGrid;
 use std::fmt;
 
@@ -34,10 +35,11 @@ impl fmt::Display for PlausibilityWarning {
 
 /// All plausibility warnings of a run, before its first step.
 #[must_use]
-pub fn plausibility_warnings<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    times: &TimeGrid,
-) -> Vec<PlausibilityWarning> {
+pub fn plausibility_warnings<'p>(problem: impl Into<ProblemRef<'p>>, times: &TimeGrid) -> Vec<PlausibilityWarning> {
+    on_problem!(problem.into(), problem => all(problem, times))
+}
+
+fn all<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Vec<PlausibilityWarning> {
     let mut all: Vec<_> = moved::plausibility_warnings(problem).collect();
     all.extend(units::plausibility_warnings(problem));
     // Checks that use the wave speed are left out if the units of the mesh or of a material are already in question.
@@ -66,10 +68,8 @@ pub struct RefusedStart {
 
 /// The wrong unit that makes a start that the simulation refuses; `None` if all units seem to be right.
 #[must_use]
-pub fn cause_of_refused_start<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    times: &TimeGrid,
-) -> Option<RefusedStart> {
+pub fn cause_of_refused_start<'p>(problem: impl Into<ProblemRef<'p>>, times: &TimeGrid) -> Option<RefusedStart> {
+    let problem = problem.into();
     // The extent of the body does not change its waves.
     let units = |warning: &PlausibilityWarning| {
         ["units", "supersonic"].contains(&warning.name)
@@ -78,7 +78,7 @@ pub fn cause_of_refused_start<const D: usize, const N: usize>(
     if let Some(cause) = plausibility_warnings(problem, times).into_iter().find(units) {
         return Some(RefusedStart { cause, likely: true });
     }
-    let size = problem.mesh().size();
+    let size = on_problem!(problem, problem => problem.mesh().size());
     let cause = units::size_of_body(size, units::LARGE_IF_REFUSED)?;
     Some(RefusedStart { cause, likely: size > units::LARGE })
 }

@@ -78,7 +78,7 @@ fn no_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option
 
 fn support_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<PlausibilityWarning> {
     let waves = wave_speed(problem);
-    problem.statement().supports.iter().enumerate().find_map(|(index, support)| {
+    problem.conditions().supports.iter().enumerate().find_map(|(index, support)| {
         let largest = support.velocity.as_ref()?.value().iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
         let (brief, message) = too_fast(largest, waves)?;
         Some(plausibility_warning(at("support", Some(index), "velocity"), "supersonic", brief, message))
@@ -107,7 +107,7 @@ struct Flight<const D: usize> {
 fn flights<const D: usize, const N: usize>(problem: &Problem<D, N>, bodies: &Bodies) -> Option<Vec<Flight<D>>> {
     let velocity = bodies.uniform(problem.initial_velocity())?;
     bodies.uniform(problem.initial_displacement())?;
-    let steady = |motion: &crate::load::Table<1>| motion.value().iter().all(|v| v == &motion.value()[0]);
+    let steady = |motion: &crate::load::Table| motion.value().iter().all(|v| v == &motion.value()[0]);
     if !problem.facet_loads().is_empty() || !problem.motions().iter().all(steady) {
         return None;
     }

@@ -14,7 +14,8 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     times: &TimeGrid,
 ) -> Option<PlausibilityWarning> {
-    let (mesh, spins) = (problem.mesh(), RigidMotion::new(problem).rotations(problem.initial_velocity()));
+    let (mesh, spins) =
+        (problem.mesh(), RigidMotion::new(problem).rotations(problem.initial_velocity().as_flattened()));
     let of_node = mesh.part_numbers();
     let mut held = vec![false; spins.len()];
     problem.prescribed().iter().for_each(|prescribed| held[of_node[prescribed.node.index()]] = true);

@@ -1,6 +1,7 @@
 //! Runs of one step or of millions, and tables that do not change while they last.
 
 use super::{PlausibilityWarning, at, plausibility_warning};
+use crate::border::Vector;
 use crate::load::Table;
 use crate::message::short;
 use crate::problem::Problem;
@@ -18,7 +19,7 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
     times: &TimeGrid,
 ) -> Vec<PlausibilityWarning> {
     let mut all: Vec<PlausibilityWarning> = steps(times.step_count(), times.end()).into_iter().collect();
-    let stated = problem.statement();
+    let stated = problem.conditions();
     let supports = stated
         .supports
         .iter()
@@ -56,8 +57,8 @@ fn steps(count: usize, end: f64) -> Option<PlausibilityWarning> {
 }
 
 /// What is the matter with a table that changes after the end only.
-fn unused<const C: usize>(table: &Table<C>, end: f64) -> Option<String> {
-    let change = |from: &[f64; C], to: &[f64; C]| from.iter().zip(to).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+fn unused(table: &Table, end: f64) -> Option<String> {
+    let change = |from: &Vector, to: &Vector| from.iter().zip(to).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let start = table.at(0.0);
     let largest = table.value().iter().map(|value| change(&start, value)).fold(0.0, f64::max);
     let before = table.time().iter().filter(|t| (0.0..end).contains(*t)).chain([&end]);

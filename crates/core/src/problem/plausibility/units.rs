@@ -50,7 +50,7 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
         all.extend(locking(material, index));
     }
     let lightest = problem.materials().iter().map(|material| material.density()).fold(f64::INFINITY, f64::min);
-    let forces = problem.statement().body_forces.iter().enumerate();
+    let forces = problem.conditions().body_forces.iter().enumerate();
     all.extend(forces.filter_map(|(index, force)| weight(force, lightest, index)));
     all.extend(problem.obstacles().iter().enumerate().filter(|(index, _)| problem.leads_interface(*index)).filter_map(
         |(index, obstacle)| {
@@ -194,7 +194,7 @@ fn locking(material: &Elastic, index: usize) -> Option<PlausibilityWarning> {
 /// Accelerations of gravity in the two digits in which they are written (m/s²).
 const GRAVITY: [f64; 2] = [9.75, 10.0];
 
-fn weight<const D: usize>(force: &BodyForce<D>, density: f64, index: usize) -> Option<PlausibilityWarning> {
+fn weight(force: &BodyForce, density: f64, index: usize) -> Option<PlausibilityWarning> {
     let largest = force.value.value().iter().flatten().fold(0.0_f64, |m, f| m.max(f.abs()));
     // In what is lighter than water by as much, this may be a force.
     if !(GRAVITY[0]..=GRAVITY[1]).contains(&largest) || density < 10.0 * GRAVITY[1] {

@@ -56,7 +56,7 @@ fn a_corner_from_beside_is_pushed_along_the_normal_of_the_face_that_it_strikes()
     let place = |u: &[[f64; 2]], i: usize| [0, 1].map(|c| problem.mesh().points()[i][c] + u[i][c]);
     let corner = 25;
     for n in 0..=run.last() {
-        let u = run.history.step(n).unwrap().displacement;
+        let u = run.history.step(n).unwrap().displacement();
         let ([x, y], top) = (place(u, corner), [20, 21, 22, 23, 24].map(|i| place(u, i)));
         let Some(ends) = top.windows(2).find(|ends| ends[0][0] <= x && x <= ends[1][0]) else { continue };
         let part = (x - ends[0][0]) / (ends[1][0] - ends[0][0]);

@@ -3,7 +3,7 @@
 use super::setup::steps;
 use crate::solution::run::{aluminium, largest, run};
 use percute_core::contact::{ContactRecorder, Interface, Status};
-use percute_core::dynamics::{MissedContact, simulate};
+use percute_core::dynamics::{missed_contact, simulate};
 use percute_core::ids::NodeId;
 use percute_core::load::{Profile, Support, Table, Traction};
 use percute_core::mesh::TriangleMesh;
@@ -17,7 +17,7 @@ fn driven(builder: Builder<2, 3>, sides: &[(&str, f64)], [along, speed]: [f64; 2
     sides.iter().filter(|_| speed != 0.0).fold(builder, |builder, (group, sign)| {
         let speeds = [0.0, 1.0, 1.0].map(|part| [along + sign * part * speed, 0.0]);
         let velocity = Some(Table::new(vec![0.0, 5e-6, 1.0], speeds.to_vec()).unwrap());
-        builder.support(Support { group: group.to_string(), components: [true, false], velocity })
+        builder.support(Support { group: group.to_string(), components: [true, false, false], velocity })
     })
 }
 
@@ -93,7 +93,7 @@ fn nodes_in_contact_touch() {
     let problem = TriangleProblem::builder(mesh)
         .material(aluminium())
         .initial_velocity(velocity)
-        .interface(Interface::sliding::<2>("block.bottom", "plate.top", 0.2).unwrap())
+        .interface(Interface::sliding(2, "block.bottom", "plate.top", 0.2).unwrap())
         .build()
         .unwrap();
     let times = steps(&problem, 8e-6);
@@ -135,7 +135,11 @@ fn falling(lower: &TriangleMesh, upper: &TriangleMesh, supports: &[(&str, [bool;
     let velocity = [vec![[0.0; 2]; lower.node_count()], vec![[0.0, -20.0]; upper.node_count()]].concat();
     let builder = TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity));
     supports.iter().fold(builder, |builder, (group, components)| {
-        builder.support(Support { group: group.to_string(), components: *components, velocity: None })
+        builder.support(Support {
+            group: group.to_string(),
+            components: [components[0], components[1], false],
+            velocity: None,
+        })
     })
 }
 
@@ -151,11 +155,11 @@ fn a_tip_on_a_line_of_symmetry_is_missed() {
         // Groups keep their names in the image.
         let groups = lines.iter().flat_map(|line| ["lower", "upper"].map(|body| format!("{body}.{line}")));
         let held = groups.fold(falling(&lower, &upper, &[]), |builder, group| {
-            builder.support(Support { group, components: [true, false], velocity: velocity.clone() })
+            builder.support(Support { group, components: [true, false, false], velocity: velocity.clone() })
         });
         let problem = held.build().unwrap();
         let times = steps(&problem, 60e-6);
-        let mut missed = MissedContact::new(&problem, times.step_count());
+        let mut missed = missed_contact(&problem, times.step_count());
         let run = simulate(&problem, &times, &mut missed, &mut Unobserved);
         let error = run.err().map(|error| error.to_string()).unwrap_or_default();
         // The other nodes of the upper body are 3 mm higher, and the bodies move by 1.2 mm.
@@ -165,7 +169,7 @@ fn a_tip_on_a_line_of_symmetry_is_missed() {
 
 /// The normal of automatic contact of a problem, and the names of its warnings.
 fn found(builder: Builder<2, 3>) -> ([f64; 2], Vec<&'static str>) {
-    let contact = Contact::new::<2>(Between::All, 0.2, None).unwrap();
+    let contact = Contact::new(2, Between::All, 0.2, None).unwrap();
     let problem = builder.automatic_contact().contact(contact).build().unwrap();
     let warnings = plausibility_warnings(&problem, &steps(&problem, 20e-6));
     (*problem.obstacles()[0].flat_frame().normal(), warnings.iter().map(|warning| warning.name).collect())
@@ -180,7 +184,8 @@ fn halves_may_be_driven_along_their_line() {
         let plate = TriangleMesh::rectangle(0.02, 0.004, 8, rows).unwrap();
         let upper = plate.mapped(|p| [p[0], p[1] + 1e-5 + 0.1 * p[0] * (1.0 - p[1] / 0.004)]).unwrap();
         let velocity = Table::new(vec![0.0, 1e-5, 1.0], vec![[0.0, -20.0], [0.0, -25.0], [0.0, -25.0]]).unwrap();
-        let press = Support { group: "upper.top".to_string(), components: [false, true], velocity: Some(velocity) };
+        let press =
+            Support { group: "upper.top".to_string(), components: [false, true, false], velocity: Some(velocity) };
         let held = ["lower.left", "upper.left"].map(|group| (group, [true, false]));
         let (normal, warnings) = found(falling(&lower, &upper, &held).support(press));
         assert!(normal[0] == 0.0 && !warnings.contains(&"edge_left_out"), "{rows}: {normal:?} {warnings:?}");
@@ -194,7 +199,7 @@ fn a_clamped_side_is_the_end_of_a_body() {
     let problem = falling(&block(-0.01, 0.0), &block(1e-5, 0.0), &[("lower.top", [true, true])]).build().unwrap();
     let ends = |end: f64| {
         let times = steps(&problem, end);
-        let mut missed = MissedContact::new(&problem, times.step_count());
+        let mut missed = missed_contact(&problem, times.step_count());
         simulate(&problem, &times, &mut missed, &mut Unobserved).is_err()
     };
     // By 0.2 and by 0.8 mm into cells of 5 mm.
@@ -223,6 +228,6 @@ fn an_edge_beside_a_support_is_left_out() {
     let traction = Traction { group: "lower.first".to_string(), value, profile: Profile::UNIFORM };
     assert!(!warns(bodies(0.0, [true, true]).traction(traction)));
     let groups = Between::Groups(["lower.others", "upper.bottom"].map(str::to_string));
-    let named = bodies(0.0, [true, true]).contact(Contact::new::<2>(groups, 0.2, None).unwrap()).build().unwrap();
+    let named = bodies(0.0, [true, true]).contact(Contact::new(2, groups, 0.2, None).unwrap()).build().unwrap();
     assert!(plausibility_warnings(&named, &steps(&named, 20e-6)).iter().all(|warning| warning.name != "edge_left_out"));
 }

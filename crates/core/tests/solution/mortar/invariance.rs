@@ -45,7 +45,7 @@ fn a_mirror_image_has_the_mirrored_solution() {
 #[test]
 fn the_order_of_the_groups_does_not_matter() {
     let blocks = Blocks::oblique();
-    let exchanged = Interface::sliding::<2>("lower.top", "upper.bottom", blocks.friction).unwrap();
+    let exchanged = Interface::sliding(2, "lower.top", "upper.bottom", blocks.friction).unwrap();
     let (first, second) = (blocks.problem(), blocks.bodies(blocks.mesh(), |v| v).interface(exchanged).build().unwrap());
     let times = steps(&first, END);
     let (first, second) = (run(&first, &times), run(&second, &times));

@@ -19,7 +19,7 @@ fn predicted(run: &Run<'_, 2, 3>, n: usize) -> Vec<[f64; 2]> {
     let mut displacement = run.displacement(n + 1).to_vec();
     let h = if n == 0 { 0.5 * run.step(0) } else { 0.5 * (run.step(n - 1) + run.step(n)) };
     let step = run.history.step(n).unwrap();
-    for (contact, force) in run.problem.surface().nodes().iter().zip(step.reaction) {
+    for (contact, force) in run.problem.surface().nodes().iter().zip(step.reaction::<2>()) {
         let node = contact.node.index();
         (0..2).for_each(|c| displacement[node][c] -= run.step(n) * h * force[c] / run.problem.mass()[node]);
     }
@@ -83,11 +83,12 @@ fn check_multipliers(run: &Run<'_, 2, 3>, n: usize, sliding: &SlidingSurfaces<2>
     let surface = run.problem.surface();
     let (step, next) = (run.history.step(n).unwrap(), run.history.step(n + 1).unwrap());
     let coupling = sliding.coupling(surface, &predicted(run, n));
-    let multipliers = sliding.multipliers(&coupling, step.reaction);
+    let multipliers = sliding.multipliers(&coupling, step.reaction());
     let velocity = run.half_velocity(n);
     let points = run.problem.mesh().points();
-    let places: Vec<[f64; 2]> = points.iter().zip(next.displacement).map(|(x, u)| [x[0] + u[0], x[1] + u[1]]).collect();
-    check_couple(run, (sliding, &coupling), step.reaction);
+    let places: Vec<[f64; 2]> =
+        points.iter().zip(next.displacement::<2>()).map(|(x, u)| [x[0] + u[0], x[1] + u[1]]).collect();
+    check_couple(run, (sliding, &coupling), step.reaction());
     let largest = multipliers.iter().flatten().fold(0.0_f64, |most, force| most.max(force.abs()));
     for k in 0..coupling.len() {
         let (normal, along) = sliding.frame().split(&multipliers[k]);
@@ -154,7 +155,8 @@ pub(super) fn check_energy(run: &Run<'_, 2, 3>) {
         scale = scale.max(kinetic);
         let start = *start.get_or_insert(energy);
         assert!((energy - start).abs() <= 1e-12 * scale, "step {n}: {energy} {start}");
-        let (now, next) = (run.history.step(n).unwrap().reaction, run.history.step(n + 1).unwrap().reaction);
+        let (now, next) =
+            (run.history.step(n).unwrap().reaction::<2>(), run.history.step(n + 1).unwrap().reaction::<2>());
         for (at, &node) in nodes.iter().enumerate() {
             (0..2).for_each(|c| work += 0.5 * run.step(n) * (now[at][c] + next[at][c]) * after[node][c]);
         }

@@ -27,8 +27,8 @@ fn matching_surfaces_are_pairs() {
             .unwrap()
     };
     let groups = ["upper.bottom", "lower.bottom"];
-    let pairs = problem(Interface::matching::<2>(groups[0], groups[1], 0.2).unwrap());
-    let mortar = problem(Interface::sliding::<2>(groups[0], groups[1], 0.2).unwrap());
+    let pairs = problem(Interface::matching(2, groups[0], groups[1], 0.2).unwrap());
+    let mortar = problem(Interface::sliding(2, groups[0], groups[1], 0.2).unwrap());
     let times = steps(&pairs, 25e-6);
     let (expected, found) = (run(&pairs, &times), run(&mortar, &times));
     // Rows by their nodes: the order along the surface is another one.
@@ -36,7 +36,7 @@ fn matching_surfaces_are_pairs() {
         let step = run.history.step(n).unwrap();
         let mut rows = vec![([0.0; 2], false); run.problem.mesh().node_count()];
         for (at, node) in run.contact_nodes().into_iter().enumerate() {
-            rows[node] = (step.reaction[at], step.touching[at]);
+            rows[node] = (step.reaction()[at], step.touching[at]);
         }
         rows
     };
@@ -89,7 +89,7 @@ fn a_heavy_stiff_master_is_a_rigid_plane() {
 fn bars_are_pairs() {
     let bar = |start: f64| BarMesh::uniform_bar(0.3, 10).unwrap().mapped(|p| [p[0] + start]).unwrap();
     let mesh = BarMesh::joined(&[("left", &bar(-0.3)), ("right", &bar(1e-4))]).unwrap();
-    let interface = Interface::sliding::<1>("left.end", "right.start", 0.0).unwrap();
+    let interface = Interface::sliding(1, "left.end", "right.start", 0.0).unwrap();
     assert!(interface.is_matching());
     let problem = BarProblem::builder(mesh)
         .material(Elastic::bar(70e9, 2700.0, 1e-4).unwrap())

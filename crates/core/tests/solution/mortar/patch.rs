@@ -48,9 +48,9 @@ fn stays_at_rest(material: Elastic, strains: [f64; 2], angle: f64, gap: f64) {
     for n in 0..=run.last() {
         let now = run.history.step(n).unwrap();
         // Rounding of K u, 60 times.
-        assert!(difference(now.displacement, &displacement) <= 1e-12 * largest(&displacement), "step {n}");
+        assert!(difference(now.displacement(), &displacement) <= 1e-12 * largest(&displacement), "step {n}");
         assert!(now.touching.iter().all(|touches| *touches), "step {n}");
-        for (at, force) in now.reaction.iter().enumerate() {
+        for (at, force) in now.reaction().iter().enumerate() {
             let frame = surface.obstacles()[surface.nodes()[at].obstacle].flat_frame();
             let (normal, along) = frame.split(force);
             let expected = PRESSURE * areas[at];

@@ -19,7 +19,7 @@ fn cause(problem: Result<TriangleProblem, InputError>) -> Option<Cause> {
 fn wrong_groups_are_refused() {
     let blocks = Blocks::oblique();
     let refusal = |first: &str, second: &str| {
-        let interface = Interface::sliding::<2>(first, second, 0.2).unwrap();
+        let interface = Interface::sliding(2, first, second, 0.2).unwrap();
         cause(blocks.bodies(blocks.mesh(), |v| v).interface(interface).build())
     };
     assert_eq!(refusal("upper.bottom", "lower.top"), None);
@@ -27,8 +27,8 @@ fn wrong_groups_are_refused() {
     assert!(matches!(refusal("upper.bottom", "lower.bottom"), Some(Cause::TurnedAway { .. })));
     assert!(matches!(refusal("upper.bottom", "lower.left"), Some(Cause::TurnedAway { .. })));
     assert!(matches!(refusal("upper.bottom", "anvil.top"), Some(Cause::UnknownGroup { .. })));
-    assert!(Interface::sliding::<2>("a", "b", -0.1).is_err());
-    assert!(Interface::sliding::<1>("a", "b", 0.1).is_err());
+    assert!(Interface::sliding(2, "a", "b", -0.1).is_err());
+    assert!(Interface::sliding(1, "a", "b", 0.1).is_err());
 }
 
 /// Two bodies of 20 mm that face each other along a surface of this height above its level, with supports across x;
@@ -40,8 +40,8 @@ fn facing(height: impl Fn(f64) -> [f64; 2], leans: f64, supports: &[&str]) -> Re
 
 /// The same with the places of the points of each body in the undeformed blocks, the upper one first.
 fn placed(place: impl Fn(usize, [f64; 2]) -> [f64; 2], supports: &[&str]) -> Result<TriangleProblem, InputError> {
-    let builder = joined(place).interface(Interface::sliding::<2>("upper.bottom", "lower.top", 0.2).unwrap());
-    let support = |group: &str| Support { group: group.into(), components: [true, false], velocity: None };
+    let builder = joined(place).interface(Interface::sliding(2, "upper.bottom", "lower.top", 0.2).unwrap());
+    let support = |group: &str| Support { group: group.into(), components: [true, false, false], velocity: None };
     supports.iter().fold(builder, |builder, group| builder.support(support(group))).build()
 }
 
@@ -103,7 +103,7 @@ fn chevrons_lean_together() {
     let degrees = |height: fn(f64) -> [f64; 2]| {
         let angle = slope(&facing(height, 0.0, &[]).unwrap(), false);
         let pairs = |side: usize, [x, y]: [f64; 2]| [x, y + height(x)[side]];
-        let paired = joined(pairs).interface(Interface::matching::<2>("upper.bottom", "lower.top", 0.2).unwrap());
+        let paired = joined(pairs).interface(Interface::matching(2, "upper.bottom", "lower.top", 0.2).unwrap());
         assert!((slope(&paired.build().unwrap(), false) - angle).abs() < 1e-9);
         angle
     };
@@ -174,7 +174,7 @@ fn supports_act_along_the_interface_alone() {
     let still = Blocks { velocities: [[0.0; 2], [0.0, 20.0]], ..blocks };
     let across = still.bodies(blocks.mesh(), |v| v).support(fixed("upper.left", [true, true]));
     assert!(matches!(cause(across.interface(blocks.interface()).build()), Some(Cause::HeldAcross { .. })));
-    let problem = held([true, false]).support(fixed("lower.left", [true, false])).interface(blocks.interface());
+    let problem = held([true, false, false]).support(fixed("lower.left", [true, false])).interface(blocks.interface());
     let problem = problem.build().unwrap();
     let run = run(&problem, &steps(&problem, 14e-6));
     let surface = problem.surface();
@@ -184,9 +184,9 @@ fn supports_act_along_the_interface_alone() {
     for n in 0..=run.last() {
         let step = run.history.step(n).unwrap();
         for &at in &guided {
-            assert_eq!(step.displacement[surface.nodes()[at].node.index()][0], 0.0);
-            assert_eq!(step.reaction[at][0], 0.0);
-            forces += usize::from(step.reaction[at][1] != 0.0);
+            assert_eq!(step.displacement::<2>()[surface.nodes()[at].node.index()][0], 0.0);
+            assert_eq!(step.reaction::<2>()[at][0], 0.0);
+            forces += usize::from(step.reaction::<2>()[at][1] != 0.0);
         }
     }
     assert!(forces > 20, "{forces}");
@@ -240,7 +240,7 @@ fn edges_above_each_other_are_refused() {
     let groups = FacetGroups::from([("up".to_string(), vec![[2, 3], [6, 7]]), ("down".to_string(), vec![[8, 9]])]);
     let mesh = TriangleMesh::new(points, &cells, &groups, &ElementGroups::new()).unwrap();
     assert_eq!(mesh.parts(), 2);
-    let interface = Interface::sliding::<2>("up", "down", 0.0).unwrap();
+    let interface = Interface::sliding(2, "up", "down", 0.0).unwrap();
     let problem = TriangleProblem::builder(mesh).material(aluminium()).interface(interface).build();
     assert!(matches!(cause(problem), Some(Cause::Covered { .. })));
 }

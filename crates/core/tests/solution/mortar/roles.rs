@@ -26,7 +26,7 @@ fn slave(blocks: [Block; 2], degrees: f64) -> String {
         .material_of(blocks[1].0, blocks[1].3)
         .initial_velocity(Initial::Nodal(velocity))
         .automatic_contact()
-        .contact(Contact::new::<2>(Between::All, 0.2, None).unwrap())
+        .contact(Contact::new(2, Between::All, 0.2, None).unwrap())
         .build()
         .unwrap();
     let sliding = &problem.surface().sliding()[0];

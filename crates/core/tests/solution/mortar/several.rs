@@ -49,7 +49,7 @@ impl Three {
         let velocity = (0..3).flat_map(|k| vec![self.velocities[k]; blocks[k].node_count()]).collect();
         let contact = |below: &str| {
             let groups = Between::Groups(["upper.bottom".to_string(), format!("{below}.top")]);
-            Contact::new::<2>(groups, self.friction, None).unwrap()
+            Contact::new(2, groups, self.friction, None).unwrap()
         };
         let [first, second] = if self.right_first { ["right", "left"] } else { ["left", "right"] };
         let mut builder = TriangleProblem::builder(TriangleMesh::joined(&named).unwrap())

@@ -23,7 +23,7 @@ fn stack(velocities: [[f64; 2]; 3], plane: Option<Obstacle<2>>) -> TriangleProbl
     let bodies: Vec<(&str, &TriangleMesh)> = names.into_iter().zip(&blocks).collect();
     let velocity = (0..3).flat_map(|k| vec![velocities[k]; blocks[k].node_count()]).collect();
     let between = |below: &str, above: &str| {
-        Interface::sliding::<2>(format!("{above}.bottom"), format!("{below}.top"), 0.2).unwrap()
+        Interface::sliding(2, format!("{above}.bottom"), format!("{below}.top"), 0.2).unwrap()
     };
     let mut builder = TriangleProblem::builder(TriangleMesh::joined(&bodies).unwrap())
         .material_of("lower", aluminium())
@@ -69,7 +69,7 @@ fn a_body_may_have_interfaces_and_a_plane() {
     for n in 0..=run.last() {
         let step = run.history.step(n).unwrap();
         for &at in &floor {
-            let gap = surface.gap(at, &step.displacement[surface.nodes()[at].node.index()]);
+            let gap = surface.gap(at, &step.displacement()[surface.nodes()[at].node.index()]);
             assert!(gap >= -1e-12 * problem.mesh().size(), "step {n}: {gap}");
             touches += usize::from(step.touching[at]);
         }

@@ -39,7 +39,7 @@ fn bodies_that_are_pressed_together_touch_at_the_start() {
     let blocks = together();
     check(&pressed(blocks.bodies(blocks.mesh(), |v| v).interface(blocks.interface())), true);
     let matching = Blocks { cells: [[14, 11]; 2], ..blocks };
-    let pairs = Interface::matching::<2>("upper.bottom", "lower.top", 0.2).unwrap();
+    let pairs = Interface::matching(2, "upper.bottom", "lower.top", 0.2).unwrap();
     check(&pressed(matching.bodies(matching.mesh(), |v| v).interface(pairs)), true);
 }
 
@@ -88,7 +88,7 @@ fn bodies_that_only_touch_do_not_act_on_each_other() {
     for n in 0..=run.last() {
         let step = run.history.step(n).unwrap();
         // Rounding of the motion may close a gap of zero: forces of rounding.
-        let most = step.reaction.iter().flatten().fold(0.0_f64, |most, force| most.max(force.abs()));
+        let most = step.reaction::<2>().iter().flatten().fold(0.0_f64, |most, force| most.max(force.abs()));
         assert!(most < 1e-3, "step {n}: {most} N");
     }
 }
@@ -100,7 +100,7 @@ fn touching_bodies_need_contact_where_they_touch() {
     let alone = cause(blocks.bodies(blocks.mesh(), |v| v));
     let Some(Cause::TouchUnstated { elements: [first, second] }) = alone else { panic!("{alone:?}") };
     assert!(first < 2 * 14 * 11 && second >= 2 * 14 * 11);
-    let elsewhere = Interface::sliding::<2>("upper.top", "lower.bottom", 0.2).unwrap();
+    let elsewhere = Interface::sliding(2, "upper.top", "lower.bottom", 0.2).unwrap();
     let other = cause(blocks.bodies(blocks.mesh(), |v| v).interface(elsewhere));
     assert!(matches!(other, Some(Cause::TouchUnstated { .. } | Cause::Overlaps { .. })), "{other:?}");
     // Towards each other: the force would have no bound.
@@ -134,6 +134,6 @@ fn bodies_must_not_overlap() {
     assert!(beside(0.99).is_err());
     let problem = BarProblem::builder(beside(1.0).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 1e-4).unwrap())
-        .interface(Interface::matching::<1>("a.end", "b.start", 0.0).unwrap());
+        .interface(Interface::matching(1, "a.end", "b.start", 0.0).unwrap());
     problem.build().unwrap();
 }

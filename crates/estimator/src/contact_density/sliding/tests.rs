@@ -21,8 +21,8 @@ fn blocks(interface: Interface) -> TriangleProblem {
 
 #[test]
 fn on_matching_surfaces_they_are_those_of_pairs() {
-    let pairs = blocks(Interface::matching::<2>("upper.bottom", "lower.top", 0.4).unwrap());
-    let slides = blocks(Interface::sliding::<2>("upper.bottom", "lower.top", 0.4).unwrap());
+    let pairs = blocks(Interface::matching(2, "upper.bottom", "lower.top", 0.4).unwrap());
+    let slides = blocks(Interface::sliding(2, "upper.bottom", "lower.top", 0.4).unwrap());
     let (surface, facets) = (slides.surface(), SlidingFacets::all(&slides));
     let (sliding, mut random) = (&surface.sliding()[0], Random::new(5));
     let nodes = slides.mesh().node_count();

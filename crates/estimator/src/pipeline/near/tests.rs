@@ -37,8 +37,8 @@ fn checked(track: &ContactTrack) -> Residuals {
     let step = Step {
         index: 0,
         time: 0.0,
-        displacement: problem.initial_displacement(),
-        reaction: &vec![[0.0; 2]; surface],
+        displacement: problem.initial_displacement().as_flattened(),
+        reaction: &vec![0.0; 2 * surface],
         touching: &vec![false; surface],
         velocity: None,
         acceleration: None,

@@ -28,7 +28,7 @@ fn wrong_initial_conditions_show() {
     let step = percute_core::history::Step {
         index: 0,
         time: 0.0,
-        displacement: problem.initial_displacement(),
+        displacement: problem.initial_displacement().as_flattened(),
         reaction: &[],
         touching: &[],
         velocity: None,

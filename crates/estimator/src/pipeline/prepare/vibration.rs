@@ -4,8 +4,8 @@ use percute_core::problem::{Problem, RigidMotion};
 
 /// The largest energies at sampled levels: a common velocity or spin of a body is no part of them.
 #[derive(Clone, Debug)]
-pub(crate) struct Vibration<const D: usize> {
-    rigid: RigidMotion<D>,
+pub(crate) struct Vibration {
+    rigid: RigidMotion,
     /// Of the strain energy (J).
     pub(crate) strain: f64,
     /// Of the kinetic energy relative to the rigid motion of each body (J).
@@ -14,13 +14,13 @@ pub(crate) struct Vibration<const D: usize> {
     pub(crate) total: f64,
 }
 
-impl<const D: usize> Vibration<D> {
-    pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+impl Vibration {
+    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
         Self { rigid: RigidMotion::new(problem), strain: 0.0, kinetic: 0.0, total: 0.0 }
     }
 
     /// Takes in the strain energy (J) and the velocities (m/s) of a level.
-    pub(super) fn take(&mut self, strain: f64, velocity: &[[f64; D]]) {
+    pub(super) fn take(&mut self, strain: f64, velocity: &[f64]) {
         let kinetic = self.rigid.relative_kinetic_energy(velocity);
         self.strain = self.strain.max(strain);
         self.kinetic = self.kinetic.max(kinetic);

@@ -156,13 +156,13 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     fn balance_simulation(
         &self,
         dynamics: &Dynamics<'_, D, N>,
-        state: &State<'_, D>,
+        state: &State<'_>,
         [contact, sudden]: [Vec<[f64; D]>; 2],
         around: &Around<'_>,
         pool: &FieldPool<D>,
     ) -> BalancedFields<D> {
         let (problem, step, inverse_mass) = (self.problem, state.step(), dynamics.inverse_mass());
-        let (displacement, mut force) = (pool.copy(step.displacement), pool.take());
+        let (displacement, mut force) = (pool.copy(step.displacement()), pool.take());
         state.write_force_without_contact(problem.surface(), &mut force);
         let densities = self.level([&contact, &sudden], around);
         let pull = driving_forces(problem, &densities.acting);
@@ -275,7 +275,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         }
     }
 
-    fn check(&self, step: &Step<'_, D>) -> Result<(), EstimateError> {
+    fn check(&self, step: &Step<'_>) -> Result<(), EstimateError> {
         match &self.motions {
             Some(motions) if motions.is_unstable() => Err(EstimateError::AuxiliarySolution {
                 step: step.index,
@@ -296,7 +296,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let (state, step, problem) = (simulated.state, simulated.state.step(), self.problem);
         let surface = problem.surface();
         let couplings: Vec<Arc<Coupling>> =
-            surface.sliding().iter().map(|sliding| Arc::new(sliding.coupling(surface, step.displacement))).collect();
+            surface.sliding().iter().map(|sliding| Arc::new(sliding.coupling(surface, step.displacement()))).collect();
         let mut arresting = self.sliding.of(self.times, state);
         let acceleration = |node| state.acceleration_of(node);
         let stopped = self.sliding.stopped(&couplings, acceleration);
@@ -305,7 +305,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
             None => arresting.clone(),
         };
         [&mut arresting, &mut contact].into_iter().for_each(|forces| self.sliding.gather(&couplings, forces));
-        let gap = surface.gaps(step.displacement);
+        let gap = surface.gaps(step.displacement());
         let mut around = self.around(&gap, &couplings);
         let Some(mut motions) = self.motions.take() else {
             return self.balance_simulation(dynamics, state, [contact, arresting], &around, pool);
@@ -321,7 +321,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let mut split = self.splits.then(|| SplitFields { lumped: pool.take(), skew: pool.take() });
         let fields = split.as_mut().map(|split| SplitLevel { lumped: &mut split.lumped, skew: &mut split.skew });
         let level = AuxiliaryLevel { displacement: &mut displacement, acceleration: &mut acceleration, split: fields };
-        let (velocity, strain, reaction) = (simulated.velocity, state.strain(), step.reaction);
+        let (velocity, strain, reaction) = (simulated.velocity, state.strain(), step.reaction());
         let simulated = SimulatedLevel { velocity, strain, reaction };
         motions.advance(dynamics, step.index, &simulated, &pull, level);
         let smoothed = motions.smooths();

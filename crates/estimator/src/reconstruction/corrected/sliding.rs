@@ -51,11 +51,11 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
 
     /// The forces of the nodes of the contact surface (N) at a step: on slaves R_k, on masters nothing, elsewhere the
     /// reactions.
-    pub(super) fn of(&self, times: &TimeGrid, state: &State<'_, D>) -> Vec<[f64; D]> {
+    pub(super) fn of(&self, times: &TimeGrid, state: &State<'_>) -> Vec<[f64; D]> {
         let (surface, step) = (self.problem.surface(), state.step());
-        let mut forces = step.reaction.to_vec();
+        let mut forces = step.reaction().to_vec();
         for sliding in surface.sliding() {
-            if sliding.positions().all(|at| step.reaction[at] == [0.0; D]) {
+            if sliding.positions().all(|at| step.reaction::<D>()[at] == [0.0; D]) {
                 continue;
             }
             // D and M of the step are those of the place at its end without contact.
@@ -63,16 +63,17 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
             let predicted = |side: &Side, k: usize| {
                 let at = side.position(k);
                 let node = surface.nodes()[at].node.index();
-                let (acceleration, mass) = (state.acceleration_of(node), self.problem.mass()[node]);
+                let (acceleration, mass) = (state.acceleration_of::<D>(node), self.problem.mass()[node]);
                 let place: [f64; D] = std::array::from_fn(|c| {
-                    let velocity = state.half_step()[node][c] + h * (acceleration[c] - step.reaction[at][c] / mass);
-                    step.displacement[node][c] + length * velocity
+                    let velocity =
+                        state.half_step::<D>()[node][c] + h * (acceleration[c] - step.reaction::<D>()[at][c] / mass);
+                    step.displacement::<D>()[node][c] + length * velocity
                 });
                 along(&place, sliding.tangent())
             };
             let shifts = sliding.shifts(|k| predicted(sliding.slave(), k), |k| predicted(sliding.master(), k));
             let coupling = sliding.coupling_at(&shifts);
-            sliding.gather(&coupling, step.reaction, &mut forces);
+            sliding.gather(&coupling, step.reaction(), &mut forces);
         }
         forces
     }

@@ -99,7 +99,7 @@ mod tests {
         let both = [("upper", &block(0.2, 3, [0.13, 0.21])), ("lower", &block(0.3, 5, [0.0; 2]))];
         TriangleProblem::builder(TriangleMesh::joined(&both).unwrap())
             .material(Elastic::plane_strain(70e9, 0.3, 2700.0, 0.7).unwrap())
-            .interface(Interface::sliding::<2>("upper.bottom", "lower.top", 0.4).unwrap())
+            .interface(Interface::sliding(2, "upper.bottom", "lower.top", 0.4).unwrap())
             .build()
             .unwrap()
     }

@@ -21,11 +21,10 @@ fn compared(
     located: bool,
 ) -> TrueErrorSample {
     let (coarse, fine) = (problem(coarse), problem(fine));
-    let [displacement, velocity] = own.clone().map(|field| vec![field]);
+    let [displacement, velocity] = own.clone().map(|field| vec![field.into_flattened()]);
     let motion = Motion { times: vec![0.0], displacement, velocity };
-    let mut comparison = Comparison::new(&fine);
-    let add = if located { Comparison::add_located } else { Comparison::add };
-    add(&mut comparison, &coarse, &motion).unwrap();
+    let mut comparison = Finer { problem: &fine, coarse: Vec::new(), before: None };
+    comparison.add(ProblemRef::from(&coarse), &motion, !located).unwrap();
     let [displacement, velocity] = reference.clone();
     let now = Instant { time: 0.0, displacement, velocity };
     comparison.coarse[0].sample(&fine, &now, &now, 1.0)

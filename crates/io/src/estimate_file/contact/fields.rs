@@ -1,9 +1,9 @@
 //! Contact results as fields on the body.
 
 use crate::error::FileCause;
-use crate::mesh::in_space;
 use crate::write::{numbers, unit};
 use hdf5::Group;
+use percute_core::border::row;
 use percute_core::contact::{ContactResults, ContactSteps};
 use percute_core::units::Units;
 
@@ -12,18 +12,19 @@ const OFF: i8 = -1;
 
 /// Writes the fields on all nodes at some steps; gives the names. Outside the contact surface all values are 0, and the
 /// status is −1.
-pub(in crate::estimate_file) fn write_fields<const D: usize>(
+pub(in crate::estimate_file) fn write_fields(
     data: &Group,
-    (results, steps): (&ContactResults<D>, &ContactSteps<D>),
+    (results, steps): (&ContactResults, &ContactSteps),
     (nodes, units): (usize, Units),
     at: &[usize],
 ) -> Result<Vec<&'static str>, FileCause> {
-    let spread = Spread { results, nodes, at };
+    let (spread, d) = (Spread { results, nodes, at }, results.dimension);
     let area = |row: usize| results.nodes[row % results.nodes.len()].area;
-    let vectors: [(&str, &'static str, Vec<[f64; D]>); 3] = [
-        ("contact_force", "N", spread.all([0.0; D], |row| steps.force[row])),
-        ("contact_density", "Pa", spread.all([0.0; D], |row| steps.force[row].map(|f| f / area(row)))),
-        ("sliding_velocity", "m/s", spread.all([0.0; D], |row| steps.sliding_velocity[row])),
+    let force = |at: usize| row(&steps.force, at, d);
+    let vectors = [
+        ("contact_force", "N", spread.all([0.0; 3], force)),
+        ("contact_density", "Pa", spread.all([0.0; 3], |at| force(at).map(|f| f / area(at)))),
+        ("sliding_velocity", "m/s", spread.all([0.0; 3], |at| row(&steps.sliding_velocity, at, d))),
     ];
     let scalars = [
         ("gap", "m", spread.all(0.0, |row| steps.gap[row])),
@@ -31,7 +32,7 @@ pub(in crate::estimate_file) fn write_fields<const D: usize>(
     ];
     let rows = at.len() * nodes;
     for (name, of, values) in &vectors {
-        unit(&numbers(data, name, &[rows, 3], &in_space(values))?, units.of(of))?;
+        unit(&numbers(data, name, &[rows, 3], values.as_flattened())?, units.of(of))?;
     }
     for (name, of, values) in &scalars {
         unit(&numbers(data, name, &[rows], values)?, units.of(of))?;
@@ -42,13 +43,13 @@ pub(in crate::estimate_file) fn write_fields<const D: usize>(
 }
 
 /// Rows of contact nodes, spread over all nodes, at some steps.
-struct Spread<'a, const D: usize> {
-    results: &'a ContactResults<D>,
+struct Spread<'a> {
+    results: &'a ContactResults,
     nodes: usize,
     at: &'a [usize],
 }
 
-impl<const D: usize> Spread<'_, D> {
+impl Spread<'_> {
     fn all<T: Copy>(&self, elsewhere: T, value: impl Fn(usize) -> T) -> Vec<T> {
         let mut spread = vec![elsewhere; self.at.len() * self.nodes];
         for (k, step) in self.at.iter().enumerate() {

@@ -5,39 +5,40 @@ mod fields;
 mod read;
 
 pub(super) use fields::write_fields;
-pub use read::{AnyContact, contact};
+pub use read::contact;
 
 use crate::error::FileCause;
 use crate::write::{group, numbers, unit};
 use hdf5::Group;
+use percute_core::border::Vector;
 use percute_core::contact::{AveragedPeak, ContactResults, ContactSteps, Resultant};
 use percute_core::units::Units;
 
 /// Size of the results in a file (bytes), at `instants` of maps over `nodes` nodes.
-pub(super) fn bytes<const D: usize>(results: &ContactResults<D>, instants: usize, nodes: usize) -> usize {
-    let (rows, steps) = (results.nodes.len(), results.instants.len());
-    let resultants = (1 + results.obstacles.len()) * (steps * (24 * D + 40) + 5_000);
-    let all = rows * steps * ContactSteps::<D>::BYTES;
-    resultants + all + rows * (24 * D + 64) + 8 * steps + instants * (nodes * (3 * 24 + 17) + 48) + 16_000
+pub(super) fn bytes(results: &ContactResults, instants: usize, nodes: usize) -> usize {
+    let (rows, steps, d) = (results.nodes.len(), results.instants.len(), results.dimension);
+    let resultants = (1 + results.obstacles.len()) * (steps * (24 * d + 40) + 5_000);
+    let all = rows * steps * ContactSteps::bytes(d);
+    resultants + all + rows * (24 * d + 64) + 8 * steps + instants * (nodes * (3 * 24 + 17) + 48) + 16_000
 }
 
 /// Writes `percute/contact`.
-pub(super) fn write<const D: usize>(
+pub(super) fn write(
     ours: &Group,
-    results: &ContactResults<D>,
-    steps: &ContactSteps<D>,
+    results: &ContactResults,
+    steps: &ContactSteps,
     units: Units,
 ) -> Result<(), FileCause> {
     let contact = group(ours, "contact")?;
-    let (nodes, instants) = (results.nodes.len(), results.instants.len());
+    let (nodes, instants, d) = (results.nodes.len(), results.instants.len(), results.dimension);
     numbers(&contact, "node", &[nodes], &integers(&results.nodes, |p| p.node.index()))?;
     numbers(&contact, "obstacle", &[nodes], &integers(&results.nodes, |p| p.obstacle))?;
     let write = |name: &str, of: &'static str, shape: &[usize], values: &[f64]| -> Result<(), FileCause> {
         let set = numbers(&contact, name, shape, values)?;
         if of.is_empty() { Ok(()) } else { unit(&set, units.of(of)) }
     };
-    write("point", "m", &[nodes, D], &vectors(&results.nodes, |p| p.point))?;
-    write("normal", "", &[nodes, D], &vectors(&results.nodes, |p| p.normal))?;
+    write("point", "m", &[nodes, d], &vectors(&results.nodes, d, |p| p.point))?;
+    write("normal", "", &[nodes, d], &vectors(&results.nodes, d, |p| p.normal))?;
     write("area", "m2", &[nodes], &column(&results.nodes, |p| p.area))?;
     let summary = &results.summary;
     write("first_touch", "s", &[nodes], &column(summary, |s| s.first_touch.unwrap_or(f64::NAN)))?;
@@ -45,7 +46,7 @@ pub(super) fn write<const D: usize>(
     write("peak_normal_force", "N", &[nodes], &column(summary, |s| s.peak_normal_force))?;
     write("time_of_peak", "s", &[nodes], &column(summary, |s| s.time_of_peak.unwrap_or(f64::NAN)))?;
     write("peak_pressure", "Pa", &[nodes], &column(summary, |s| s.peak_pressure))?;
-    write("impulse", "N s", &[nodes, D], &vectors(summary, |s| s.impulse))?;
+    write("impulse", "N s", &[nodes, d], &vectors(summary, d, |s| s.impulse))?;
     write("time", "s", &[instants], &results.instants)?;
     let at_end = f64::from(u8::from(results.at_end));
     let (slip, depth, lean) = (("slip", "", results.slip), ("depth", "", results.depth), ("lean", "rad", results.lean));
@@ -59,26 +60,26 @@ pub(super) fn write<const D: usize>(
         write("averaged_peak_pressure", "Pa", &[1], &[pressure])?;
         write("place_of_averaged_peak_pressure", "", &[1], &[at as f64])?;
     }
-    write("force", "N", &[instants, nodes, D], steps.force.as_flattened())?;
+    write("force", "N", &[instants, nodes, d], &steps.force)?;
     write("gap", "m", &[instants, nodes], &steps.gap)?;
-    write("sliding_velocity", "m/s", &[instants, nodes, D], steps.sliding_velocity.as_flattened())?;
+    write("sliding_velocity", "m/s", &[instants, nodes, d], &steps.sliding_velocity)?;
     let status: Vec<u8> = steps.status.iter().map(|s| *s as u8).collect();
     numbers(&contact, "status", &[instants, nodes], &status)?;
     write("friction_energy", "J", &[instants, nodes], &steps.friction_energy)?;
-    write_resultants(&group(&contact, "total")?, &results.total, units)?;
+    write_resultants(&group(&contact, "total")?, &results.total, (d, units))?;
     let obstacles = group(&contact, "obstacles")?;
     for (at, over_time) in results.obstacles.iter().enumerate() {
-        write_resultants(&group(&obstacles, &at.to_string())?, over_time, units)?;
+        write_resultants(&group(&obstacles, &at.to_string())?, over_time, (d, units))?;
     }
     Ok(())
 }
 
 /// Name, unit, and the value of a resultant.
-type Named<const D: usize, T> = (&'static str, &'static str, fn(&Resultant<D>) -> T);
+type Named<T> = (&'static str, &'static str, fn(&Resultant) -> T);
 
-fn write_resultants<const D: usize>(part: &Group, over_time: &[Resultant<D>], units: Units) -> Result<(), FileCause> {
+fn write_resultants(part: &Group, over_time: &[Resultant], (d, units): (usize, Units)) -> Result<(), FileCause> {
     let count = over_time.len();
-    let scalars: [Named<D, f64>; 3] = [
+    let scalars: [Named<f64>; 3] = [
         ("normal_force", "N", |r| r.normal_force),
         ("area", "m2", |r| r.area),
         ("friction_energy", "J", |r| r.friction_energy),
@@ -86,13 +87,13 @@ fn write_resultants<const D: usize>(part: &Group, over_time: &[Resultant<D>], un
     for (name, of, take) in scalars {
         unit(&numbers(part, name, &[count], &column(over_time, take))?, units.of(of))?;
     }
-    let fields: [Named<D, [f64; D]>; 3] = [
+    let fields: [Named<Vector>; 3] = [
         ("force", "N", |r| r.force),
         ("impulse", "N s", |r| r.impulse),
-        ("centre", "m", |r| r.centre.unwrap_or([f64::NAN; D])),
+        ("centre", "m", |r| r.centre.unwrap_or([f64::NAN; 3])),
     ];
     for (name, of, take) in fields {
-        unit(&numbers(part, name, &[count, D], &vectors(over_time, take))?, units.of(of))?;
+        unit(&numbers(part, name, &[count, d], &vectors(over_time, d, take))?, units.of(of))?;
     }
     numbers(part, "in_contact", &[count], &integers(over_time, |r| r.in_contact))?;
     numbers(part, "slipping", &[count], &integers(over_time, |r| r.slipping)).map(drop)
@@ -106,6 +107,7 @@ fn integers<T>(rows: &[T], of: impl Fn(&T) -> usize) -> Vec<i64> {
     rows.iter().map(|row| of(row) as i64).collect()
 }
 
-fn vectors<T, const D: usize>(rows: &[T], of: impl Fn(&T) -> [f64; D]) -> Vec<f64> {
-    rows.iter().flat_map(of).collect()
+/// Vectors of a dimension, in rows.
+fn vectors<T>(rows: &[T], dimension: usize, of: impl Fn(&T) -> Vector) -> Vec<f64> {
+    rows.iter().flat_map(|row| of(row).into_iter().take(dimension)).collect()
 }

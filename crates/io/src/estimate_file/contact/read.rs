@@ -4,44 +4,44 @@ use crate::error::{FileCause, FileError};
 use crate::estimate_file::maps::size;
 use crate::kind::Kind;
 use crate::read::{Part, reading};
+use percute_core::border::{Vector, row};
 use percute_core::contact::{
     AveragedPeak, ContactPoint, ContactResults, ContactSteps, Nearest, NodeSummary, Resultant, Status,
 };
 use percute_core::ids::NodeId;
-use percute_core::simplex::ByDimension;
 use std::path::Path;
 
 /// Arrays in which NaN stands for a missing value.
 const MAY_BE_NONE: [&str; 3] = ["first_touch", "time_of_peak", "centre"];
 
-/// Contact results of either dimension.
-pub type AnyContact = ByDimension<ContactResults<1>, ContactResults<2>>;
-
 /// Reads the contact results, if the file has any.
 ///
 /// # Errors
 /// As [`open`](crate::estimate_file::open).
-pub fn contact(path: impl AsRef<Path>) -> Result<Option<AnyContact>, FileError> {
+pub fn contact(path: impl AsRef<Path>) -> Result<Option<ContactResults>, FileError> {
     reading(path.as_ref(), |opened| {
         opened.expect(Kind::Estimate)?;
         let root = opened.root();
         let ours = root.group("percute")?;
         let Some(part) = ours.optional_group("contact")? else { return Ok(None) };
         let [dimension, nodes, _] = size(&root.group("VTKHDF")?, &ours)?;
-        Ok(Some(match dimension {
-            1 => AnyContact::Bar(Reader { part: &part }.results(nodes)?),
-            _ => AnyContact::Plane(Reader { part: &part }.results(nodes)?),
-        }))
+        Ok(Some(Reader { part: &part, dimension }.results(nodes)?))
     })
 }
 
 /// Reads the group written by [`write`].
 struct Reader<'a, 'f> {
     part: &'a Part<'f>,
+    dimension: usize,
 }
 
-impl Reader<'_, '_> {
-    fn results<const D: usize>(&self, nodes: usize) -> Result<ContactResults<D>, FileCause> {
+impl<'f> Reader<'_, 'f> {
+    /// A part of the group.
+    fn of<'b>(&self, part: &'b Part<'f>) -> Reader<'b, 'f> {
+        Reader { part, dimension: self.dimension }
+    }
+
+    fn results(&self, nodes: usize) -> Result<ContactResults, FileCause> {
         let node = self.part.data("node")?;
         node.expect_dimensions(1, "(contact nodes)")?;
         let (count, node) = (node.shape[0], node.indices(nodes, "nodes")?);
@@ -51,11 +51,12 @@ impl Reader<'_, '_> {
         let obstacles = self.part.group("obstacles")?;
         let mut of_obstacles = Vec::new();
         while let Some(part) = obstacles.optional_group(&of_obstacles.len().to_string())? {
-            of_obstacles.push(Reader { part: &part }.resultants(instants.len())?);
+            of_obstacles.push(self.of(&part).resultants(instants.len())?);
         }
         let steps = self.steps(instants.len(), count)?;
         let (nodes, summary) = (self.places(&node, of_obstacles.len())?, self.summary(count, &steps)?);
         Ok(ContactResults {
+            dimension: self.dimension,
             slip: self.one("slip")?,
             depth: self.one("depth")?,
             at_end: self.one("at_end")? > 0.0,
@@ -64,7 +65,7 @@ impl Reader<'_, '_> {
             nearest: Nearest::of_steps(&instants, &nodes, &summary, &steps),
             nodes,
             summary,
-            total: Reader { part: &self.part.group("total")? }.resultants(instants.len())?,
+            total: self.of(&self.part.group("total")?).resultants(instants.len())?,
             obstacles: of_obstacles,
             steps: Some(steps),
             instants,
@@ -91,11 +92,11 @@ impl Reader<'_, '_> {
         Ok(number.floats()?[0])
     }
 
-    fn places<const D: usize>(&self, node: &[usize], obstacles: usize) -> Result<Vec<ContactPoint<D>>, FileCause> {
+    fn places(&self, node: &[usize], obstacles: usize) -> Result<Vec<ContactPoint>, FileCause> {
         let obstacle = self.part.data("obstacle")?;
         obstacle.expect(&[node.len()], "one for each contact node")?;
         let obstacle = obstacle.indices(obstacles, "obstacles")?;
-        let (point, normal) = (self.vectors("point", &[node.len()])?, self.vectors("normal", &[node.len()])?);
+        let (point, normal) = (self.vectors("point", node.len())?, self.vectors("normal", node.len())?);
         let area = self.all("area", &[node.len()])?;
         let place = |k: usize| ContactPoint {
             node: NodeId::new(node[k]),
@@ -107,11 +108,11 @@ impl Reader<'_, '_> {
         Ok((0..node.len()).map(place).collect())
     }
 
-    fn summary<const D: usize>(&self, count: usize, steps: &ContactSteps<D>) -> Result<Vec<NodeSummary<D>>, FileCause> {
+    fn summary(&self, count: usize, steps: &ContactSteps) -> Result<Vec<NodeSummary>, FileCause> {
         let column = |name: &str| self.all(name, &[count]);
         let (first, time, force) = (column("first_touch")?, column("time_in_contact")?, column("peak_normal_force")?);
         let (peak, pressure, impulse) =
-            (column("time_of_peak")?, column("peak_pressure")?, self.vectors("impulse", &[count])?);
+            (column("time_of_peak")?, column("peak_pressure")?, self.vectors("impulse", count)?);
         let friction = &steps.friction_energy[steps.friction_energy.len().saturating_sub(count)..];
         let one = |k: usize| NodeSummary {
             first_touch: (!first[k].is_nan()).then_some(first[k]),
@@ -125,24 +126,24 @@ impl Reader<'_, '_> {
         Ok((0..count).map(one).collect())
     }
 
-    fn steps<const D: usize>(&self, instants: usize, nodes: usize) -> Result<ContactSteps<D>, FileCause> {
+    fn steps(&self, instants: usize, nodes: usize) -> Result<ContactSteps, FileCause> {
         let shape = [instants, nodes];
         let data = self.part.data("status")?;
         data.expect(&shape, "instants, contact nodes")?;
         let status = data.indices(3, "kinds of contact status")?;
         let status = status.into_iter().map(|s| [Status::Free, Status::Stick, Status::Slip][s]).collect();
         Ok(ContactSteps {
-            force: self.vectors("force", &shape)?,
+            force: self.all("force", &[instants, nodes, self.dimension])?,
             gap: self.all("gap", &shape)?,
-            sliding_velocity: self.vectors("sliding_velocity", &shape)?,
+            sliding_velocity: self.all("sliding_velocity", &[instants, nodes, self.dimension])?,
             status,
             friction_energy: self.all("friction_energy", &shape)?,
         })
     }
 
-    fn resultants<const D: usize>(&self, instants: usize) -> Result<Vec<Resultant<D>>, FileCause> {
+    fn resultants(&self, instants: usize) -> Result<Vec<Resultant>, FileCause> {
         let column = |name: &str| self.all(name, &[instants]);
-        let field = |name: &str| self.vectors::<D>(name, &[instants]);
+        let field = |name: &str| self.vectors(name, instants);
         let count = |name: &str| -> Result<Vec<usize>, FileCause> {
             let data = self.part.data(name)?;
             data.expect(&[instants], "one for each instant")?;
@@ -165,8 +166,9 @@ impl Reader<'_, '_> {
         Ok((0..instants).map(one).collect())
     }
 
-    fn vectors<const D: usize>(&self, name: &str, shape: &[usize]) -> Result<Vec<[f64; D]>, FileCause> {
-        Ok(self.all(name, &[shape, &[D]].concat())?.as_chunks::<D>().0.to_vec())
+    fn vectors(&self, name: &str, rows: usize) -> Result<Vec<Vector>, FileCause> {
+        let values = self.all(name, &[rows, self.dimension])?;
+        Ok((0..rows).map(|at| row(&values, at, self.dimension)).collect())
     }
 
     /// Numbers, all of them finite except where values may be missing. The gap of a node that faces nothing is

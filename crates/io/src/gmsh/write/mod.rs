@@ -9,7 +9,7 @@ use super::error::{GmshCause, GmshError};
 use super::header::Version;
 use crate::create::{Overwrite, whole};
 use parts::Parts;
-use percute_core::mesh::Mesh;
+use percute_core::mesh::AnyMesh;
 use sink::Sink;
 use std::path::Path;
 
@@ -27,12 +27,7 @@ pub struct Format {
 ///
 /// # Errors
 /// A file that cannot be created or exists already, group names that the format does not allow.
-pub fn write<const D: usize, const N: usize>(
-    path: &Path,
-    overwrite: Overwrite,
-    mesh: &Mesh<D, N>,
-    format: Format,
-) -> Result<(), GmshError> {
+pub fn write(path: &Path, overwrite: Overwrite, mesh: &AnyMesh, format: Format) -> Result<(), GmshError> {
     let failed = |cause| GmshError { path: path.to_path_buf(), place: None, cause };
     let groups = mesh.facet_groups().keys().chain(mesh.element_groups().keys());
     for name in groups {
@@ -44,7 +39,7 @@ pub fn write<const D: usize, const N: usize>(
 }
 
 /// The bytes of the file.
-fn bytes<const D: usize, const N: usize>(mesh: &Mesh<D, N>, format: Format) -> Vec<u8> {
+fn bytes(mesh: &AnyMesh, format: Format) -> Vec<u8> {
     let (mut out, parts) = (Sink::new(format.binary), Parts::of(mesh));
     let version = if format.version == Version::V22 { "2.2" } else { "4.1" };
     out.line("$MeshFormat");
@@ -65,9 +60,4 @@ fn bytes<const D: usize, const N: usize>(mesh: &Mesh<D, N>, format: Format) -> V
         Version::V41 => v4::write(&mut out, mesh, &parts),
     }
     out.bytes()
-}
-
-/// A point in space.
-fn in_space<const D: usize>(point: &[f64; D]) -> [f64; 3] {
-    std::array::from_fn(|c| point.get(c).copied().unwrap_or(0.0))
 }

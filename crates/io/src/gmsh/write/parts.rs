@@ -1,6 +1,6 @@
 //! A mesh as parts of a geometry: elements that are in the same groups.
 
-use percute_core::mesh::Mesh;
+use percute_core::mesh::AnyMesh;
 use percute_core::simplex::Shape;
 use std::collections::BTreeMap;
 
@@ -23,16 +23,16 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    pub(super) fn of<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Self {
+    pub(super) fn of(mesh: &AnyMesh) -> Self {
         let mut names = Vec::new();
         let mut facets = BTreeMap::<usize, Vec<usize>>::new();
         for (name, members) in mesh.facet_groups() {
-            names.push((D - 1, names.len() + 1, name.clone()));
+            names.push((mesh.dimension() - 1, names.len() + 1, name.clone()));
             members.iter().for_each(|facet| facets.entry(facet.index()).or_default().push(names.len()));
         }
         let mut cells = vec![Vec::new(); mesh.element_count()];
         for (name, members) in mesh.element_groups() {
-            names.push((D, names.len() + 1, name.clone()));
+            names.push((mesh.dimension(), names.len() + 1, name.clone()));
             members.iter().for_each(|cell| cells[cell.index()].push(names.len()));
         }
         let facets = parts(facets.into_iter());
@@ -40,7 +40,7 @@ impl Parts {
         let alone = |GroupedPart { groups, members }: GroupedPart| {
             members.into_iter().map(move |facet| GroupedPart { groups: groups.clone(), members: vec![facet] })
         };
-        let facets = match mesh.simplex().shape() {
+        let facets = match mesh.shape() {
             Shape::Bar => facets.into_iter().flat_map(alone).collect(),
             Shape::Triangle => facets,
         };

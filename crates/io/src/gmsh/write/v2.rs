@@ -1,10 +1,10 @@
 //! Nodes and elements of version 2.2.
 
-use super::in_space;
 use super::parts::{GroupedPart, Parts};
 use super::sink::Sink;
 use crate::gmsh::kind::numbers;
-use percute_core::mesh::Mesh;
+use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::mesh::AnyMesh;
 
 /// An element in one of its groups.
 struct Entry {
@@ -14,23 +14,23 @@ struct Entry {
     nodes: Vec<usize>,
 }
 
-pub(super) fn write<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<D, N>, parts: &Parts) {
+pub(super) fn write(out: &mut Sink, mesh: &AnyMesh, parts: &Parts) {
     out.line("$Nodes");
     out.line(&mesh.node_count().to_string());
-    for (node, point) in mesh.points().iter().enumerate() {
+    for node in 0..mesh.node_count() {
         out.int(node + 1);
-        in_space(point).into_iter().for_each(|x| out.real(x));
+        mesh.point(NodeId::new(node)).into_iter().for_each(|x| out.real(x));
         out.row();
     }
     end(out, "$EndNodes");
     let mut next = mesh.element_count() + 1;
-    let cell = |cell: usize| mesh.cells()[cell].iter().map(|node| node.index() + 1).collect();
+    let cell = |cell: usize| mesh.cell(ElementId::new(cell)).iter().map(|node| node.index() + 1).collect();
     let cells = entries(&parts.cells, &mut next, |cell| Some(cell + 1), cell);
-    let facet = |facet: usize| mesh.facets()[facet].nodes.iter().map(|node| node.index() + 1).collect();
+    let facet = |facet: usize| mesh.facet(FacetId::new(facet)).nodes.iter().map(|node| node.index() + 1).collect();
     let facets = entries(&parts.facets, &mut next, |_| None, facet);
     out.line("$Elements");
     out.line(&(cells.len() + facets.len()).to_string());
-    let [of_facets, of_cells] = numbers(mesh.simplex().shape());
+    let [of_facets, of_cells] = numbers(mesh.shape());
     for (kind, entries) in [(of_facets, facets), (of_cells, cells)] {
         if out.is_binary() && !entries.is_empty() {
             [kind as usize, entries.len(), 2].into_iter().for_each(|number| out.int(number));

@@ -1,12 +1,12 @@
 //! Geometry, nodes and elements of version 4.1.
 
-use super::in_space;
 use super::parts::{GroupedPart, Parts};
 use super::sink::Sink;
 use crate::gmsh::kind::numbers;
-use percute_core::mesh::Mesh;
+use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::mesh::AnyMesh;
 
-pub(super) fn write<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<D, N>, parts: &Parts) {
+pub(super) fn write(out: &mut Sink, mesh: &AnyMesh, parts: &Parts) {
     out.line("$Entities");
     entities(out, mesh, parts);
     end(out, "$EndEntities");
@@ -14,10 +14,10 @@ pub(super) fn write<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<
     let nodes = mesh.node_count();
     row(out, &[1, nodes, 1, nodes]);
     // All nodes are assigned to the first part of the body; the true assignment is not needed.
-    head(out, [D, 1, 0], nodes);
+    head(out, [mesh.dimension(), 1, 0], nodes);
     (1..=nodes).for_each(|tag| row(out, &[tag]));
-    for point in mesh.points() {
-        in_space(point).into_iter().for_each(|x| out.real(x));
+    for node in 0..nodes {
+        mesh.point(NodeId::new(node)).into_iter().for_each(|x| out.real(x));
         out.row();
     }
     end(out, "$EndNodes");
@@ -43,21 +43,22 @@ fn end(out: &mut Sink, name: &str) {
     out.line(name);
 }
 
-fn entities<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<D, N>, parts: &Parts) {
-    let mut counts = [0; 4];
-    counts[D - 1] = parts.facets.len();
-    counts[D] = parts.cells.len();
+fn entities(out: &mut Sink, mesh: &AnyMesh, parts: &Parts) {
+    let (mut counts, d) = ([0; 4], mesh.dimension());
+    counts[d - 1] = parts.facets.len();
+    counts[d] = parts.cells.len();
     row(out, &counts);
     let extreme = |pick: fn(f64, f64) -> f64| {
-        mesh.points().iter().map(in_space).reduce(|a, b| std::array::from_fn(|c| pick(a[c], b[c]))).unwrap_or([0.0; 3])
+        let points = (0..mesh.node_count()).map(|node| mesh.point(NodeId::new(node)));
+        points.reduce(|a, b| std::array::from_fn(|c| pick(a[c], b[c]))).unwrap_or([0.0; 3])
     };
     let around = [extreme(f64::min), extreme(f64::max)];
-    let point = |part: &GroupedPart| mesh.facets()[part.members[0]].nodes[0].index();
-    for (dimension, all) in [(D - 1, &parts.facets), (D, &parts.cells)] {
+    let point = |part: &GroupedPart| mesh.facet(FacetId::new(part.members[0])).nodes[0];
+    for (dimension, all) in [(d - 1, &parts.facets), (d, &parts.cells)] {
         for (at, part) in all.iter().enumerate() {
             out.int(at + 1);
             if dimension == 0 {
-                in_space(&mesh.points()[point(part)]).into_iter().for_each(|x| out.real(x));
+                mesh.point(point(part)).into_iter().for_each(|x| out.real(x));
             } else {
                 around.as_flattened().iter().for_each(|&x| out.real(x));
             }
@@ -71,26 +72,26 @@ fn entities<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<D, N>, p
     }
 }
 
-fn elements<const D: usize, const N: usize>(out: &mut Sink, mesh: &Mesh<D, N>, parts: &Parts) {
+fn elements(out: &mut Sink, mesh: &AnyMesh, parts: &Parts) {
     let facets: usize = parts.facets.iter().map(|part| part.members.len()).sum();
     let total = mesh.element_count() + facets;
     row(out, &[parts.facets.len() + parts.cells.len(), total, 1, total]);
-    let [of_facets, of_cells] = numbers(mesh.simplex().shape());
+    let [of_facets, of_cells] = numbers(mesh.shape());
     let mut tag = mesh.element_count();
     for (at, part) in parts.facets.iter().enumerate() {
-        head(out, [D - 1, at + 1, of_facets as usize], part.members.len());
+        head(out, [mesh.dimension() - 1, at + 1, of_facets as usize], part.members.len());
         for &facet in &part.members {
             tag += 1;
             out.size(tag);
-            mesh.facets()[facet].nodes.iter().for_each(|node| out.size(node.index() + 1));
+            mesh.facet(FacetId::new(facet)).nodes.iter().for_each(|node| out.size(node.index() + 1));
             out.row();
         }
     }
     for (at, part) in parts.cells.iter().enumerate() {
-        head(out, [D, at + 1, of_cells as usize], part.members.len());
+        head(out, [mesh.dimension(), at + 1, of_cells as usize], part.members.len());
         for &cell in &part.members {
             out.size(cell + 1);
-            mesh.cells()[cell].iter().for_each(|node| out.size(node.index() + 1));
+            mesh.cell(ElementId::new(cell)).iter().for_each(|node| out.size(node.index() + 1));
             out.row();
         }
     }

@@ -4,6 +4,7 @@ mod absent;
 pub(super) mod table;
 
 use super::source::{At, CaseError, Source};
+use percute_core::border::Vector;
 use table::Table;
 use toml::de::DeValue;
 
@@ -104,14 +105,14 @@ impl<'a> Value<'a> {
     }
 
     /// A vector with a component for each axis; in 1D a number will do.
-    pub(crate) fn vector<const D: usize>(&self, unit: &str) -> Result<[f64; D], CaseError> {
-        let mut vector = [0.0; D];
-        if D == 1 && !self.is_list() {
+    pub(crate) fn vector(&self, unit: &str, dimension: usize) -> Result<Vector, CaseError> {
+        let mut vector = [0.0; 3];
+        if dimension == 1 && !self.is_list() {
             vector[0] = self.number(unit)?;
             return Ok(vector);
         }
-        let wrong = || if D == 1 { self.must_be(number_of(unit)) } else { self.must_be(vector_of::<D>(unit)) };
-        let entries = self.value.as_array().filter(|list| list.len() == D).ok_or_else(wrong)?;
+        let wrong = || self.must_be(if dimension == 1 { number_of(unit) } else { vector_of(unit, dimension) });
+        let entries = self.value.as_array().filter(|list| list.len() == dimension).ok_or_else(wrong)?;
         for (slot, entry) in vector.iter_mut().zip(entries.iter()) {
             *slot = Value { value: entry.get_ref(), ..self.clone() }.number(unit).map_err(|_| wrong())?;
         }
@@ -119,9 +120,9 @@ impl<'a> Value<'a> {
     }
 
     /// A list of vectors, one for each instant or node.
-    pub(crate) fn vectors<const D: usize>(&self, unit: &str) -> Result<Vec<[f64; D]>, CaseError> {
-        let what = if D == 1 { number_of(unit) } else { vector_of::<D>(unit) };
-        self.list(&format!("entries, each {what}"))?.iter().map(|entry| entry.vector(unit)).collect()
+    pub(crate) fn vectors(&self, unit: &str, dimension: usize) -> Result<Vec<Vector>, CaseError> {
+        let what = if dimension == 1 { number_of(unit) } else { vector_of(unit, dimension) };
+        self.list(&format!("entries, each {what}"))?.iter().map(|entry| entry.vector(unit, dimension)).collect()
     }
 
     /// A list of numbers.
@@ -129,30 +130,30 @@ impl<'a> Value<'a> {
         self.list(&format!("numbers in {unit}"))?.iter().map(|entry| entry.number(unit)).collect()
     }
 
-    /// A list of `N` node numbers.
-    pub(crate) fn nodes<const N: usize>(&self) -> Result<[usize; N], CaseError> {
-        let mut nodes = [0; N];
-        if N == 1 && !self.is_list() {
-            nodes[0] = self.count(0)?;
-            return Ok(nodes);
+    /// A list of so many node numbers.
+    pub(crate) fn nodes(&self, count: usize) -> Result<Vec<usize>, CaseError> {
+        if count == 1 && !self.is_list() {
+            return Ok(vec![self.count(0)?]);
         }
-        let what = format!("{N} node numbers, counted from 0");
+        let what = format!("{count} node numbers, counted from 0");
         let entries = self.list(&what)?;
-        if entries.len() != N {
+        if entries.len() != count {
             return Err(self.must_be(what));
         }
-        for (slot, entry) in nodes.iter_mut().zip(&entries) {
-            *slot = entry.count(0)?;
-        }
-        Ok(nodes)
+        entries.iter().map(|entry| entry.count(0)).collect()
     }
+}
+
+/// Vectors as rows of a dimension.
+pub(crate) fn rows(vectors: Vec<Vector>, dimension: usize) -> Vec<f64> {
+    vectors.into_iter().flat_map(|vector| vector.into_iter().take(dimension)).collect()
 }
 
 fn number_of(unit: &str) -> String {
     if unit.is_empty() { "a finite number".to_string() } else { format!("a finite number in {unit}") }
 }
 
-fn vector_of<const D: usize>(unit: &str) -> String {
+fn vector_of(unit: &str, dimension: usize) -> String {
     let unit = if unit.is_empty() { String::new() } else { format!(" in {unit}") };
-    format!("{D} finite numbers{unit}, for x and y, such as [1.0, 0.0]")
+    format!("{dimension} finite numbers{unit}, for x and y, such as [1.0, 0.0]")
 }

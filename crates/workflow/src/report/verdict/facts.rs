@@ -11,11 +11,11 @@ use crate::report::linearity::Linearity;
 use crate::report::poor::{PoorElement, poor_elements};
 use crate::report::rebound::Rebound;
 use crate::report::symptoms::auxiliary_contact_energy;
+use percute_core::border::Vector;
 use percute_core::contact::{ContactResults, Nearest};
-use percute_core::ids::ElementId;
 use percute_core::material::Law;
-use percute_core::mesh::Mesh;
-use percute_core::problem::Problem;
+use percute_core::mesh::AnyMesh;
+use percute_core::problem::AnyProblem;
 use percute_estimator::{Acceleration, ErrorMeasures, Estimate, Options, Reconstruction};
 
 /// Contacts that begin within so many times of a wave along its diagonal belong to one phase. The evidence has 15 µs
@@ -119,10 +119,10 @@ pub(in crate::report) struct Beside<'a> {
 }
 
 impl Facts {
-    pub(in crate::report) fn new<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
-        estimate: &Estimate<D>,
-        results: &ContactResults<D>,
+    pub(in crate::report) fn new(
+        problem: &AnyProblem,
+        estimate: &Estimate,
+        results: &ContactResults,
         beside: Beside<'_>,
     ) -> Self {
         let figures = beside.checked.map(|checked| &checked.consistency);
@@ -131,18 +131,18 @@ impl Facts {
         let (size, slenderness) = (size_of_bodies(problem.mesh()), slenderness(problem.mesh()));
         // Nodes bounce on the springs of a penalty: a release ends when a wave could not cross the body meanwhile.
         let shortest_release = if figures.is_some_and(by_a_penalty) { slenderness * size / wave_speed } else { 0.0 };
-        let (bodies, by_element) = (!problem.statement().interfaces.is_empty(), &estimate.by_element);
+        let (bodies, by_element) = (!problem.conditions().interfaces.is_empty(), &estimate.by_element);
         let uneven = Uneven::new(problem, by_element, results);
-        let flat = FlatElements::new(problem, by_element).is_some();
+        let (flat, d) = (FlatElements::new(problem, by_element).is_some(), problem.dimension());
         let speed = if bodies { approach(problem) } else { beside.rebound.map(|rebound| -rebound.normal_before) };
         Self {
-            dimension: D,
+            dimension: d,
             reconstruction: beside.options.reconstruction,
-            acceleration: other_acceleration(beside.options, D),
+            acceleration: other_acceleration(beside.options, d),
             contact: Contact::new(problem, results),
             speed_ratio: speed.map(|speed| without_rounding(speed / wave_speed)),
             courant: beside.courant,
-            elements_in_contact: if D == 1 { most } else { most.saturating_sub(1).max(most.min(1)) },
+            elements_in_contact: if d == 1 { most } else { most.saturating_sub(1).max(most.min(1)) },
             phases: phases(results, APART * size / wave_speed, shortest_release),
             passages: after_first_touch(results) * wave_speed / size,
             slenderness,
@@ -152,10 +152,10 @@ impl Facts {
             linearity: Linearity::new(beside.deformation),
             nearest: results.nearest.zip(results.instants.last().copied()),
             onset: Onset::new(problem, results, beside.rebound, speed),
-            largest_friction: problem.obstacles().iter().map(|o| o.law().friction()).fold(0.0, f64::max),
+            largest_friction: problem.obstacles().map(|o| o.law().friction()).fold(0.0, f64::max),
             corner: corner(problem, results),
             bodies,
-            slides: !problem.surface().sliding().is_empty(),
+            slides: problem.sliding_count() > 0,
             slip: results.slip,
             depth: results.depth,
             at_end: results.at_end,
@@ -197,11 +197,7 @@ fn other_acceleration(options: Options, dimension: usize) -> Option<Acceleration
     options.acceleration.filter(|&given| given != default)
 }
 
-fn expected<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    estimate: &Estimate<D>,
-    results: &ContactResults<D>,
-) -> Option<Expected> {
+fn expected(problem: &AnyProblem, estimate: &Estimate, results: &ContactResults) -> Option<Expected> {
     let basis = Basis::new(problem.mesh(), estimate, results)?;
     let sources = basis.sources();
     let half_step = sources.mean_with_half_step()? / estimate.error.mean - 1.0;
@@ -210,14 +206,14 @@ fn expected<const D: usize, const N: usize>(
 }
 
 /// The time from the first touch to the last instant (s); 0 without contact.
-fn after_first_touch<const D: usize>(results: &ContactResults<D>) -> f64 {
+fn after_first_touch(results: &ContactResults) -> f64 {
     let first = first_contacts(results).into_iter().flatten().reduce(f64::min);
     results.instants.last().zip(first).map_or(0.0, |(last, first)| last - first)
 }
 
 /// Number of contact phases; contacts that begin within `apart` (s) are one, and so are those between which is a
 /// release of less than `shortest` (s).
-fn phases<const D: usize>(results: &ContactResults<D>, apart: f64, shortest: f64) -> usize {
+fn phases(results: &ContactResults, apart: f64, shortest: f64) -> usize {
     let (mut count, mut begun, mut released) = (0, f64::NEG_INFINITY, Some(f64::NEG_INFINITY));
     for (resultant, &time) in results.total.iter().zip(&results.instants) {
         match (resultant.in_contact > 0, released) {
@@ -238,63 +234,59 @@ fn phases<const D: usize>(results: &ContactResults<D>, apart: f64, shortest: f64
 /// The least angle between two planes that are touched in the course of time and meet at a node of the surface
 /// (degrees). The node itself may touch one of them only: an impact on one of two planes that open by more than 90
 /// degrees throws it away from the other.
-fn corner<const D: usize, const N: usize>(problem: &Problem<D, N>, results: &ContactResults<D>) -> Option<f64> {
-    let nodes = problem.surface().nodes();
-    let mut touched = vec![false; problem.obstacles().len()];
+fn corner(problem: &AnyProblem, results: &ContactResults) -> Option<f64> {
+    let nodes = problem.contact_nodes();
+    let mut touched = vec![false; problem.obstacle_count()];
     for (contact, first) in nodes.iter().zip(first_contacts(results)) {
         touched[contact.obstacle] |= first.is_some();
     }
     let planes = nodes.iter().filter_map(|contact| Some([contact.obstacle, nodes[contact.beside?].obstacle]));
     let opening = |planes: [usize; 2]| {
-        let [one, two] = planes.map(|obstacle| problem.obstacles()[obstacle].flat_frame());
+        let [one, two] = planes.map(|obstacle| problem.obstacle(obstacle).frame());
         (-one.split(two.normal()).0).clamp(-1.0, 1.0).acos().to_degrees()
     };
     planes.filter(|planes| planes.iter().all(|&plane| touched[plane])).map(opening).min_by(f64::total_cmp)
 }
 
 /// The largest speed at which two bodies approach each other at the start, at the nodes of their contact (m/s).
-fn approach<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<f64> {
-    let (surface, starts) = (problem.surface(), problem.starts_of_contact());
-    let of_bodies = |at: &usize| surface.nodes()[*at].opposite.is_some() || surface.sliding_of(*at).is_some();
+fn approach(problem: &AnyProblem) -> Option<f64> {
+    let (nodes, starts) = (problem.contact_nodes(), problem.starts_of_contact());
+    let of_bodies = |at: &usize| nodes[*at].opposite.is_some() || problem.sliding_of(*at).is_some();
     (0..starts.len()).filter(of_bodies).map(|at| -starts[at].1).reduce(f64::max)
 }
 
 /// Diagonal of the bounding box of the largest body (m).
-fn size_of_bodies<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> f64 {
+fn size_of_bodies(mesh: &AnyMesh) -> f64 {
     if mesh.parts() < 2 {
         return mesh.size();
     }
-    let mut boxes = vec![[[f64::INFINITY; D], [f64::NEG_INFINITY; D]]; mesh.node_count()];
-    for (point, first) in mesh.points().iter().zip(mesh.part_of_nodes()) {
+    let mut boxes = vec![[[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]; mesh.node_count()];
+    for (point, first) in mesh.places().zip(mesh.part_of_nodes()) {
         let [low, high] = &mut boxes[first.index()];
-        for c in 0..D {
+        for c in 0..3 {
             (low[c], high[c]) = (low[c].min(point[c]), high[c].max(point[c]));
         }
     }
-    let size = |[low, high]: &[[f64; D]; 2]| (0..D).map(|c| (high[c] - low[c]).powi(2)).sum::<f64>().sqrt();
+    let size = |[low, high]: &[Vector; 2]| (0..3).map(|c| (high[c] - low[c]).powi(2)).sum::<f64>().sqrt();
     boxes.iter().filter(|[low, _]| low[0].is_finite()).map(size).fold(0.0, f64::max)
 }
 
-fn slenderness<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> f64 {
-    if D == 1 {
+fn slenderness(mesh: &AnyMesh) -> f64 {
+    if mesh.dimension() == 1 {
         return 1.0;
     }
-    let area: f64 = (0..mesh.element_count()).map(|e| mesh.cell_geometry(ElementId::new(e)).volume).sum();
-    let outline: f64 = mesh.boundary().map(|facet| mesh.facet_normal(facet).1).sum();
+    let area: f64 = mesh.volumes().iter().sum();
+    let outline: f64 = mesh.boundary().into_iter().map(|facet| mesh.facet_normal(facet).1).sum();
     2.0 * area / outline / mesh.size()
 }
 
 /// The part of the squared error in the elements with a node that touches.
-fn at_contact<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    estimate: &Estimate<D>,
-    results: &ContactResults<D>,
-) -> f64 {
+fn at_contact(problem: &AnyProblem, estimate: &Estimate, results: &ContactResults) -> f64 {
     let mesh = problem.mesh();
     let mut near = vec![false; mesh.element_count()];
     for (place, first) in results.nodes.iter().zip(first_contacts(results)) {
         if first.is_some() {
-            mesh.stars().star(place.node).elements.iter().for_each(|element| near[element.index()] = true);
+            mesh.elements_around(place.node).iter().for_each(|element| near[element.index()] = true);
         }
     }
     let sum = |all: bool| -> f64 {

@@ -3,7 +3,7 @@
 use super::touches::Surface;
 use percute_core::contact::{CORNER, ContactResults};
 use percute_core::material::{Elastic, Hypothesis, Law};
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use std::f64::consts::PI;
 
 /// So many edges within the half-width resolve a contact.
@@ -24,19 +24,16 @@ pub(in crate::report) struct NarrowContact {
 impl NarrowContact {
     /// None of contacts that are wider, of corners and of flat surfaces. Where several contacts share the force, each
     /// counts as if it had all: none is called narrow that is not.
-    pub(in crate::report) fn new<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
-        results: &ContactResults<D>,
-    ) -> Option<Self> {
-        let force = results.averaged_peak.filter(|_| D == 2)?.force;
+    pub(in crate::report) fn new(problem: &AnyProblem, results: &ContactResults) -> Option<Self> {
+        let force = results.averaged_peak.filter(|_| problem.dimension() == 2)?.force;
         let surface = Surface::new(problem, results);
-        let planes = (0..problem.obstacles().len()).filter(|&k| problem.obstacles()[k].as_plane().is_some());
-        let interfaces = problem.sides_of_interfaces().map(|sides| sides.to_vec());
+        let planes = (0..problem.obstacle_count()).filter(|&k| problem.obstacle(k).is_plane());
+        let interfaces = problem.sides_of_interfaces().into_iter().map(|sides| sides.to_vec());
         planes.map(|plane| vec![plane]).chain(interfaces).find_map(|sides| Self::of(&surface, &sides, force))
     }
 
     /// That of one contact, by the nodes that touch first on its sides, under a force (N).
-    fn of<const D: usize, const N: usize>(surface: &Surface<'_, D, N>, sides: &[usize], force: f64) -> Option<Self> {
+    fn of(surface: &Surface<'_>, sides: &[usize], force: f64) -> Option<Self> {
         let (mut curvature, mut compliance, mut edge, mut thickness) = (0.0, 0.0, 0.0_f64, f64::INFINITY);
         for at in sides.iter().filter_map(|&side| surface.first_of(side)) {
             let (turn, (length, law)) = (surface.turn(at), surface.edges(at)?);
@@ -82,6 +79,7 @@ mod tests {
                 .initial_velocity(Initial::Uniform([0.0, -speed]))
                 .obstacle(Obstacle::plane([0.0, -0.01 - gap], [0.0, 1.0], 0.0, None).unwrap())
                 .build()
+                .map(AnyProblem::from)
                 .unwrap()
         };
         let dt = 0.9 * critical_time_step(&build(1.0));

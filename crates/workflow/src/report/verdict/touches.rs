@@ -3,7 +3,7 @@
 use percute_core::contact::{CORNER, ContactResults};
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::material::Elastic;
-use percute_core::problem::Problem;
+use percute_core::problem::AnyProblem;
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -45,7 +45,7 @@ pub(super) struct Contact {
 }
 
 impl Contact {
-    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, results: &ContactResults<D>) -> Self {
+    pub(super) fn new(problem: &AnyProblem, results: &ContactResults) -> Self {
         let surface = Surface::new(problem, results);
         let Some(start) = surface.start() else {
             return Self { touches: Touches::None, zones: 0, single_element: false, strikes_flat_slave: false };
@@ -53,7 +53,7 @@ impl Contact {
         let (touches, places) = surface.situation(&start);
         let single =
             |&at: &usize| !surface.on_line[at] && surface.turn(at) < PI - OBTUSE && surface.elements(at).len() == 1;
-        let single_element = D > 1 && places.iter().any(single);
+        let single_element = problem.dimension() > 1 && places.iter().any(single);
         let strikes = matches!(touches, Touches::Corner | Touches::Curve);
         let strikes_flat_slave = strikes && surface.striking(&start).is_some_and(|(_, is_master)| is_master);
         Self { touches, zones: surface.zones(), single_element, strikes_flat_slave }
@@ -62,15 +62,15 @@ impl Contact {
 
 /// When each node of the surface touches first (s). A reaction brings a node to its plane at the next instant: if it
 /// acts at the last instant only, no node touches yet, and contact begins with the force.
-pub(super) fn first_contacts<const D: usize>(results: &ContactResults<D>) -> Vec<Option<f64>> {
+pub(super) fn first_contacts(results: &ContactResults) -> Vec<Option<f64>> {
     let touches = results.summary.iter().any(|summary| summary.first_touch.is_some());
     let first = results.summary.iter().map(|summary| if touches { summary.first_touch } else { summary.time_of_peak });
     first.collect()
 }
 
 /// The contact surface with the first touch of its nodes.
-pub(super) struct Surface<'a, const D: usize, const N: usize> {
-    problem: &'a Problem<D, N>,
+pub(super) struct Surface<'a> {
+    problem: &'a AnyProblem,
     first_touch: Vec<Option<f64>>,
     /// The nodes beside each node on the surface.
     beside: Vec<Vec<usize>>,
@@ -80,12 +80,12 @@ pub(super) struct Surface<'a, const D: usize, const N: usize> {
     on_line: Vec<bool>,
 }
 
-impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
-    pub(super) fn new(problem: &'a Problem<D, N>, results: &ContactResults<D>) -> Self {
+impl<'a> Surface<'a> {
+    pub(super) fn new(problem: &'a AnyProblem, results: &ContactResults) -> Self {
         let first_touch = first_contacts(results);
         let mut beside = vec![Vec::new(); first_touch.len()];
-        for facet in problem.surface().facets() {
-            for &a in &facet.nodes {
+        for facet in problem.contact_facets() {
+            for &a in facet.nodes {
                 beside[a].extend(facet.nodes.iter().filter(|&&b| b != a));
             }
         }
@@ -101,7 +101,7 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
 
     /// How these nodes touch, and the nodes that decide it.
     fn situation(&self, start: &[usize]) -> (Touches, Vec<usize>) {
-        if D == 1 {
+        if self.problem.dimension() == 1 {
             return (Touches::Edge, start.to_vec());
         }
         let zone = self.flat_zone(start);
@@ -149,14 +149,13 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
 
     /// Whether the edge between two nodes is parallel to the plane at the start of the run.
     fn parallel(&self, a: usize, b: usize) -> bool {
-        let surface = self.problem.surface();
-        let at = |at: usize| surface.point(at);
-        let length = (0..D).map(|c| (at(a)[c] - at(b)[c]).powi(2)).sum::<f64>().sqrt();
+        let at = |at: usize| self.problem.contact_point(at);
+        let length = (0..3).map(|c| (at(a)[c] - at(b)[c]).powi(2)).sum::<f64>().sqrt();
         let apart = if self.gap[a].is_finite() && self.gap[b].is_finite() {
             self.gap[a] - self.gap[b]
         } else {
             // Beside a surface along which it slides: along the common tangent.
-            let frame = self.problem.obstacles()[surface.nodes()[a].obstacle].flat_frame();
+            let frame = self.problem.frame(a);
             frame.split(&std::array::from_fn(|c| at(a)[c] - at(b)[c])).0
         };
         apart.abs() <= PARALLEL * length
@@ -164,7 +163,7 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
 
     /// The node that touches an obstacle first.
     pub(super) fn first_of(&self, obstacle: usize) -> Option<usize> {
-        let nodes = self.problem.surface().nodes();
+        let nodes = self.problem.contact_nodes();
         let touched = (0..nodes.len()).filter(|&at| nodes[at].obstacle == obstacle);
         let touched = touched.filter_map(|at| Some((self.first_touch[at]?, at)));
         touched.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at)| at)
@@ -173,7 +172,7 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
     /// The mean length of the edges at a node (m) and the material there.
     pub(super) fn edges(&self, at: usize) -> Option<(f64, &Elastic)> {
         let mesh = self.problem.mesh();
-        let facets = self.problem.surface().facets().iter().filter(|facet| facet.nodes.contains(&at));
+        let facets = self.problem.contact_facets().into_iter().filter(|facet| facet.nodes.contains(&at));
         let lengths: Vec<f64> = facets.map(|facet| mesh.facet_normal(facet.facet).1).collect();
         let element = *self.elements(at).first()?;
         let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
@@ -181,11 +180,11 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
     }
 
     fn node(&self, at: usize) -> NodeId {
-        self.problem.surface().nodes()[at].node
+        self.problem.contact_nodes()[at].node
     }
 
     fn elements(&self, at: usize) -> &[ElementId] {
-        self.problem.mesh().stars().star(self.node(at)).elements
+        self.problem.mesh().elements_around(self.node(at))
     }
 
     /// By how much the outline turns at a node (rad): π less the angle inside the body.
@@ -210,17 +209,14 @@ impl<'a, const D: usize, const N: usize> Surface<'a, D, N> {
 
     /// The nodes among these of slaves, and those of masters, of surfaces that slide.
     fn sides(&self, nodes: &[usize]) -> (Vec<usize>, Vec<usize>) {
-        let surface = self.problem.surface();
-        let is_slave = |at: usize| surface.sliding().iter().any(|sliding| sliding.slave().node_at(at).is_some());
-        let slides = |at: usize| surface.sliding_of(at).is_some();
-        nodes.iter().copied().filter(|&at| slides(at)).partition(|&at| is_slave(at))
+        let sliding = nodes.iter().copied().filter(|&at| self.problem.sliding_of(at).is_some());
+        sliding.partition(|&at| self.problem.is_slave(at))
     }
 
     /// The parts of the surface that touch, each joined by edges.
     fn zones(&self) -> usize {
         // Of two surfaces that touch, the first one counts.
-        let surface = self.problem.surface();
-        let counts = |(at, touch): (usize, &Option<f64>)| touch.is_none() || !surface.leads(at);
+        let counts = |(at, touch): (usize, &Option<f64>)| touch.is_none() || !self.problem.leads(at);
         let mut seen: Vec<bool> = self.first_touch.iter().enumerate().map(counts).collect();
         let mut zones = 0;
         for at in 0..seen.len() {

@@ -4,10 +4,10 @@
 use crate::report::poor::{LONG, aspect};
 use percute_core::contact::ContactResults;
 use percute_core::dynamics::time_step_of_element;
-use percute_core::ids::ElementId;
+use percute_core::ids::{ElementId, FacetId};
 use percute_core::material::{Elastic, Hypothesis, Law};
-use percute_core::mesh::Mesh;
-use percute_core::problem::Problem;
+use percute_core::mesh::AnyMesh;
+use percute_core::problem::AnyProblem;
 
 /// The part of the squared mean error in long elements from which on they matter: without it, the estimate would be
 /// smaller by 5 %.
@@ -33,17 +33,13 @@ pub(super) struct Uneven {
 
 impl Uneven {
     /// `by_element` has the contribution of each element to the mean error.
-    pub(super) fn new<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
-        by_element: &[f64],
-        results: &ContactResults<D>,
-    ) -> Self {
+    pub(super) fn new(problem: &AnyProblem, by_element: &[f64], results: &ContactResults) -> Self {
         let mesh = problem.mesh();
         let steps: Vec<f64> = (0..by_element.len()).map(|e| time_step_of_element(problem, ElementId::new(e))).collect();
         let size = |element: ElementId| steps[element.index()] * problem.material(element).wave_speed();
         let largest = (0..by_element.len()).map(|e| size(ElementId::new(e))).fold(0.0, f64::max);
         let touched = results.nodes.iter().zip(&results.summary).filter(|(_, summary)| summary.first_touch.is_some());
-        let elements = touched.flat_map(|(point, _)| mesh.stars().star(point.node).elements.iter().copied());
+        let elements = touched.flat_map(|(point, _)| mesh.elements_around(point.node).iter().copied());
         Self {
             longest: longest(mesh, by_element),
             sizes: steps.iter().copied().fold(0.0, f64::max) / steps.iter().copied().fold(f64::INFINITY, f64::min),
@@ -55,7 +51,7 @@ impl Uneven {
 }
 
 /// The longest edge over the shortest one of a long element, if they matter.
-fn longest<const D: usize, const N: usize>(mesh: &Mesh<D, N>, by_element: &[f64]) -> f64 {
+fn longest(mesh: &AnyMesh, by_element: &[f64]) -> f64 {
     let (mut most, mut of_long, mut total) = (1.0_f64, 0.0, 0.0);
     for (element, error) in by_element.iter().enumerate() {
         let ratio = aspect(mesh, element);
@@ -68,25 +64,27 @@ fn longest<const D: usize, const N: usize>(mesh: &Mesh<D, N>, by_element: &[f64]
 }
 
 /// The largest ratio of the impedances of two elements that share a facet, or of two bodies at their interface.
-fn impedances<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+fn impedances(problem: &AnyProblem) -> f64 {
     let impedance = |law: &Elastic| law.density() * law.wave_speed() * law.extent();
     let each: Vec<f64> = problem.materials().iter().map(impedance).collect();
     let of = |element: ElementId| each[usize::from(problem.element_material()[element.index()])];
-    let inner = problem.mesh().facets().iter().filter_map(|facet| Some((of(facet.owner), of(facet.neighbour?))));
+    let mesh = problem.mesh();
+    let facets = (0..mesh.facet_count()).map(|facet| mesh.facet(FacetId::new(facet)));
+    let inner = facets.filter_map(|facet| Some((of(facet.owner), of(facet.neighbour?))));
     let inner = inner.map(|(a, b)| a.max(b) / a.min(b)).fold(1.0, f64::max);
     let ends = |side: usize| {
-        let facets = problem.surface().facets().iter().filter(|facet| facet.obstacle == side);
-        let owners = facets.map(|facet| of(problem.mesh().facets()[facet.facet.index()].owner));
+        let facets = problem.contact_facets().into_iter().filter(|facet| facet.obstacle == side);
+        let owners = facets.map(|facet| of(mesh.facet(facet.facet).owner));
         owners.fold([f64::INFINITY, 0.0], |[least, most], each| [least.min(each), most.max(each)])
     };
-    problem.sides_of_interfaces().map(|sides| sides.map(ends)).fold(inner, |most, [a, b]| {
+    problem.sides_of_interfaces().into_iter().map(|sides| sides.map(ends)).fold(inner, |most, [a, b]| {
         // A side without facets has no impedance.
         most.max(a[1] / b[0]).max(b[1] / a[0])
     })
 }
 
 /// The largest Poisson's ratio in plane strain; 0 without plane strain.
-fn poisson<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+fn poisson(problem: &AnyProblem) -> f64 {
     let strained = problem.materials().iter().filter(|law| law.hypothesis() == Hypothesis::PlaneStrain);
     strained.map(Elastic::poisson).fold(0.0, f64::max)
 }

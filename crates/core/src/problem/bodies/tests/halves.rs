@@ -9,7 +9,7 @@ use crate::problem::{Builder, Cause, Initial, Problem};
 /// A half of two bodies of 20 mm, 4 cells wide, beside the line of symmetry x = 0: a height above the level of each
 /// surface (m), their gap at the line (m), and a place of the line on the level of the lower one (m).
 fn halves(heights: impl Fn(f64) -> [f64; 2], gap: f64, place: [f64; 2]) -> Builder<2, 3> {
-    let held = |group: &str| Support { group: group.into(), components: [true, false], velocity: None };
+    let held = |group: &str| Support { group: group.into(), components: [true, false, false], velocity: None };
     flush(heights, gap, place).support(held("lower.left")).support(held("upper.left"))
 }
 
@@ -59,7 +59,7 @@ fn halves_meet_along_the_line_of_symmetry() {
 fn flush_ends_meet_along_a_surface() {
     for group in ["lower.left", "upper.left"] {
         for [fall, rise] in [[0.0, 0.02], [0.0, 0.09], [0.02, 0.0], [0.0, 0.0]] {
-            let held = Support { group: group.into(), components: [true, false], velocity: None };
+            let held = Support { group: group.into(), components: [true, false, false], velocity: None };
             let builder = flush(|x| [-fall * x, rise * x], 1e-5, [0.0, 0.0]).support(held);
             let problem = builder.build().unwrap_or_else(|error| panic!("{group}, {fall}, {rise}: {error}"));
             let normal = problem.obstacles()[0].flat_frame().normal()[0];
@@ -79,7 +79,11 @@ fn clamped_bodies_are_whole() {
     let (left, right) = (post(0.0), post(0.01001));
     let velocity = [vec![[1.0, 0.0]; left.node_count()], vec![[0.0; 2]; right.node_count()]].concat();
     let posts = |components: [bool; 2]| {
-        let held = |group: &str| Support { group: group.into(), components, velocity: None };
+        let held = |group: &str| Support {
+            group: group.into(),
+            components: [components[0], components[1], false],
+            velocity: None,
+        };
         // Nodes of the support have its velocity.
         let velocity =
             velocity.iter().enumerate().map(|(node, v)| if node < 3 && components[0] { [0.0; 2] } else { *v });

@@ -13,7 +13,7 @@ fn found(blocks: &[Block], by: [f64; 2]) -> Vec<(String, Vec<usize>)> {
     let moved = |one: &Block| Block { at: [one.at[0] + by[0], one.at[1] + by[1]], ..*one };
     let problem: Problem<2, 3> =
         bodies(&blocks.iter().map(moved).collect::<Vec<_>>()).contact(all(0.2)).build().unwrap();
-    let groups = problem.statement().interfaces.iter().flat_map(|interface| interface.groups().map(str::to_string));
+    let groups = problem.conditions().interfaces.iter().flat_map(|interface| interface.groups().map(str::to_string));
     let facets = |name: &String| problem.mesh().facet_groups()[name].iter().map(|facet| facet.index()).collect();
     groups.map(|name| (name.clone(), facets(&name))).collect()
 }

@@ -18,7 +18,7 @@ fn problem(of: &[(&str, &Mesh<2, 3>, [f64; 2])]) -> Result<Problem<2, 3>, Cause>
 /// There is one interface, and the same edges are one on the refined mesh.
 fn has_one_interface(of: &[(&str, &Mesh<2, 3>, [f64; 2])], what: &str) {
     let problem = problem(of).unwrap_or_else(|cause| panic!("{what}: {cause}"));
-    let interfaces = &problem.statement().interfaces;
+    let interfaces = &problem.conditions().interfaces;
     assert_eq!(interfaces.len(), 1, "{what}");
     let refined = Problem::builder(problem.mesh().refined().unwrap()).material(problem.materials()[0]);
     let refined = refined.interface(interfaces[0].clone()).build();

@@ -348,7 +348,7 @@ where
         .support(support(driven, D - 1, Some(table([0.0, 0.4]))))
         .body_force(BodyForce { group: Some("soft".into()), value: table([0.3, -0.2]) });
     if D > 1 {
-        let profile = Profile { value: 1.0, gradient: [0.2; D] };
+        let profile = Profile { value: 1.0, gradient: [0.2, 0.2, 0.0] };
         let traction = Traction { group: loaded.into(), value: table([0.1, 0.5]), profile };
         builder = builder.support(support(fixed, 0, None)).traction(traction);
     }

@@ -111,7 +111,7 @@ mod tests {
         TriangleProblem::builder(random_rectangle(1.0, 0.8, 5, 3).unwrap())
             .material(Elastic::plane_strain(70.0, 0.3, 2.0, 0.5).unwrap())
             .obstacle(Obstacle::plane([0.0, -10.0], [0.0, 1.0], 0.0, None).unwrap())
-            .support(Support { group: "left".into(), components: [false, true], velocity: None })
+            .support(Support { group: "left".into(), components: [false, true, false], velocity: None })
             .build()
             .unwrap()
     }

@@ -47,7 +47,7 @@ fn held_bar() -> BarProblem {
         .material(Elastic::bar(1.0, 1.0, 1.0).unwrap())
         .initial_displacement(Initial::Nodal(shape));
     for group in ["start", "end"] {
-        builder = builder.support(Support { group: group.into(), components: [true], velocity: None });
+        builder = builder.support(Support { group: group.into(), components: [true, false, false], velocity: None });
     }
     builder.build().unwrap()
 }
@@ -87,7 +87,8 @@ fn three_quarters_are_a_halving() {
         let law = Elastic::bar(1.0, 1.0, 1.0).unwrap();
         let mut builder = Problem::builder(mesh).material(law).initial_displacement(Initial::Nodal(shape));
         for group in ["start", "end"] {
-            builder = builder.support(Support { group: group.into(), components: [true], velocity: None });
+            builder =
+                builder.support(Support { group: group.into(), components: [true, false, false], velocity: None });
         }
         builder.build().unwrap()
     };

@@ -23,7 +23,7 @@ pub(super) fn problem_of(mesh: TriangleMesh, material: Elastic) -> TriangleProbl
 fn held(mesh: TriangleMesh, material: Elastic, components: [bool; 2]) -> TriangleProblem {
     Problem::builder(mesh)
         .material(material)
-        .support(Support { group: "left".into(), components, velocity: None })
+        .support(Support { group: "left".into(), components: [components[0], components[1], false], velocity: None })
         .build()
         .unwrap()
 }

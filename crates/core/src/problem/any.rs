@@ -1,0 +1,468 @@
+//! A problem of either dimension, as other crates see it.
+
+use super::{BarProblem, TriangleProblem, statement};
+use super::{BodyLoad, Conditions, FacetLoad, InputError, MovedPlane, Place, PrescribedComponent, Problem, Statement};
+use crate::border::{Vector, padded, vectors};
+use crate::contact::{AnyFacing, AnyObstacle, ContactFacet, ContactNode, Frame, Interface};
+use crate::ids::{ElementId, FacetId, NodeId};
+use crate::load::Table;
+use crate::material::Elastic;
+use crate::mesh::{AnyMesh, Numbering};
+use crate::units::Units;
+use std::any::Any;
+use std::sync::Arc;
+
+/// A checked problem of either dimension, shared. Fields are in rows, as [`border`](crate::border) says.
+#[derive(Clone, Debug)]
+pub struct AnyProblem {
+    mesh: AnyMesh,
+    problem: Typed,
+}
+
+/// Problems with their dimension.
+#[derive(Clone, Debug)]
+enum Typed {
+    D1(Arc<BarProblem>),
+    D2(Arc<TriangleProblem>),
+}
+
+/// A reference to a problem of either dimension; simulation and estimate take one.
+#[derive(Clone, Copy, Debug)]
+pub enum ProblemRef<'p> {
+    /// Of a bar.
+    D1(&'p BarProblem),
+    /// Of a plane body.
+    D2(&'p TriangleProblem),
+}
+
+/// Does the same with a problem in each dimension.
+#[macro_export]
+macro_rules! on_problem {
+    ($reference:expr, $problem:pat => $body:expr) => {
+        match $reference {
+            $crate::problem::ProblemRef::D1($problem) => $body,
+            $crate::problem::ProblemRef::D2($problem) => $body,
+        }
+    };
+}
+
+impl<'p> From<&'p AnyProblem> for ProblemRef<'p> {
+    fn from(any: &'p AnyProblem) -> Self {
+        match &any.problem {
+            Typed::D1(problem) => Self::D1(problem),
+            Typed::D2(problem) => Self::D2(problem),
+        }
+    }
+}
+
+impl<'p, const D: usize, const N: usize> From<&'p Problem<D, N>> for ProblemRef<'p> {
+    fn from(problem: &'p Problem<D, N>) -> Self {
+        let any = problem as &dyn Any;
+        let found = any.downcast_ref().map(Self::D1).or_else(|| any.downcast_ref().map(Self::D2));
+        let Some(found) = found else { unreachable!("problems are of bars or of triangles") };
+        found
+    }
+}
+
+impl<'p> ProblemRef<'p> {
+    /// The problem with its dimension; none if it has another one.
+    #[must_use]
+    pub fn typed<const D: usize, const N: usize>(self) -> Option<&'p Problem<D, N>> {
+        on_problem!(self, problem => (problem as &dyn Any).downcast_ref())
+    }
+}
+
+impl From<BarProblem> for AnyProblem {
+    fn from(problem: BarProblem) -> Self {
+        Self { mesh: AnyMesh::D1(problem.mesh.clone()), problem: Typed::D1(Arc::new(problem)) }
+    }
+}
+
+impl From<TriangleProblem> for AnyProblem {
+    fn from(problem: TriangleProblem) -> Self {
+        Self { mesh: AnyMesh::D2(problem.mesh.clone()), problem: Typed::D2(Arc::new(problem)) }
+    }
+}
+
+/// A facet of the contact surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AnyContactFacet<'p> {
+    /// The facet of the mesh.
+    pub facet: FacetId,
+    /// Its nodes, as positions in the contact surface.
+    pub nodes: &'p [usize],
+    /// Its area (m²).
+    pub area: f64,
+    /// Which obstacle it may touch.
+    pub obstacle: usize,
+}
+
+/// A traction on one facet.
+#[derive(Clone, Copy, Debug)]
+pub struct AnyFacetLoad<'p> {
+    /// The facet.
+    pub facet: FacetId,
+    /// Factor at each of its nodes.
+    pub profile: &'p [f64],
+    /// Its table among [`AnyProblem::traction_tables`].
+    pub table: usize,
+}
+
+macro_rules! on {
+    ($any:expr, $problem:pat => $body:expr) => {
+        match &$any.problem {
+            Typed::D1($problem) => $body,
+            Typed::D2($problem) => $body,
+        }
+    };
+}
+
+impl AnyProblem {
+    /// Checks what is stated and builds the problem.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its place.
+    pub fn new(mesh: &AnyMesh, stated: &Statement) -> Result<Self, InputError> {
+        match mesh {
+            AnyMesh::D1(mesh) => statement::build(mesh, stated).map(Self::from),
+            AnyMesh::D2(mesh) => statement::build(mesh, stated).map(Self::from),
+        }
+    }
+
+    /// The mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &AnyMesh {
+        &self.mesh
+    }
+
+    /// 1 for bars, 2 for plane bodies.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.mesh.dimension()
+    }
+
+    /// What was stated, apart from mesh, obstacles and initial fields.
+    #[must_use]
+    pub fn conditions(&self) -> &Conditions {
+        on!(self, problem => problem.conditions())
+    }
+
+    /// The material of an element.
+    #[must_use]
+    pub fn material(&self, element: ElementId) -> &Elastic {
+        on!(self, problem => problem.material(element))
+    }
+
+    /// All materials.
+    #[must_use]
+    pub fn materials(&self) -> &[Elastic] {
+        on!(self, problem => problem.materials())
+    }
+
+    /// Which of [`AnyProblem::materials`] each element has.
+    #[must_use]
+    pub fn element_material(&self) -> &[u16] {
+        on!(self, problem => problem.element_material())
+    }
+
+    /// The two obstacles of each interface: [`Problem::sides_of_interfaces`].
+    #[must_use]
+    pub fn sides_of_interfaces(&self) -> Vec<[usize; 2]> {
+        on!(self, problem => problem.sides_of_interfaces().collect())
+    }
+
+    /// Units of forces, energies and masses.
+    #[must_use]
+    pub fn units(&self) -> Units {
+        on!(self, problem => problem.units())
+    }
+
+    /// Lumped mass of each node (kg).
+    #[must_use]
+    pub fn mass(&self) -> &[f64] {
+        on!(self, problem => problem.mass())
+    }
+
+    /// u₀ at the nodes (m), in rows.
+    #[must_use]
+    pub fn initial_displacement(&self) -> &[f64] {
+        on!(self, problem => problem.initial_displacement().as_flattened())
+    }
+
+    /// v₀ at the nodes (m/s), in rows.
+    #[must_use]
+    pub fn initial_velocity(&self) -> &[f64] {
+        on!(self, problem => problem.initial_velocity().as_flattened())
+    }
+
+    /// All prescribed components of nodes, by node.
+    #[must_use]
+    pub fn prescribed(&self) -> &[PrescribedComponent] {
+        on!(self, problem => problem.prescribed())
+    }
+
+    /// Velocity tables of moving supports (m/s).
+    #[must_use]
+    pub fn motions(&self) -> &[Table] {
+        on!(self, problem => problem.motions())
+    }
+
+    /// Tractions on facets.
+    #[must_use]
+    pub fn facet_loads(&self) -> Vec<AnyFacetLoad<'_>> {
+        fn of<const D: usize>(load: &FacetLoad<D>) -> AnyFacetLoad<'_> {
+            AnyFacetLoad { facet: load.facet, profile: &load.profile, table: load.table }
+        }
+        on!(self, problem => problem.facet_loads().iter().map(of).collect())
+    }
+
+    /// Tables of the tractions (Pa).
+    #[must_use]
+    pub fn traction_tables(&self) -> &[Table] {
+        on!(self, problem => problem.traction_tables())
+    }
+
+    /// Body forces.
+    #[must_use]
+    pub fn body_loads(&self) -> &[BodyLoad] {
+        on!(self, problem => problem.body_loads())
+    }
+
+    /// Forces of the tractions and body forces at an instant (N), in rows.
+    #[must_use]
+    pub fn external_forces(&self, t: f64) -> Vec<f64> {
+        on!(self, problem => {
+            let mut force = vec![[0.0; _]; problem.mesh().node_count()];
+            problem.external_forces(t, &mut force);
+            force.into_flattened()
+        })
+    }
+
+    /// Whether any traction or body force acts.
+    #[must_use]
+    pub fn is_loaded(&self) -> bool {
+        on!(self, problem => problem.is_loaded())
+    }
+
+    /// Number of obstacles.
+    #[must_use]
+    pub fn obstacle_count(&self) -> usize {
+        on!(self, problem => problem.obstacles().len())
+    }
+
+    /// An obstacle.
+    #[must_use]
+    pub fn obstacle(&self, obstacle: usize) -> AnyObstacle {
+        on!(self, problem => problem.obstacles()[obstacle].clone().into())
+    }
+
+    /// All obstacles.
+    pub fn obstacles(&self) -> impl ExactSizeIterator<Item = AnyObstacle> + '_ {
+        (0..self.obstacle_count()).map(|obstacle| self.obstacle(obstacle))
+    }
+
+    /// Whether an obstacle is a plane or the first side of two surfaces that may touch.
+    #[must_use]
+    pub fn leads_interface(&self, obstacle: usize) -> bool {
+        on!(self, problem => problem.leads_interface(obstacle))
+    }
+
+    /// The other one of the two obstacles of an interface: [`Problem::opposite_obstacle`].
+    #[must_use]
+    pub fn opposite_obstacle(&self, obstacle: usize) -> Option<usize> {
+        on!(self, problem => problem.opposite_obstacle(obstacle))
+    }
+
+    /// The obstacle on whose nodes contact acts: [`Problem::slave_of`].
+    #[must_use]
+    pub fn slave_of(&self, obstacle: usize) -> usize {
+        on!(self, problem => problem.slave_of(obstacle))
+    }
+
+    /// The two surfaces that may touch of which an obstacle is one; none for a plane.
+    #[must_use]
+    pub fn interface_of(&self, obstacle: usize) -> Option<&Interface> {
+        on!(self, problem => problem.interface_of(obstacle))
+    }
+
+    /// Where an obstacle is stated.
+    #[must_use]
+    pub fn place_of_obstacle(&self, obstacle: usize) -> Place {
+        on!(self, problem => problem.place_of_obstacle(obstacle))
+    }
+
+    /// The pairs of nodes of two bodies that face each other, of each interface with such pairs.
+    #[must_use]
+    pub fn facing_nodes(&self) -> Vec<Vec<[NodeId; 2]>> {
+        on!(self, problem => problem.facing_nodes())
+    }
+
+    /// The nodes of the contact surface, in its order: rows of reactions and touching status.
+    #[must_use]
+    pub fn contact_nodes(&self) -> &[ContactNode] {
+        on!(self, problem => problem.surface().nodes())
+    }
+
+    /// The facets of the contact surface.
+    #[must_use]
+    pub fn contact_facets(&self) -> Vec<AnyContactFacet<'_>> {
+        fn of<const D: usize>(facet: &ContactFacet<D>) -> AnyContactFacet<'_> {
+            let &ContactFacet { facet, ref nodes, area, obstacle } = facet;
+            AnyContactFacet { facet, nodes, area, obstacle }
+        }
+        on!(self, problem => problem.surface().facets().iter().map(of).collect())
+    }
+
+    /// The place of a node of the contact surface in the undeformed body (m).
+    #[must_use]
+    pub fn contact_point(&self, at: usize) -> Vector {
+        on!(self, problem => padded(problem.surface().point(at)))
+    }
+
+    /// ℓ_k of each node of the contact surface (m²), eq. \[45\].
+    #[must_use]
+    pub fn tributary_areas(&self) -> Vec<f64> {
+        on!(self, problem => problem.surface().tributary_areas())
+    }
+
+    /// Number of interfaces whose nodes do not face each other.
+    #[must_use]
+    pub fn sliding_count(&self) -> usize {
+        on!(self, problem => problem.surface().sliding().len())
+    }
+
+    /// Of a node of the contact surface, the interface whose nodes do not face each other.
+    #[must_use]
+    pub fn sliding_of(&self, at: usize) -> Option<usize> {
+        on!(self, problem => problem.surface().sliding_of(at))
+    }
+
+    /// The positions in the contact surface of the two sides of an interface whose nodes do not face each other: slave
+    /// and master.
+    #[must_use]
+    pub fn sides_of_sliding(&self, sliding: usize) -> [Vec<usize>; 2] {
+        on!(self, problem => {
+            let sliding = &problem.surface().sliding()[sliding];
+            [sliding.slave(), sliding.master()].map(|side| (0..side.len()).map(|node| side.position(node)).collect())
+        })
+    }
+
+    /// Whether a node of the contact surface is on the slave of an interface whose nodes do not face each other.
+    #[must_use]
+    pub fn is_slave(&self, at: usize) -> bool {
+        on!(self, problem => problem.surface().sliding().iter().any(|sliding| sliding.slave().node_at(at).is_some()))
+    }
+
+    /// Whether the contact condition of a node is its own: [`ContactSurface::leads`](crate::contact::ContactSurface::leads).
+    #[must_use]
+    pub fn leads(&self, at: usize) -> bool {
+        on!(self, problem => problem.surface().leads(at))
+    }
+
+    /// The mass that a contact force moves (kg): [`ContactSurface::moved_mass`](crate::contact::ContactSurface::moved_mass).
+    #[must_use]
+    pub fn moved_mass(&self, at: usize) -> f64 {
+        on!(self, problem => problem.surface().moved_mass(at, problem.mass()))
+    }
+
+    /// The frame of a node of the contact surface.
+    #[must_use]
+    pub fn frame(&self, at: usize) -> Frame<3> {
+        self.obstacle(self.contact_nodes()[at].obstacle).frame()
+    }
+
+    /// What the nodes of the contact surface face with these displacements (m), in rows.
+    #[must_use]
+    pub fn facing(&self, displacement: &[f64]) -> AnyFacing<'_> {
+        match &self.problem {
+            Typed::D1(problem) => AnyFacing::D1(problem.surface().facing(vectors(displacement))),
+            Typed::D2(problem) => AnyFacing::D2(problem.surface().facing(vectors(displacement))),
+        }
+    }
+
+    /// Gap (m) and normal velocity (m/s) of all nodes of the contact surface at the start.
+    #[must_use]
+    pub fn starts_of_contact(&self) -> Vec<(f64, f64)> {
+        on!(self, problem => problem.starts_of_contact())
+    }
+
+    /// The candidate node of an obstacle with the smallest gap at the start: [`Problem::nearest`].
+    #[must_use]
+    pub fn nearest(&self, obstacle: usize) -> Option<(usize, f64)> {
+        on!(self, problem => problem.nearest(obstacle))
+    }
+
+    /// The smallest gap of the candidate nodes of an obstacle at the start (m).
+    #[must_use]
+    pub fn initial_gap(&self, obstacle: usize) -> f64 {
+        on!(self, problem => problem.initial_gap(obstacle))
+    }
+
+    /// Volume of an element with section or thickness (m³).
+    #[must_use]
+    pub fn volume(&self, element: ElementId) -> f64 {
+        on!(self, problem => problem.volume(element))
+    }
+
+    /// Area of a boundary facet with section or thickness (m²).
+    #[must_use]
+    pub fn facet_area(&self, facet: FacetId) -> f64 {
+        on!(self, problem => problem.facet_area(facet))
+    }
+
+    /// Which components of a facet are supported.
+    #[must_use]
+    pub fn supported(&self, facet: FacetId) -> &[bool] {
+        on!(self, problem => &problem.supported[facet.index()])
+    }
+
+    /// Whether each node of the contact surface is on a line of symmetry: [`Problem::on_lines_of_symmetry`].
+    #[must_use]
+    pub fn on_lines_of_symmetry(&self) -> Vec<bool> {
+        on!(self, problem => problem.on_lines_of_symmetry())
+    }
+
+    /// Distances below this count as touching (m).
+    #[must_use]
+    pub fn contact_tolerance(&self) -> f64 {
+        on!(self, problem => problem.contact_tolerance())
+    }
+
+    /// Normal speeds below this count as zero at the start (m/s).
+    #[must_use]
+    pub fn speed_tolerance(&self) -> f64 {
+        on!(self, problem => problem.speed_tolerance())
+    }
+
+    /// How far loads and motions are from their tables: [`Problem::resampling_error`].
+    #[must_use]
+    pub fn resampling_error(&self, instants: &[f64]) -> f64 {
+        on!(self, problem => problem.resampling_error(instants))
+    }
+
+    /// Refuses a body that starts on a plane and moves into it.
+    ///
+    /// # Errors
+    /// As [`Problem::check_planes`].
+    pub fn check_planes(&self) -> Result<(), InputError> {
+        on!(self, problem => problem.check_planes())
+    }
+
+    /// The problem with planes moved away that a body is on and moves into: [`Problem::with_planes_moved`].
+    #[must_use]
+    pub fn with_planes_moved(&self, step: f64) -> Option<Self> {
+        on!(self, problem => problem.with_planes_moved(step).map(Self::from))
+    }
+
+    /// The planes that [`AnyProblem::with_planes_moved`] has moved.
+    #[must_use]
+    pub fn moved_planes(&self) -> &[MovedPlane] {
+        on!(self, problem => problem.moved_planes())
+    }
+
+    /// The problem under other numbers of nodes and elements: [`Problem::renumbered`].
+    #[must_use]
+    pub fn renumbered(&self, numbering: &Numbering) -> Self {
+        on!(self, problem => problem.renumbered(numbering).into())
+    }
+}
