@@ -50,7 +50,7 @@ pub(super) fn read(root: &Table<'_>) -> Result<Option<AnyBodies>, CaseError> {
         return Ok(None);
     }
     for (key, instead) in INSTEAD {
-        root.refuse(key, &format!("stands beside [[body]]; each body has {instead} in its own table"))?;
+        root.refuse(key, &format!("cannot be given together with [[body]]; each body has {instead} in its own table"))?;
     }
     let (mut bars, mut plane) = (Vec::new(), Vec::new());
     let mut names: Vec<&str> = Vec::new();
@@ -134,7 +134,7 @@ pub fn far_origin<const D: usize, const N: usize>(mesh: &Mesh<D, N>, origin: &[f
     let far = origin.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     (far > FAR * mesh.size()).then(|| {
         format!(
-            "is {origin:?} m, so far from a mesh of {} m that rounding takes its shape away; give a place near the \
+            "is {origin:?} m, so far from a mesh of {} m that rounding distorts it; give a place near the \
              other bodies, in metres",
             short(mesh.size(), 3)
         )
