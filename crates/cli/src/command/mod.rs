@@ -157,13 +157,13 @@ impl Console<'_> {
     fn say_to_estimate(&mut self, history: &Path) {
         let file = history.display();
         self.say(&format!(
-            "no estimate was made: `percute estimate {file}` makes that of the steps done, and --resume goes on"
+            "no estimate was made: `percute estimate {file}` estimates the steps done, and --resume continues"
         ));
     }
 
     /// Says how a run goes on of which something else than its history has failed.
     fn say_to_resume(&mut self, history: &Path) {
-        self.say(&format!("the steps so far are in {}: the same command with --resume goes on", history.display()));
+        self.say(&format!("the steps so far are in {}: the same command with --resume continues", history.display()));
     }
 
     /// Prints the plausibility warnings about a case and returns their names.

@@ -145,10 +145,7 @@ fn relative_error(relative: [f64; 2]) -> Option<Symptom> {
         return None;
     }
     let shown = percent(largest);
-    let figure = format!(
-        "the relative error [22] is {shown}: fields that have nothing in common have 70.7 % (1/√2), whatever their \
-         true error"
-    );
+    let figure = format!("the relative error [22] is {shown}: unrelated fields have 70.7 % (1/√2), for any true error");
     let remedy = "refine the mesh, and look for elements that are nearly flat";
     symptom("relative_error", format!("relative error [22] {shown}, near its ceiling of 71 %"), figure, remedy)
 }
@@ -224,8 +221,8 @@ fn slipped(slip: f64) -> Option<Symptom> {
     }
     let edges = short(slip, 2);
     let figure = format!(
-        "node pairs of two bodies slip by up to {edges} edges, but remain pairs; above {SLIP} the forces act at displaced \
-         points, and at one edge the true error is 5 % larger"
+        "node pairs of two bodies slip by up to {edges} edges, but remain pairs; above {SLIP} the forces act at \
+         displaced points, and at one edge the true error is 5 % larger"
     );
     let remedy = "use longer edges there, or an earlier end";
     symptom("slip", format!("node pairs slip by {edges} edges"), figure, remedy)
@@ -254,8 +251,8 @@ fn leant(slope: f64) -> Option<Symptom> {
     let figure = format!(
         "surfaces in contact are inclined by up to {angle}° to their common normal, along which all contact forces act"
     );
-    let remedy = "define a contact by `groups` of the edges around the point of contact, or one contact for each slope of \
-                  a ridge, without the edges at the ridge";
+    let remedy = "define a contact by `groups` of the edges around the point of contact, or one contact for each slope \
+                  of a ridge, without the edges at the ridge";
     symptom("common_slope", format!("surfaces inclined by {angle}° to their common normal"), figure, remedy)
 }
 

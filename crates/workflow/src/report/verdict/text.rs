@@ -60,8 +60,8 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
     }
     if facts.acts_late() {
         doubts.push(
-            "a corner or a curve penetrates the struck edges before their mean gap closes, and its tractions are as wide \
-             as these edges; refine that surface"
+            "a corner or a curve penetrates the struck edges before their mean gap closes, and its tractions are as \
+             wide as these edges; refine that surface"
                 .to_string(),
         );
     }
