@@ -224,7 +224,7 @@ fn read(file: &Path) -> Result<Source, Failure> {
     }
     let kind = file.metadata().map_err(unreadable)?.file_type();
     if is_named_pipe(file) {
-        let told = "this is a named pipe, which may have no writer; name a case file, or give <(COMMAND)";
+        let told = "this is a pipe, which may have no writer; name a case file, or give <(COMMAND)";
         return Err(Failure::Argument(format!("{name}: {told}")));
     }
     if !kind.is_file() && !is_pipe(kind) {
