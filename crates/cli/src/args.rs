@@ -58,13 +58,13 @@ pub enum Command {
     Simulate(SimulateArguments),
     /// Estimate the error of a stored history
     Estimate(EstimateArguments),
-    /// Write a page on an estimate, a history (estimated first) or a case (run first): one HTML file to hand over
+    /// Write a page on an estimate, a history (estimated first) or a case (run first), as one HTML file
     Report(ReportArguments),
     /// Run a case on its mesh and on nested refinements: true errors, effectivity indices and orders of convergence
     Verify(VerifyArguments),
-    /// Find the mesh on which a case has a wanted accuracy: runs on meshes that follow from the estimate
+    /// Find the mesh for a wanted accuracy of a case: runs on meshes that follow from the estimate
     Adapt(AdaptArguments),
-    /// Tell by which mesh a case or a history, also of another program, would have a wanted accuracy; with its sizes
+    /// Plan the mesh for a wanted accuracy of a case or a history, also of another program, with its element sizes
     Plan(PlanArguments),
     /// Run a case over values of its keys, in several processes, and make one table of the results
     Sweep(SweepArguments),
@@ -118,7 +118,7 @@ pub struct RunArguments {
     /// Store the estimate, element by element, in this file (.vtkhdf) [default: the file in the case, if any]
     #[arg(long, value_name = "FILE")]
     pub estimate: Option<PathBuf>,
-    /// Go on with the simulation whose history a killed or stopped run left; without such a file, begin [--force
+    /// Resume the killed or stopped simulation of the history file; without such a file, begin [--force
     /// replaces other files, and a history that keeps a part of its run]
     #[arg(long)]
     pub resume: bool,
@@ -148,7 +148,7 @@ pub struct SimulateArguments {
     /// Replace an existing history
     #[arg(long)]
     pub force: bool,
-    /// Go on with the simulation whose history a killed or stopped run left; without such a file, begin
+    /// Resume the killed or stopped simulation of the history file; without such a file, begin
     #[arg(long, conflicts_with = "force")]
     pub resume: bool,
     /// Allow a simulation of more than 1e10 elements times steps, which takes minutes to hours
@@ -206,7 +206,7 @@ pub struct ReportArguments {
     /// Title of the page [default: "Error of the simulation" and the name of the file]
     #[arg(long, value_name = "TEXT")]
     pub title: Option<String>,
-    /// Who hands the page over
+    /// Author of the page
     #[arg(long, value_name = "TEXT")]
     pub author: Option<String>,
     /// The program that simulated, of a history of another program [default: as the history states]

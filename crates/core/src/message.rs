@@ -57,7 +57,7 @@ pub(crate) fn facet(nodes: &[usize]) -> String {
     match nodes {
         [node] => format!("end at node {node}"),
         [first, second] => format!("edge of nodes {first} and {second}"),
-        _ => format!("facet of nodes {nodes:?}"),
+        _ => format!("face of nodes {nodes:?}"),
     }
 }
 

@@ -26,8 +26,8 @@ pub enum EstimateError {
     Request(#[from] RequestError),
     /// Surfaces that slide along each other, with a reconstruction that has none.
     #[error(
-        "the surfaces \"{}\" and \"{}\" slide along each other, and only the reconstruction \"corrected\" has an \
-         estimate of such contact; choose it, or state the contact as matching",
+        "\"{}\" and \"{}\" are a non-matching interface, and only the reconstruction \"corrected\" estimates the error \
+         of such contact; choose it, or define the contact as matching",
         .groups[0], .groups[1]
     )]
     NotMatching { groups: [String; 2] },

@@ -57,17 +57,18 @@ pub enum FileCause {
     Finish { detail: String, steps: usize },
     /// A run of another program or machine.
     #[error(
-        "its run cannot go on: it was written by {written}, and this is {here}, whose numbers may differ; run again"
+        "its run cannot be resumed: it was written by {written}, and this is {here}, whose numbers may differ; \
+         run again"
     )]
     Other { written: String, here: String },
     /// A file without checksums.
-    #[error("its run cannot go on: the file has no checksums, so that its steps may have been changed; run again")]
+    #[error("its run cannot be resumed: the file has no checksums, so that its steps may have been changed; run again")]
     Unsummed,
     /// A stored history of another program.
-    #[error("its run cannot go on: another program has simulated it, and percute has only stored it")]
+    #[error("its run cannot be resumed: another program has simulated it, and percute has only stored it")]
     Elsewhere,
     /// Steps with their own velocities or accelerations.
-    #[error("its run cannot go on: it has velocities or accelerations of its own, which the scheme does not give")]
+    #[error("its run cannot be resumed: it has velocities or accelerations of its own, which the scheme does not give")]
     GivenMotion,
     /// The file of a run that was killed before its first step.
     #[error("the run was killed before it wrote its first step: the file holds nothing; delete it, and run again")]

@@ -129,7 +129,8 @@ fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
             | EstimateError::Request(_),
         ) => input(py, error),
         RunError::Estimate(EstimateError::Scratch(_)) => {
-            let resumes = "; a history that was stored in a file has the steps so far: `percute.resume` goes on";
+            let resumes =
+                "; a history that was stored in a file has the steps so far: `percute.resume` continues the run";
             exception(py, "StorageError", &format!("{error}{resumes}"))
         }
         RunError::Estimate(_) => exception(py, "EstimateError", &error.to_string()),

@@ -131,7 +131,7 @@ fn check(name: &str, text: &str, folder: &Path, long: Long) -> Result<(), Failur
 
 /// Refuses a pipe, which would wait for its writer.
 fn refuse_pipe(file: &Path) -> Result<(), Failure> {
-    let told = || format!("{}: this is a pipe, whose writer may never come; name a file", file.display());
+    let told = || format!("{}: this is a pipe, which may have no writer; name a file", file.display());
     if is_named_pipe(file) { Err(Failure::Argument(told())) } else { Ok(()) }
 }
 

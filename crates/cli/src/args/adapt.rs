@@ -15,14 +15,14 @@ pub struct AdaptArguments {
     /// The relative error to reach, such as 3% or 0.03
     #[arg(long, value_name = "ERROR", value_parser = target)]
     pub target: f64,
-    /// Whether the target is about the mean error or the largest (sup)
+    /// Error of the target: the mean or the largest (sup)
     #[arg(long, value_name = "MEASURE", default_value = "mean", value_parser = measure)]
     pub measure: Measure,
-    /// A quantity that the target is about, instead of the error: within this part of its limit. peak_force, impulse,
+    /// Quantity of the target instead of the error, to this relative distance from its limit: peak_force, impulse,
     /// rebound, or a probe such as probe:0.01,0.02:von_mises
     #[arg(long, value_name = "QUANTITY", conflicts_with = "measure")]
     pub target_on: Option<Quantity>,
-    /// How meshes are made: by bisection of the first mesh, or by the program Gmsh
+    /// Source of the meshes: bisection of the first mesh, or the program Gmsh
     #[arg(long, value_name = "MESHER", default_value = "bisect", value_parser = ["bisect", "gmsh"])]
     pub mesher: String,
     /// The geometry that Gmsh meshes (.geo, .step), with the groups of the first mesh [default: the outline of the

@@ -157,13 +157,13 @@ impl Console<'_> {
     fn say_to_estimate(&mut self, history: &Path) {
         let file = history.display();
         self.say(&format!(
-            "no estimate was made: `percute estimate {file}` makes that of the steps done, and --resume goes on"
+            "no estimate was made: `percute estimate {file}` estimates the steps done, and --resume continues"
         ));
     }
 
     /// Says how a run goes on of which something else than its history has failed.
     fn say_to_resume(&mut self, history: &Path) {
-        self.say(&format!("the steps so far are in {}: the same command with --resume goes on", history.display()));
+        self.say(&format!("the steps so far are in {}: the same command with --resume continues", history.display()));
     }
 
     /// Prints the plausibility warnings about a case and returns their names.
@@ -220,7 +220,7 @@ fn read(file: &Path) -> Result<Source, Failure> {
     }
     let kind = file.metadata().map_err(unreadable)?.file_type();
     if is_named_pipe(file) {
-        let told = "this is a pipe, whose writer may never come; name a case file, or give <(COMMAND)";
+        let told = "this is a pipe, which may have no writer; name a case file, or give <(COMMAND)";
         return Err(Failure::Argument(format!("{name}: {told}")));
     }
     if !kind.is_file() && !is_pipe(kind) {

@@ -52,7 +52,7 @@ impl Left {
         let (file, case) = (stored.file.path().display(), arguments.case.display());
         Err(Failure::Argument(format!(
             "--resume: {file} keeps a part of the run, and the estimate needs all steps: `percute simulate {case} \
-             --resume` goes on with the history alone; with --force, the run begins again and replaces it"
+             --resume` continues the history alone; with --force, the run begins again and replaces it"
         )))
     }
 

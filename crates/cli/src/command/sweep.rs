@@ -64,6 +64,6 @@ fn summary(count: &Count, chosen: usize) -> String {
     };
     add(*found, "done before");
     add(*failed, "failed (failure.txt in their folders has the reason)");
-    add(*left, "left; the same command goes on with them");
+    add(*left, "left; the same command continues with them");
     format!("{}: {}", counted(chosen, "case"), parts.join(", "))
 }

@@ -136,7 +136,7 @@ fn other_signals_close_a_history_too() {
         assert_eq!(output.status.code(), Some(130), "{signal}: {}", stderr(&output));
         let info = stdout(&bench.percute(&["info", "case.vtkhdf"]));
         let words = info.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(words.contains("; the run was stopped there; `--resume` lets it go on"), "{signal}: {info}");
+        assert!(words.contains("; the run was stopped there; `--resume` continues it"), "{signal}: {info}");
     }
 }
 
@@ -150,9 +150,9 @@ fn a_killed_simulation_leaves_a_history_to_recover() {
     child.wait().unwrap();
     let info = stdout(&bench.percute(&["info", "case.vtkhdf"]));
     let words = info.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains("INCOMPLETE: the run goes on or was killed;"), "{info}");
+    assert!(words.contains("INCOMPLETE: the run is active or was killed;"), "{info}");
     assert!(
-        words.contains("; after a kill, `--resume` lets it go on, and `percute recover case.vtkhdf` closes the file"),
+        words.contains("; after a kill, `--resume` continues it, and `percute recover case.vtkhdf` closes the file"),
         "the cure is cut off: {info}"
     );
     let estimate = ["estimate", "case.vtkhdf", "--json", "--every", "1000"];

@@ -20,14 +20,18 @@ fn too_little_memory_is_told_before_the_work() {
     let steps =
         Bench::new(&BLOCK.replace("end = 5e-6\ncourant = 0.9", "end = 1.0\nstep = 1e-7").replace("1e-4]", "2.0]"));
     for (bench, command, words) in [
-        (&mesh, "run case.toml", "a mesh of 8000000 elements needs about 3.4 GB with its problem, which cannot be had"),
+        (
+            &mesh,
+            "run case.toml",
+            "a mesh of 8000000 elements needs about 3.4 GB with its problem, which is not available",
+        ),
         (&mesh, "info case.toml", "give a coarser mesh"),
         (
             &steps,
             "run case.toml --long",
             "10000000 steps: is it correct, and in seconds? As it is, the run needs about",
         ),
-        (&steps, "simulate case.toml --long", "of memory, which cannot be had"),
+        (&steps, "simulate case.toml --long", "of memory, which is not available"),
     ] {
         let output = limited(bench, 700_000, command);
         assert_eq!(output.status.code(), Some(2), "{command}: {}", stderr(&output));
@@ -64,10 +68,10 @@ fn no_command_is_aborted_for_want_of_memory() {
     let mesh = TriangleMesh::rectangle(1.0, 1.0, 250, 250).unwrap();
     let format = Format { version: Version::V41, binary: false };
     gmsh::write(&bench.path("block.msh"), Overwrite::Refuse, &mesh.into(), format).unwrap();
-    never_aborts(&bench, "info block.msh", (50_000..=200_000).step_by(30_000), "which cannot be had");
+    never_aborts(&bench, "info block.msh", (50_000..=200_000).step_by(30_000), "which is not available");
     let small = Bench::new(&BLOCK.replace("nx = 5, ny = 4", "nx = 40, ny = 40").replace("end = 5e-6", "end = 1e-7"));
     let verify = "verify case.toml --levels 2 --quiet --threads 1 --long";
-    never_aborts(&small, verify, [80_000, 120_000, 2_000_000], "which cannot be had");
+    never_aborts(&small, verify, [80_000, 120_000, 2_000_000], "which is not available");
 }
 
 /// A mesh of arrays makes a case long, and its document takes many times the memory of the text.
@@ -76,7 +80,8 @@ fn a_text_is_measured_before_it_is_read() {
     let bench = Bench::new(&format!("[mesh]\npoints = [{}]\n", "1,".repeat(5_000_000)));
     let output = limited(&bench, 700_000, "info case.toml");
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
-    let words = "case.toml:1: a case of 10.0 MB needs up to 800 MB of memory, which cannot be had: name a mesh of Gmsh";
+    let words =
+        "case.toml:1: a case of 10.0 MB needs up to 800 MB of memory, which is not available: name a mesh of Gmsh";
     assert!(stderr(&output).contains(words), "{}", stderr(&output));
 }
 

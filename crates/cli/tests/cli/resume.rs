@@ -86,10 +86,7 @@ fn a_run_that_goes_on_and_is_stopped_tells_how_to_estimate_it() {
     let output = send_interrupt(started(&bench, &RUN, || changed() != before));
     let told = stderr(&output);
     assert!(output.status.code() == Some(130) && stdout(&output).is_empty(), "{told}");
-    assert!(
-        told.contains("no estimate was made: `percute estimate case.vtkhdf` makes that of the steps done"),
-        "{told}"
-    );
+    assert!(told.contains("no estimate was made: `percute estimate case.vtkhdf` estimates the steps done"), "{told}");
     let estimated = bench.percute(&["estimate", FILE, "--json", "--every", "100"]);
     assert_eq!(estimated.status.code(), Some(0), "{}", stderr(&estimated));
 }

@@ -199,7 +199,7 @@ fn an_interrupted_sweep_leaves_nothing_half_and_goes_on() {
     }
     let output = send_interrupt(sweep);
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
-    assert_eq!(stdout(&output).lines().next(), Some("2 cases: 1 done, 1 left; the same command goes on with them"));
+    assert_eq!(stdout(&output).lines().next(), Some("2 cases: 1 done, 1 left; the same command continues with them"));
     assert_eq!(attempts(), 0);
 }
 

@@ -66,9 +66,9 @@ pub enum SimulationError {
     },
     /// A body enters another one where no contact is stated or found.
     #[error(
-        "at step {step}, t = {time:.6e} s, node {node} of \"{}\" is {depth:.3e} m inside \"{}\": the two meet where no \
-         contact was stated, and none was found from their places and velocities at the start; name the edges that \
-         touch there by a contact with `groups`, or end the run before", .bodies[0], .bodies[1]
+        "at step {step}, t = {time:.6e} s, node {node} of \"{}\" is {depth:.3e} m inside \"{}\": no contact was \
+         defined there, and none was found from the positions and velocities at the start; define a contact by \
+         `groups` of these edges, or end the run before", .bodies[0], .bodies[1]
     )]
     Missed {
         /// The step.

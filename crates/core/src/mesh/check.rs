@@ -42,8 +42,8 @@ pub enum MeshError {
     TooLarge { what: &'static str, count: usize, most: usize },
     /// More elements than memory can hold.
     #[error(
-        "a mesh of {elements} elements needs about {} GB with its problem, which cannot be had; give a coarser mesh, \
-         or take a larger machine or limit (`ulimit -v`)",
+        "a mesh of {elements} elements needs about {} GB with its problem, which is not available; give a coarser \
+         mesh, or take a larger machine or limit (`ulimit -v`)",
         rounded(*.bytes as f64 / 1e9, 2)
     )]
     NoMemory { elements: usize, bytes: u64 },

@@ -147,7 +147,7 @@ impl Surfaces {
         found: &Found,
         matching: bool,
     ) -> Option<[String; 2]> {
-        let relation = if matching { "facing" } else { "sliding on" };
+        let relation = if matching { "facing" } else { "towards" };
         let mut sides = found.seeing.clone();
         if !matching {
             sides.iter_mut().zip(&found.beside).for_each(|(side, beside)| side.extend(beside));
@@ -182,7 +182,7 @@ impl Surfaces {
                     }
                 }
             }
-            let relation = if others.is_empty() { String::new() } else { format!(" sliding on {}", listed(&others)) };
+            let relation = if others.is_empty() { String::new() } else { format!(" towards {}", listed(&others)) };
             self.group(mesh, listed(&own) + &relation, facets[usize::from(!is_common)].clone())
         };
         // The sides stay in the order of the first contact.

@@ -246,8 +246,8 @@ pub enum Cause {
     Interlocked { bodies: [String; 2], halves: bool },
     /// Bodies of which no edges see each other.
     #[error(
-        "no free edges of \"{}\" and \"{}\" see each other: another body, a support or a load is on or between them, \
-         contact with a third body has them, or they pass each other; leave the contact out, or name the surfaces by \
+        "no free edges of \"{}\" and \"{}\" face each other: another body, a support or a load is on or between them, \
+         contact with a third body uses them, or they pass each other; leave the contact out, or name the surfaces by \
          `groups`", .bodies[0], .bodies[1]
     )]
     NothingSees { bodies: [String; 2] },
@@ -293,7 +293,7 @@ pub enum Cause {
     #[error(
         "the nodes of the two groups must face each other in pairs, {}; mesh both surfaces alike, and place them to \
          1e-9 of an edge",
-        if counts[0] == counts[1] { format!("but node {node} is {} m aside of the nearest one", short(*.offset)) }
+        if counts[0] == counts[1] { format!("but node {node} is offset by {} m from the nearest one", short(*.offset)) }
         else { format!("but the groups have {} and {} nodes", .counts[0], .counts[1]) }
     )]
     NotMatching { counts: [usize; 2], node: usize, offset: f64 },
@@ -338,8 +338,8 @@ pub enum Cause {
     FrictionsDiffer { node: usize, friction: [f64; 2] },
     /// Contacts that share nodes and shall be pairs of nodes.
     #[error(
-        "node {node} belongs to two contacts, which are solved together and slide; leave `matching` out of both, or \
-         make it false"
+        "node {node} belongs to two contacts, which are solved together as a non-matching interface; leave `matching` \
+         out of both, or make it false"
     )]
     SharedPairs { node: usize },
     /// Two contacts of the same surfaces.

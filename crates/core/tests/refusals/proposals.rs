@@ -57,5 +57,5 @@ fn a_curve_strikes_two_bodies_at_once() {
         ("disc", disc(0.01, [0.031, 0.0]), [-10.0, 0.0]),
     ];
     let found = groups(&bodies);
-    assert_eq!(found[1], ["lower and upper sliding on disc", "disc sliding on lower and upper"], "{found:?}");
+    assert_eq!(found[1], ["lower and upper towards disc", "disc towards lower and upper"], "{found:?}");
 }

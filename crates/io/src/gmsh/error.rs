@@ -50,7 +50,7 @@ pub enum GmshCause {
     File(#[from] FileCause),
     /// A large file.
     #[error(
-        "to read the mesh takes about {} MB of memory, which cannot be had; give a coarser mesh, or take a larger \
+        "to read the mesh takes about {} MB of memory, which is not available; give a coarser mesh, or take a larger \
          machine or limit (`ulimit -v`)", needed / 1_000_000
     )]
     NoMemory { needed: u64 },

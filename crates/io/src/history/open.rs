@@ -200,7 +200,7 @@ fn contact(
     sorted.sort_unstable();
     // A node at two planes stands in it twice.
     if let Some(three) = sorted.windows(3).find(|three| three[0] == three[2]) {
-        let detail = format!("node {} stands in it three times", three[0]);
+        let detail = format!("node {} occurs in it three times", three[0]);
         return Err(FileCause::Value { name: listed.name, detail });
     }
     let count = of_rows.len();

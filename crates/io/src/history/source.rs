@@ -68,7 +68,7 @@ impl HistorySource {
         for (node, left) in rows_of {
             let touches_one = problem.contact_nodes().iter().any(|contact| contact.node.index() == node);
             if left.len() > usize::from(!touches_one) {
-                let (name, detail) = ("percute/contact/nodes".to_string(), format!("node {node} stands in it twice"));
+                let (name, detail) = ("percute/contact/nodes".to_string(), format!("node {node} occurs in it twice"));
                 return Err(FileCause::Value { name, detail }.at(file.path()));
             }
             strange.extend(left.into_iter().map(|row| (row, node)));

@@ -213,9 +213,9 @@ fn indices_and_flags_out_of_range() {
         ["percute/checksum", "percute/checksums"].iter().for_each(|name| f.unlink(name).unwrap());
         change(f, "percute/contact/nodes", 1, 0_i64);
     });
-    assert_says(&said, &["`percute/contact/nodes`: node 0 stands in it twice"]);
+    assert_says(&said, &["`percute/contact/nodes`: node 0 occurs in it twice"]);
     let said = spoilt(|f| [1, 2].iter().for_each(|&row| change(f, "percute/contact/nodes", row, 0_i64)));
-    assert_says(&said, &["node 0 stands in it three times"]);
+    assert_says(&said, &["node 0 occurs in it three times"]);
     let said = spoilt(|f| change(f, "percute/contact/touching", 30, 2_u8));
     assert_says(&said, &["`percute/contact/touching`: 2 is neither 0 nor 1"]);
     let said = spoilt(|f| change(f, "VTKHDF/Steps/PointDataOffsets/displacement", 2, 0_i64));

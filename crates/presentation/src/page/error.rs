@@ -135,6 +135,6 @@ fn outlook(document: &Document) -> String {
         return String::new();
     };
     paragraph(&format!(
-        "Expected mean error with elements and steps half as long: {size}; with steps half as long alone: {step}."
+        "Halving element size and step would give a mean error of about {size}; halving the step alone, about {step}."
     ))
 }

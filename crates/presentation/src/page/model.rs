@@ -82,7 +82,7 @@ const CONSISTENCY: [Named; 17] = [
     ("velocity", "velocities off those of the displacements", "%"),
     ("acceleration", "accelerations off those of the displacements", "%"),
     ("cone", "contact force in tension or beyond Coulomb’s limit", "%"),
-    ("opposite", "contact force on one of two surfaces that slide beyond that of their multipliers", "%"),
+    ("opposite", "contact force on one surface of a non-matching interface beyond that of its multipliers", "%"),
     ("slip", "misfit of Coulomb’s law at nodes that slide", "%"),
     ("plane", "gap under contact forces, the same everywhere, over the element size", "%"),
     ("gap_under_force", "gap under a contact force, over the element size", "%"),

@@ -17,7 +17,7 @@ pub(super) fn warning(mesh: &AnyMesh, basis: &Basis) -> Option<String> {
     let turns = basis.nodes().iter().filter_map(|node| turn(mesh, *node));
     let turn = turns.filter(|turn| (CURVE[0]..=CURVE[1]).contains(turn)).reduce(f64::max)?;
     Some(format!(
-        "the outline turns by up to {}° at nodes that touch: if it is that of a curve, its vertices become corners as \
+        "the outline turns by up to {}° at contact nodes: if it approximates a curve, its vertices become corners as \
          elements become smaller; mesh the curve (--mesher gmsh with --geometry FILE.geo), or begin with a finer \
          outline",
         short(turn, 2)

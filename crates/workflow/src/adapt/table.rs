@@ -70,8 +70,8 @@ pub fn conclusion(adaptation: &Adaptation) -> String {
         }
         Reason::Reached => format!("Target {target} reached: {reached}."),
         Reason::Limit => format!(
-            "Target {target} not reached within the limit of {} elements times steps: {reached}.{needed}{} A larger \
-             limit goes on.",
+            "Target {target} not reached within the limit of {} elements times steps: {reached}.{needed}{} Continue \
+             with a larger limit.",
             short(wish.limit, 2),
             adaptation
                 .reachable

@@ -45,7 +45,7 @@ pub(super) fn read(root: &Table<'_>) -> Result<Option<Bodies>, CaseError> {
         return Ok(None);
     }
     for (key, instead) in INSTEAD {
-        root.refuse(key, &format!("stands beside [[body]]; each body has {instead} in its own table"))?;
+        root.refuse(key, &format!("cannot be given together with [[body]]; each body has {instead} in its own table"))?;
     }
     let mut bodies = Vec::new();
     let mut names: Vec<&str> = Vec::new();
@@ -116,7 +116,7 @@ pub fn far_origin(mesh: &AnyMesh, origin: &Vector) -> Option<String> {
     let far = origin.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     (far > FAR * mesh.size()).then(|| {
         format!(
-            "is {:?} m, so far from a mesh of {} m that rounding takes its shape away; give a place near the \
+            "is {:?} m, so far from a mesh of {} m that rounding distorts it; give a place near the \
              other bodies, in metres",
             &origin[..mesh.dimension()],
             short(mesh.size(), 3)

@@ -22,9 +22,7 @@ fn one(table: &Table<'_>, dimension: usize, parts: usize) -> Result<Contact, Cas
     table.only(&["bodies", "groups", "friction", "matching"])?;
     let between = match (table.get("bodies"), table.get("groups")) {
         (Some(_), Some(groups)) => {
-            return Err(
-                groups.error("stands beside `bodies`, which has the edges looked for; leave one of the two out")
-            );
+            return Err(groups.error("cannot be given together with `bodies`; leave one of the two out"));
         }
         (Some(bodies), None) => Between::Bodies(two(&bodies, BODIES)?),
         (None, Some(groups)) => Between::Groups(two(&groups, GROUPS)?),

@@ -165,7 +165,7 @@ fn check_length(source: &Source) -> Result<(), CaseError> {
     }
     let (length, needed) = (bytes(source.text().len() as u64), bytes(needed));
     let told = format!(
-        "a case of {length} needs up to {needed} of memory, which cannot be had: name a mesh of Gmsh in [mesh] by \
+        "a case of {length} needs up to {needed} of memory, which is not available: name a mesh of Gmsh in [mesh] by \
          `file`, or use a larger machine or limit (`ulimit -v`)"
     );
     Err(source.error(&At { path: String::new(), span: 0..0 }, told))

@@ -137,7 +137,7 @@ fn of_contact(found: &Consistency) -> [Option<Excess>; 7] {
             found.opposite.unwrap_or(0.0),
             OPPOSITE,
             "opposite",
-            "the contact force on one of two surfaces that slide, beyond that of their multipliers, over all forces,",
+            "the contact force on one surface of a non-matching interface, beyond its multipliers, over all forces,",
         ),
         excess(
             found.plane,

@@ -75,7 +75,7 @@ pub(super) fn lacking(
         None => format!("its instants are up to {} critical steps apart (limit 1)", trimmed(distance / critical, 3)),
     };
     let way_out = if slides {
-        ", since contact forces of surfaces that slide are not derived between samples".to_string()
+        ", since contact forces of non-matching interfaces are not derived between samples".to_string()
     } else {
         format!(", or give {} too, {}", missing(given), near(times, critical))
     };

@@ -58,8 +58,8 @@ pub fn refusal(needed: u64) -> Option<String> {
     }
     let needed = bytes(needed);
     Some(format!(
-        "the run needs about {needed} of memory, which cannot be had: use a coarser mesh, fewer steps, fewer samples \
-         of the error (`every`), or a larger machine or limit (`ulimit -v`)"
+        "the run needs about {needed} of memory, which is not available: use a coarser mesh, fewer steps, fewer \
+         samples of the error (`every`), or a larger machine or limit (`ulimit -v`)"
     ))
 }
 

@@ -260,14 +260,14 @@ impl HistoryInfo {
         let held = self.steps.map_or_else(|| "no step".to_string(), |steps| counted(steps, "step"));
         let ended = match (self.complete, self.steps == Some(self.time.steps_planned)) {
             (true, true) => "complete".to_string(),
-            (true, false) => "the run was stopped there; `--resume` lets it go on".to_string(),
+            (true, false) => "the run was stopped there; `--resume` continues it".to_string(),
             (false, _) if self.steps.is_none() => {
-                "INCOMPLETE: the run goes on or was killed; after a kill, delete the file".to_string()
+                "INCOMPLETE: the run is active or was killed; after a kill, delete the file".to_string()
             }
             (false, _) => {
                 let file = &self.file;
                 format!(
-                    "INCOMPLETE: the run goes on or was killed; after a kill, `--resume` lets it go on, and `percute \
+                    "INCOMPLETE: the run is active or was killed; after a kill, `--resume` continues it, and `percute \
                      recover {file}` closes the file"
                 )
             }

@@ -83,7 +83,9 @@ impl PlaneInfo {
             None => ("plane", format!("gap {gap} m{when}, {} may touch", counted(self.contact_nodes, "node"))),
             Some([first, second]) => {
                 let nodes = match self.matching {
-                    Some(false) => format!("{} of \"{first}\" may slide", counted(self.contact_nodes, "node")),
+                    Some(false) => {
+                        format!("{} of \"{first}\" may touch, non-matching", counted(self.contact_nodes, "node"))
+                    }
                     _ => format!("{} of nodes may touch", counted(self.contact_nodes, "pair")),
                 };
                 ("contact", format!("\"{first}\" with \"{second}\": gap {gap} m{when}, {nodes}"))

@@ -89,7 +89,7 @@ impl NextMesh {
         };
         let how = match branch {
             Branch::Uniform => "all elements alike",
-            Branch::Graded => "smaller elements towards the nodes that touch",
+            Branch::Graded => "smaller elements towards the contact",
             Branch::Map => "each element by its error",
         };
         let step = if *expected > self.target * 1.001 { ", the next step to the target" } else { "" };

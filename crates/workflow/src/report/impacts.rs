@@ -236,8 +236,8 @@ fn rebound(
         _ if !ended => Some("contact has not ended"),
         (None, _) | (_, None) => Some("another contact changes the velocities, too"),
         _ if centres.others_act(sides, [first, last]) => Some("another contact changes the velocities, too"),
-        (Some(before), _) if before >= 0.0 => Some("the bodies do not come nearer before they touch"),
-        (_, Some(after)) if after < 0.0 => Some("the bodies still come nearer, and will touch again"),
+        (Some(before), _) if before >= 0.0 => Some("the bodies do not approach each other before contact"),
+        (_, Some(after)) if after < 0.0 => Some("the bodies still approach each other, and will touch again"),
         _ => None,
     };
     let restitution = before.zip(after).filter(|_| no_restitution.is_none()).map(|(before, after)| -after / before);

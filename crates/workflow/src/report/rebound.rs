@@ -92,7 +92,7 @@ impl Rebound {
             _ if problem.is_loaded() && loaded(contact, &balance[first.saturating_sub(1)], &balance[last + 1]) => {
                 Some(LOADED)
             }
-            _ if normal_before >= 0.0 => Some("the body does not fly towards the plane"),
+            _ if normal_before >= 0.0 => Some("the body does not move towards the plane"),
             Some(after) if after < 0.0 => Some("the body still moves towards the plane, which it will touch again"),
             _ if planes > 1 => Some(SEVERAL_PLANES),
             Some(_) => None,

@@ -145,10 +145,7 @@ fn relative_error(relative: [f64; 2]) -> Option<Symptom> {
         return None;
     }
     let shown = percent(largest);
-    let figure = format!(
-        "the relative error [22] is {shown}: fields that have nothing in common have 70.7 % (1/√2), whatever their \
-         true error"
-    );
+    let figure = format!("the relative error [22] is {shown}: unrelated fields have 70.7 % (1/√2), for any true error");
     let remedy = "refine the mesh, and look for elements that are nearly flat";
     symptom("relative_error", format!("relative error [22] {shown}, near its ceiling of 71 %"), figure, remedy)
 }
@@ -224,11 +221,11 @@ fn slipped(slip: f64) -> Option<Symptom> {
     }
     let edges = short(slip, 2);
     let figure = format!(
-        "pairs of nodes of two bodies slip by up to {edges} edges, but stay pairs; above {SLIP} the forces act beside \
-         their place, and at one edge the true error is 5 % larger"
+        "node pairs of two bodies slip by up to {edges} edges, but remain pairs; above {SLIP} the forces act at \
+         displaced points, and at one edge the true error is 5 % larger"
     );
     let remedy = "use longer edges there, or an earlier end";
-    symptom("slip", format!("pairs of nodes slip by {edges} edges"), figure, remedy)
+    symptom("slip", format!("node pairs slip by {edges} edges"), figure, remedy)
 }
 
 /// Nodes inside the other body, of which only mean gaps are known.
@@ -238,8 +235,8 @@ fn entered(depth: f64) -> Option<Symptom> {
     }
     let edges = short(depth, 2);
     let figure = format!(
-        "a node of surfaces that slide was up to {edges} of its edge inside the other body: its gap is a mean over \
-         edges, and its contact force is missing or acts too late"
+        "a node of a non-matching interface was up to {edges} of its edge inside the other body: its gap is a mean \
+         over edges, and its contact force is missing or acts too late"
     );
     let brief = format!("a node was {edges} of its edge inside the other body");
     symptom("depth", brief, figure, "use shorter edges on both surfaces")
@@ -252,11 +249,11 @@ fn leant(slope: f64) -> Option<Symptom> {
     }
     let angle = short(slope, 2);
     let figure = format!(
-        "surfaces that touch lean together by up to {angle}° from their normal, along which all contact forces act"
+        "surfaces in contact are inclined by up to {angle}° to their common normal, along which all contact forces act"
     );
-    let remedy = "name groups of edges that face each other around the place where they touch, or of slopes of a \
-                  ridge, each in a contact of its own without the edges at the ridge";
-    symptom("common_slope", format!("surfaces lean together by {angle}° from their normal"), figure, remedy)
+    let remedy = "define a contact by `groups` of the edges around the point of contact, or one contact for each slope \
+                  of a ridge, without the edges at the ridge";
+    symptom("common_slope", format!("surfaces inclined by {angle}° to their common normal"), figure, remedy)
 }
 
 /// Strains that are not small.

@@ -74,7 +74,7 @@ fn two_blocks_touch_at_the_sides_that_meet() {
     // From the right.
     assert_eq!(with(wide("hammer", [0.041, 0.0], [-10.0, 0.0])), one("anvil.right", "hammer.left", true));
     // From above the right side: it is there long before it is down, and touches with its left part.
-    let part = one("anvil sliding on hammer", "hammer sliding on anvil", false);
+    let part = one("anvil towards hammer", "hammer towards anvil", false);
     assert_eq!(with(wide("hammer", [0.041, 0.021], [-100.0, -10.0])), part);
     // Bodies at rest may be pushed together by others.
     assert_eq!(with(wide("hammer", [0.0, 0.021], [0.0, 0.0])), top(true));
@@ -96,15 +96,15 @@ fn surfaces_end_beyond_the_other_body() {
         ends.sort_by(f64::total_cmp);
         (ends[0], ends[ends.len() - 1])
     };
-    let (first, last) = edges(&problem, "plate sliding on block");
+    let (first, last) = edges(&problem, "plate towards block");
     assert!((first - 0.05).abs() < 1e-12 && (last - 0.12).abs() < 1e-12, "{first} {last}");
-    assert_eq!(problem.conditions().interfaces[0].groups(), ["plate sliding on block", "block.bottom"]);
+    assert_eq!(problem.conditions().interfaces[0].groups(), ["plate towards block", "block.bottom"]);
     // Where nodes face each other in pairs, only they are in it.
     let plate = block("plate", [0.16, 0.02], [16, 2], [0.0, 0.0], [0.0, 0.0]);
     let problem = bodies(&[plate, falls([3, 2], 0.07, [0.0, -10.0])]).contact(all(0.2)).build().unwrap();
     let (first, last) = edges(&problem, "plate facing block");
     assert!((first - 0.07).abs() < 1e-12 && (last - 0.10).abs() < 1e-12, "{first} {last}");
-    assert!(!problem.mesh().facet_groups().contains_key("plate sliding on block"));
+    assert!(!problem.mesh().facet_groups().contains_key("plate towards block"));
 }
 
 #[test]
@@ -180,7 +180,7 @@ fn a_block_on_two_blocks_has_one_interface() {
     };
     let expected = |problem: &Problem<2, 3>| {
         let interfaces: Vec<_> = problem.conditions().interfaces.iter().map(|interface| interface.groups()).collect();
-        assert_eq!(interfaces, [["a facing b", "b facing a"], ["a and b sliding on c", "c.bottom"]]);
+        assert_eq!(interfaces, [["a facing b", "b facing a"], ["a and b towards c", "c.bottom"]]);
         let sliding = &problem.surface().sliding()[0];
         assert_eq!((sliding.slave().parts().len(), sliding.master().len()), (2, 5));
     };
@@ -192,7 +192,7 @@ fn a_block_on_two_blocks_has_one_interface() {
     let problem = bodies(&blocks(1e-4)).contact(of("c", "a")).contact(of("c", "b")).contact(all(0.2));
     let problem = problem.build().unwrap();
     let interface = &problem.conditions().interfaces[0];
-    assert_eq!(interface.groups(), ["c.bottom", "a and b sliding on c"]);
+    assert_eq!(interface.groups(), ["c.bottom", "a and b towards c"]);
     let groups = |second: &str, friction: f64| {
         let groups = Between::Groups(["c.bottom".to_string(), second.to_string()]);
         Contact::new(2, groups, friction, None).unwrap()

@@ -109,13 +109,13 @@ pub(super) const RULES: [Rule; 28] = [
         applies: |f| f.phases > 1,
         range: [0.49, 2.8],
         situation: "several contact phases",
-        doubt: Some("after several contacts, simulation and solution are no longer in step"),
+        doubt: Some("after several contacts, small errors of timing dominate"),
     },
     // python/percute/verification/struck.py has 0.90 to 1.66, random_strikes.py 1.01 to 1.85.
     Rule {
         applies: Facts::slides_on_little,
         range: [0.83, 2.2],
-        situation: "corners, curves and parts of an edge on surfaces that slide",
+        situation: "corners, curves and parts of an edge on non-matching interfaces",
         doubt: None,
     },
     // crates/estimator/tests/sliding_blocks.rs has 1.08 to 1.37 for surfaces that slide, two_blocks.rs 1.07 to 1.15 for
@@ -147,7 +147,7 @@ pub(super) const RULES: [Rule; 28] = [
     Rule {
         applies: |f| f.contact.single_element,
         range: [0.95, 2.0],
-        situation: "obtuse corners that one element fills",
+        situation: "obtuse corners of a single element",
         doubt: None,
     },
     // speeds.csv, L tilted by 10°: its second corner arrives at another instant than that of the reference.
@@ -155,7 +155,7 @@ pub(super) const RULES: [Rule; 28] = [
         applies: |f| f.contact.zones > 1,
         range: [0.49, 1.8],
         situation: "bodies that touch at several places",
-        doubt: Some("where a second place touches, a small error of its instant is a large error of the motion"),
+        doubt: Some("at a second contact zone, a small error of timing is a large error of the motion"),
     },
     // python/percute/verification/durations.py: the index falls in the first passage, and grows slowly after it.
     Rule {
@@ -167,7 +167,7 @@ pub(super) const RULES: [Rule; 28] = [
     Rule {
         applies: |f| f.contact.touches == Touches::Edge && f.passages > LONG,
         range: [0.7, 1.6],
-        situation: "flat impacts and 10 wave passages after them",
+        situation: "flat impacts of up to 10 wave passages",
         doubt: None,
     },
     // effectivity.csv, flat; speeds.csv, flat.
@@ -278,7 +278,7 @@ pub(super) fn outside(facts: &Facts) -> Option<&'static str> {
 /// Contact of a history of another program.
 pub(super) const PENALTY: &str = "contact by a penalty";
 /// The gap of a slave is a mean over its edges: a corner enters them first.
-const LATE: &str = "corners and curves that enter the edges that they strike";
+const LATE: &str = "corners and curves that penetrate the struck edges";
 
 /// Corners that slide off a plate at 100 to 400 m/s: 1.2 to 24; that strike within a 16th of their edge from its end:
 /// up to 9; that are beyond it by less than a thousandth of their edge: up to 41.
@@ -286,4 +286,4 @@ const AT_END: &str =
     "corners and curves that slide off the end of the other surface, or strike within 1/16 of an edge of it";
 
 /// The motion differs by a tenth and more from that with a contact for each slope.
-const LEANING: &str = "surfaces that lean together from their common normal";
+const LEANING: &str = "surfaces inclined to their common normal";

@@ -56,12 +56,12 @@ pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
         doubts.push(format!("the admissible force has {} of the contact impulse", whole_percent(kept)));
     }
     if facts.slip > 1.0 {
-        doubts.push(format!("nodes that touch in pairs are up to {} edges aside of each other", short(facts.slip, 2)));
+        doubts.push(format!("node pairs are up to {} edges apart along the interface", short(facts.slip, 2)));
     }
     if facts.acts_late() {
         doubts.push(
-            "a corner or a curve enters the edges of the surface that it strikes before the mean gap closes, and its \
-             tractions are as wide as these edges; refine that surface"
+            "a corner or a curve penetrates the struck edges before their mean gap closes, and its tractions are as \
+             wide as these edges; refine that surface"
                 .to_string(),
         );
     }
@@ -132,7 +132,11 @@ fn situation(facts: &Facts, rule: &Rule, untested: &[String]) -> String {
         }
     };
     let untested: Vec<&str> = untested.iter().map(String::as_str).filter(|one| Some(*one) != outside).collect();
-    let missing = if untested.is_empty() { String::new() } else { format!("; not tested: {}", untested.join(", ")) };
+    let missing = if untested.is_empty() {
+        String::new()
+    } else {
+        format!("; outside the tested range: {}", untested.join(", "))
+    };
     let near = facts.linearity.departures().into_iter().filter(|departure| !departure.is_far);
     let not_small = near.map(|departure| departure.named).collect::<Vec<_>>().join(", ");
     let not_small = if not_small.is_empty() { not_small } else { format!("; not small: {not_small}") };
@@ -148,8 +152,8 @@ fn place(facts: &Facts, shares: Shares) -> String {
     }
     let near = whole_percent(facts.at_contact);
     format!(
-        "Elements that touch hold {near} of the squared mean error; the squared largest error is {contact} contact, \
-         {kinetic} kinetic, {elastic} elastic."
+        "{near} of the squared mean error lies in elements at the contact; the squared largest error is {contact} \
+         contact, {kinetic} kinetic, {elastic} elastic."
     )
 }
 
@@ -158,15 +162,18 @@ fn recommendation(facts: &Facts, doubts: &[String]) -> String {
         return format!("Do not trust the number: {}.", doubts.join("; "));
     }
     if facts.flat {
-        return "Make the elements that are nearly flat less so, or mesh again.".to_string();
+        return "Improve the nearly flat elements, or mesh again.".to_string();
     }
     let cut = match facts.contact.single_element {
-        true if facts.contact.touches != Touches::None => "Cut the corner that one element fills into two elements. ",
+        true if facts.contact.touches != Touches::None => "Split the element in the corner into two elements. ",
         _ => "",
     };
     let Some(expected) = facts.expected else { return format!("{cut}Refine the mesh for a smaller error.") };
-    let steps =
-        if expected.half_step < WORTH { "steps half as long alone" } else { "shorter steps alone do not help:" };
+    let steps = if expected.half_step < WORTH {
+        "halving the step alone would change it by about"
+    } else {
+        "shorter steps alone do not help:"
+    };
     let (way, step) = (way(&expected, facts.error.relative_mean), change(expected.half_step));
     format!("{cut}{way}; {steps} {step}.")
 }
@@ -193,7 +200,7 @@ fn way(expected: &Expected, error: f64) -> String {
             format!("Refine the whole mesh: elements {finer} times smaller for a mean of {half},{about}")
         }
         Branch::Graded => {
-            format!("Grade the mesh towards the nodes that touch: a mean of {half}{about}, by `percute adapt`")
+            format!("Grade the mesh towards the contact: a mean of {half}{about}, by `percute adapt`")
         }
         Branch::Map => format!("Refine the mesh where the error is: a mean of {half}{about}, by `percute adapt`"),
     }

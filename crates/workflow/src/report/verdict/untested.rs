@@ -44,9 +44,9 @@ pub(super) fn untested(facts: &Facts) -> Vec<String> {
     let mut untested = Vec::new();
     if let Some(ratio) = facts.speed_ratio {
         if ratio > SPEEDS[1] || (ratio > 0.0 && ratio < SPEEDS[0]) {
-            untested.push(format!("{} of the wave speed", short(ratio, 2)));
+            untested.push(format!("an impact velocity of {} of the wave speed", short(ratio, 2)));
         } else if ratio <= 0.0 {
-            untested.push("a body that does not fly to its plane".to_string());
+            untested.push("no impact velocity".to_string());
         }
     }
     // Rounding moves the last digits of a stated Courant number; a bar may have the critical step.
@@ -65,7 +65,7 @@ pub(super) fn untested(facts: &Facts) -> Vec<String> {
     untested.extend(of_uneven_meshes(facts));
     untested.extend(untested_durations(facts));
     if facts.is_thin() && facts.contact.touches == Touches::Edge {
-        untested.push("a thin body that touches with an edge".to_string());
+        untested.push("edge contact of a thin body".to_string());
     }
     if facts.supported {
         untested.push("supports".to_string());
@@ -93,12 +93,12 @@ fn untested_durations(facts: &Facts) -> Vec<String> {
 fn untested_of_histories(facts: &Facts) -> Vec<String> {
     let mut untested = Vec::new();
     if facts.unbalanced > UNBALANCED {
-        untested.push(format!("forces that balance to {} only", percent(facts.unbalanced)));
+        untested.push(format!("a force balance off by {}", percent(facts.unbalanced)));
     }
     if facts.by_a_penalty {
         untested.push(PENALTY.to_string());
     } else if let Some(off) = facts.off_contact {
-        untested.push(format!("nodes that are {} of an element off their plane in contact", short(off, 2)));
+        untested.push(format!("contact nodes off their plane by {} of an element", short(off, 2)));
     }
     if facts.shifted {
         untested.push("contact forces of another step".to_string());
@@ -114,15 +114,15 @@ fn untested_of_bodies(facts: &Facts) -> Vec<String> {
     let touches = match facts.contact.touches {
         _ if !facts.bodies || facts.dimension == 1 => None,
         // A mean gap may be open although a corner is inside the other body.
-        Touches::None if facts.slides => Some("surfaces that slide without contact"),
+        Touches::None if facts.slides => Some("non-matching interfaces without contact"),
         Touches::Edge | Touches::End => None,
         _ if facts.slides => None,
-        _ => Some("bodies that strike each other so"),
+        _ => Some("this kind of contact between bodies"),
     };
     let edges = |value: f64| short(value, 2);
-    let slip = (facts.slip > SLIP).then(|| format!("pairs of nodes that slip by {} edges", edges(facts.slip)));
-    let depth = (facts.depth > DEPTH)
-        .then(|| format!("nodes that are {} of an edge inside the other body", edges(facts.depth)));
+    let slip = (facts.slip > SLIP).then(|| format!("node pairs with a slip of {} edges", edges(facts.slip)));
+    let depth =
+        (facts.depth > DEPTH).then(|| format!("nodes inside the other body by {} of an edge", edges(facts.depth)));
     touches.map(str::to_string).into_iter().chain(slip).chain(depth).collect()
 }
 
@@ -130,10 +130,10 @@ fn untested_of_bodies(facts: &Facts) -> Vec<String> {
 fn at_the_start(facts: &Facts) -> impl Iterator<Item = String> {
     let onset = facts.onset;
     let named = [
-        (onset.load_jumps, "a load that jumps"),
-        (onset.velocity_jumps, "a velocity that jumps inside a body"),
-        (onset.strained, "a body that is strained at the start"),
-        (onset.pushed, "a body that a traction pushes to its plane"),
+        (onset.load_jumps, "a sudden load"),
+        (onset.velocity_jumps, "a velocity jump inside a body"),
+        (onset.strained, "an initial strain"),
+        (onset.pushed, "an impact driven by a traction"),
     ];
     named.into_iter().filter(|(applies, _)| *applies).map(|(_, name)| name.to_string())
 }
@@ -146,7 +146,7 @@ fn of_uneven_meshes(facts: &Facts) -> impl Iterator<Item = String> {
     let flat = matches!(facts.contact.touches, Touches::Edge | Touches::End);
     let small = plane && flat && more(uneven.at_contact, AT_FLAT_CONTACT);
     let named = [
-        (small, "elements along a flat contact that are smaller than others by a factor of", uneven.at_contact, ""),
+        (small, "elements at a flat contact smaller than the largest by a factor of", uneven.at_contact, ""),
         (more(uneven.poisson, POISSON), "plane strain with a Poisson's ratio above", POISSON, ""),
         (long, "elements", uneven.longest, "times as long as their shortest edge"),
         (plane && more(uneven.impedances, IMPEDANCES), "impedances that differ by a factor of", uneven.impedances, ""),
