@@ -37,7 +37,6 @@ from percute.errors import (
 )
 from percute.estimating import estimate
 from percute.estimation import Estimate
-from percute.evidence import reproduce
 from percute.files import open, resume, run
 from percute.history import History
 from percute.impacts import BodyMotion, Impacts, InterfaceRebound, SlidingEstimate
@@ -113,7 +112,6 @@ __all__ = [
     "estimate",
     "exact",
     "open",
-    "reproduce",
     "resume",
     "run",
     "simulate",

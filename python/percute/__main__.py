@@ -8,10 +8,6 @@ from percute._percute import command
 
 def main() -> int:
     """Run the command with the arguments of this process and return its exit code."""
-    if sys.argv[1:2] == ["reproduce"]:
-        from percute.verification.command import main as reproduce
-
-        return reproduce(sys.argv[2:])
     if sys.argv[1:2] == ["plot"]:
         from percute.pictures.command import main as plot
 
