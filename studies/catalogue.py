@@ -93,7 +93,7 @@ def run(
 ) -> Path:
     """Compute studies and write their folder after each, so that finished studies are never lost; give the page."""
     # Without matplotlib the import raises an error.
-    import_module("studies.figures")
+    figures = import_module("studies.figures")
     prepare(folder, overwrite)
     sections: list[Section] = []
     svg: dict[str, str] = {}
@@ -109,7 +109,7 @@ def run(
             # The numbers first: an interrupt while figures are drawn does not lose them.
             write()
             done(study)
-            svg |= page.draw(folder, sections[-1])
+            svg |= figures.draw(folder, sections[-1])
             write()
         except OSError as error:
             raise StorageError(f"cannot write {error.filename or folder}: {error.strerror}") from error

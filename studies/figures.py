@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from percute.errors import PercuteError
 from percute.pictures.canvas import typeset
-from studies.page import short
+from studies.page import Section, short
 
 try:
     from matplotlib import colormaps, colors, rc_context
@@ -23,7 +23,7 @@ try:
 except ImportError:
     raise PercuteError('the figures need matplotlib: pip install matplotlib')
 
-__all__ = ["Colours", "Curve", "Drawing", "around_one", "between", "heat_maps", "lines", "mesh_maps", "ordered", "own", "ratio", "save"]
+__all__ = ["Colours", "Curve", "Drawing", "around_one", "between", "draw", "heat_maps", "lines", "mesh_maps", "ordered", "own", "ratio", "save"]
 
 PALETTE = ("#2f79c8", "#da6228", "#24966e", "#9b55be", "#c83c64", "#967d1e", "#1496af", "#828791", "#a56450")
 INK, FAINT, GRID = "#282830", "#6e6e78", "#e1e2e8"
@@ -271,3 +271,12 @@ def save(figure: Drawing, file: Path) -> None:
     with rc_context(STYLE):
         figure.savefig(file.with_name(file.name + ".svg"), metadata={"Date": None})
         figure.savefig(file.with_name(file.name + ".png"), dpi=160, metadata={"Software": None})
+
+
+def draw(folder: Path, section: Section) -> dict[str, str]:
+    """Write the figures of a section, which takes seconds; give their SVG by their keys."""
+    if section.figures:
+        (folder / "figures").mkdir(exist_ok=True)
+    for figure in section.figures:
+        save(figure.drawing, folder / "figures" / figure.key)
+    return {figure.key: (folder / "figures" / f"{figure.key}.svg").read_text(encoding="utf-8") for figure in section.figures}

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from percute import __version__
 
 if TYPE_CHECKING:
-    from studies.figures import Drawing
+    from matplotlib.figure import Figure as Drawing
 
 Cell = str | float | int | None
 TITLE = "Accuracy of the estimate"
@@ -281,14 +281,3 @@ def write(folder: Path, sections: Sequence[Section], resolution: str, missing: S
     _replace(folder / "numbers.json", json.dumps(numbers, ensure_ascii=False, indent=1) + "\n")
     _replace(folder / "verification.md", _markdown(sections, origin, svg))
     _replace(folder / "index.html", _html(sections, origin, svg))
-
-
-def draw(folder: Path, section: Section) -> dict[str, str]:
-    """Write the figures of a section, which takes seconds; give their SVG by their keys."""
-    from studies import figures
-
-    if section.figures:
-        (folder / "figures").mkdir(exist_ok=True)
-    for figure in section.figures:
-        figures.save(figure.drawing, folder / "figures" / figure.key)
-    return {figure.key: (folder / "figures" / f"{figure.key}.svg").read_text(encoding="utf-8") for figure in section.figures}

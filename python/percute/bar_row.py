@@ -13,10 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from percute import _percute
 from percute.bodies import Body
 from percute.checks import instance, items, number, numbers, text, whole
+from percute.compared import Compared
 from percute.errors import InputError
 from percute.history import History
 from percute.statement import Elastic
-from percute.true_error import Compared, TrueError
+from percute.true_error import TrueError
 
 __all__ = ["BarRow"]
 

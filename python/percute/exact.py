@@ -13,10 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from percute import _percute
 from percute.bar_row import BarRow
 from percute.checks import instance, number, numbers, text, whole, wrong
+from percute.compared import Compared
 from percute.errors import InputError
 from percute.history import History
 from percute.statement import Elastic
-from percute.true_error import Compared, Effectivity, TrueError
+from percute.true_error import Effectivity, TrueError
 
 __all__ = [
     "BarImpact",

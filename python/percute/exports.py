@@ -5,33 +5,42 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import Protocol, cast, runtime_checkable
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
 from percute.checks import flag, integers, numbers, text, whole, wrong
 from percute.checks import path as file_name
 from percute.errors import InputError
+from percute.mesh import Mesh
 from percute.progress import ProgressOption, shown
+from percute.steps import Steps
+from percute.stored import StoredEstimate
 from percute.words import counted
-
-if TYPE_CHECKING:
-    from percute.estimation import Estimate
-    from percute.history import History
 
 Choice = tuple[list[int] | None, int | None, list[float] | None]
 
 
+@runtime_checkable
+class Estimated(Protocol):
+    """What an export takes from a `percute.Estimate`."""
+
+    @property
+    def mesh(self) -> Mesh: ...
+    @property
+    def by_element(self) -> NDArray[np.float64]: ...
+
+
 def export(
-    history: History,
+    history: Steps,
     path: str | os.PathLike[str],
     steps: ArrayLike | None,
     every: int | None,
     times: ArrayLike | None,
     fields: Iterable[str] | None,
-    estimate: Estimate | str | os.PathLike[str] | None,
+    estimate: Estimated | str | os.PathLike[str] | None,
     overwrite: bool,
     progress: ProgressOption,
 ) -> list[Path]:
@@ -47,7 +56,7 @@ def export(
         return _percute.export(history._data, file, choice, names, error, inputs, replace, tell)
 
 
-def _choice(steps: ArrayLike | None, every: int | None, times: ArrayLike | None, history: History) -> Choice:
+def _choice(steps: ArrayLike | None, every: int | None, times: ArrayLike | None, history: Steps) -> Choice:
     """Check the steps; negative ones count from the end."""
     count = len(history)
     if sum(given is not None for given in (steps, every, times)) > 1:
@@ -68,22 +77,22 @@ def _choice(steps: ArrayLike | None, every: int | None, times: ArrayLike | None,
     return None, None if every is None else whole("every", every), None
 
 
-def _error(history: History, estimate: Estimate | str | os.PathLike[str] | None) -> tuple[list[float] | None, list[str]]:
+def _error(history: Steps, estimate: Estimated | str | os.PathLike[str] | None) -> tuple[list[float] | None, list[str]]:
     """Give e_E of the elements, and the file of the estimate."""
-    from percute.estimation import Estimate
-    from percute.files import open as open_file
-
     if estimate is None:
         return None, []
     files = []
     if isinstance(estimate, str | os.PathLike):
         files = [file_name("estimate", estimate)]
-        opened = open_file(estimate)
-        if not isinstance(opened, Estimate):
+        if not _percute.is_estimate(os.path.abspath(files[0])):
+            _percute.open_history(os.path.abspath(files[0]))
             raise wrong("estimate", estimate, "an estimate, or the name of an estimate file; this file holds a history")
-        estimate = opened
-    elif not isinstance(estimate, Estimate):
+        stored = StoredEstimate(os.path.abspath(files[0]))
+        mesh, errors = stored.mesh, stored.by_element()
+    elif isinstance(estimate, Estimated):
+        mesh, errors = estimate.mesh, estimate.by_element
+    else:
         raise wrong("estimate", estimate, "an estimate, or the name of an estimate file")
-    if estimate.mesh != history.problem.mesh:
+    if mesh != history.problem.mesh:
         raise InputError("`estimate` has another mesh than the history; take the estimate of this history")
-    return cast("list[float]", estimate.by_element.tolist()), files
+    return cast("list[float]", errors.tolist()), files

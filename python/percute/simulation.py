@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,9 +20,7 @@ from percute.kept import kept
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.termination import file_closed_at_signals
-
-if TYPE_CHECKING:
-    from percute.true_error import TrueError
+from percute.true_error import TrueError
 
 __all__ = ["simulate", "true_errors"]
 

@@ -16,6 +16,7 @@ from percute.attached import attached
 from percute.checks import flag, instance, numbers, text, warn, whole, wrong
 from percute.errors import InputError
 from percute.estimating import pace, sampling
+from percute.pictures import convergence
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.simulation import instants_of, with_planes_moved
@@ -121,9 +122,7 @@ class Verification:
         list of matplotlib.axes.Axes
             The axes of the three plots.
         """
-        from percute.pictures import convergence
-
-        return convergence.plot(self, axes, save, flag("overwrite", overwrite))
+        return convergence.plot(self.size, vars(self), self.expected, self.per_metre, axes, save, flag("overwrite", overwrite))
 
     @classmethod
     def _of(cls, document: dict[str, Any], table: str) -> Verification:
