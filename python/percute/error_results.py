@@ -15,6 +15,7 @@ from percute import _percute
 from percute.checks import whole
 from percute.contact import Contact
 from percute.deformation import ContactPeak, Deformation, Nearest, PoorElement
+from percute.documents import optional, records
 from percute.history import History
 from percute.immutable import Immutable
 from percute.impacts import Impacts, SlidingEstimate
@@ -155,29 +156,27 @@ class ErrorResults(Immutable):
     @cached_property
     def deformation(self) -> Deformation | None:
         """The largest strains, rotations and stresses; None if the estimate comes from a file of an earlier version."""
-        return Deformation._of(self._verdict.get("deformation"))
+        return optional(Deformation, self._verdict.get("deformation"))
 
     @cached_property
     def contact_peak(self) -> ContactPeak | None:
         """The largest contact force and pressure, averaged over the time in which a wave crosses the struck element; None without contact."""
-        found = (self._verdict.get("contact") or {}).get("averaged_peak")
-        return None if found is None else ContactPeak(**found)
+        return optional(ContactPeak, (self._verdict.get("contact") or {}).get("averaged_peak"))
 
     @cached_property
     def poor_elements(self) -> tuple[PoorElement, ...]:
         """The elements to repair, with the largest parts of the error first; empty where bad shapes do not matter."""
-        return PoorElement._all((self._verdict.get("verdict") or {}).get("poor_elements", ()))
+        return records(PoorElement, (self._verdict.get("verdict") or {}).get("poor_elements", ()))
 
     @cached_property
     def nearest(self) -> Nearest | None:
         """The gap that is left if nothing touched, although there is a plane or another body; else None."""
-        found = (self._verdict.get("contact") or {}).get("nearest")
-        return None if found is None else Nearest(**found)
+        return optional(Nearest, (self._verdict.get("contact") or {}).get("nearest"))
 
     @cached_property
     def sliding(self) -> tuple[SlidingEstimate, ...]:
         """The estimate at surfaces that slide along each other, in the order of ``problem.contacts``; empty without any."""
-        return SlidingEstimate._all(self._verdict.get("sliding", ()))
+        return records(SlidingEstimate, ({"couple": None, **each} for each in self._verdict.get("sliding", ())))
 
     @property
     def kept_impulse(self) -> float | None:
