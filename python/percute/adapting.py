@@ -7,7 +7,7 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from numpy.typing import ArrayLike
 
@@ -29,7 +29,7 @@ from percute.words import counted
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Adaptation", "Iterations", "adapt"]
+__all__ = ["Adaptation", "adapt"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -90,10 +90,8 @@ class Adaptation:
         ----------
         axes : sequence of two matplotlib.axes.Axes, optional
             Axes of the plots; new ones by default.
-        save : str or path, optional
-            A file ``.svg``, ``.png`` or ``.pdf`` for the picture.
-        overwrite : bool, default: False
-            Whether a file that exists already is replaced.
+        save, overwrite
+            As for `History.plot_energies`.
 
         Returns
         -------

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, TypeVar, cast
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from percute.errors import InputError, InputWarning, MissingFileError, SimulationWarning
 
@@ -102,6 +102,14 @@ def text(name: str, value: object) -> str:
     except UnicodeEncodeError:
         raise wrong(name, value, "a text without lone surrogates") from None
     return value
+
+
+def one_of(name: str, value: object, known: Iterable[str]) -> str:
+    """Give a text out of some."""
+    names = list(known)
+    if text(name, value) not in names:
+        raise InputError(f"`{name}` is {value!r}; it must be one of {', '.join(names)}")
+    return str(value)
 
 
 def words(name: str, value: object) -> str | None:
@@ -247,6 +255,31 @@ def numbers(name: str, value: object, *, most: int, finite: bool = False) -> NDA
     if finite and not np.all(np.isfinite(array)):
         raise wrong(name, value, "finite numbers")
     return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def times(name: str, value: object, otherwise: str = "") -> list[float]:
+    """Give times (s)."""
+    given = np.atleast_1d(numbers(name, value, most=1))
+    if len(given) == 0 or not np.all(np.isfinite(given) & (given >= 0)):
+        raise wrong(name, value, f"{otherwise}at least one time (s), finite and not negative")
+    return cast("list[float]", given.tolist())
+
+
+def names(name: str, value: Iterable[str] | None, example: str) -> list[str] | None:
+    """Give a list of names, or None."""
+    if isinstance(value, str):
+        raise wrong(name, value, f"a list of names, such as {example}")
+    return None if value is None else [text(name, each) for each in value]
+
+
+def broadcast(**given: ArrayLike) -> tuple[NDArray[np.float64], ...]:
+    """Give arrays of numbers, broadcast against each other."""
+    arrays = {name: numbers(name, value, most=32, finite=True).reshape(np.shape(value)) for name, value in given.items()}
+    try:
+        return tuple(np.broadcast_arrays(*arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"`{name}` has the shape {array.shape}" for name, array in arrays.items())
+        raise InputError(f"{shapes}; they cannot be broadcast") from None
 
 
 def transposed(name: str, array: NDArray[Any], *columns: int | None) -> str:

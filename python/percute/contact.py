@@ -79,10 +79,8 @@ class Contact(ContactResults):
             Quantity that the colour of the zone shows.
         axes : sequence of matplotlib.axes.Axes, optional
             Axes of the plot, one for the forces and one for each plane; new ones by default.
-        save : str or path, optional
-            A file (``.svg``, ``.png`` or ``.pdf``) for the figure.
-        overwrite : bool, default: False
-            Whether a file that exists already is replaced.
+        save, overwrite
+            As for `History.plot_energies`.
 
         Returns
         -------

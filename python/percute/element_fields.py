@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import LARGEST, flag, integers, numbers, text, whole, wrong
+from percute.checks import LARGEST, flag, integers, numbers, one_of, text, whole, wrong
 from percute.errors import InputError
 from percute.mesh import Mesh
 from percute.mesh_arrays import boundary
@@ -70,11 +70,9 @@ class Place(NamedTuple):
 
 def probe(history: Steps, where: object, quantity: object, each: object) -> Floats:
     """Read a quantity at a point or a group, at all instants."""
-    known = (*NODAL, *MEANS)
-    if text("quantity", quantity) not in known:
-        raise InputError(f"`quantity` is {quantity!r}; it must be one of {', '.join(known)}")
+    name = one_of("quantity", quantity, (*NODAL, *MEANS))
     mesh, apart = history.problem.mesh, flag("each", each)
-    nodal = quantity in NODAL
+    nodal = name in NODAL
     if isinstance(where, str):
         place = _group(mesh, text("where", where), nodal)
     elif apart:
@@ -82,9 +80,9 @@ def probe(history: Steps, where: object, quantity: object, each: object) -> Floa
     else:
         place = _point(mesh, where, nodal)
     if nodal:
-        values: Floats = getattr(history, str(quantity))[:, place.rows]
+        values: Floats = getattr(history, name)[:, place.rows]
     else:
-        values = _of_elements(history, str(quantity), place.rows)
+        values = _of_elements(history, name, place.rows)
     return values if apart else np.tensordot(values, place.weights, (1, 0))
 
 

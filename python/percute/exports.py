@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import flag, integers, numbers, text, whole, wrong
+from percute.checks import flag, integers, names, whole, wrong
 from percute.checks import path as file_name
+from percute.checks import times as checked_times
 from percute.errors import InputError
 from percute.mesh import Mesh
 from percute.progress import ProgressOption, shown
@@ -47,13 +48,11 @@ def export(
     """Write fields of a history; see `History.export`."""
     file, replace = os.path.abspath(file_name("path", path)), flag("overwrite", overwrite)
     choice = _choice(steps, every, times, history)
-    if isinstance(fields, str):
-        raise wrong("fields", fields, 'a list of names, such as ["stress", "velocity"]')
-    names = None if fields is None else [text("fields", name) for name in fields]
+    wanted = names("fields", fields, '["stress", "velocity"]')
     error, inputs = _error(history, estimate)
     inputs += [] if history.path is None else [os.fspath(history.path)]
     with shown(progress) as tell:
-        return _percute.export(history._data, file, choice, names, error, inputs, replace, tell)
+        return _percute.export(history._data, file, choice, wanted, error, inputs, replace, tell)
 
 
 def _choice(steps: ArrayLike | None, every: int | None, times: ArrayLike | None, history: Steps) -> Choice:
@@ -70,10 +69,7 @@ def _choice(steps: ArrayLike | None, every: int | None, times: ArrayLike | None,
             raise wrong("steps", steps, allowed)
         return (chosen % count).tolist(), None, None
     if times is not None:
-        wanted = np.atleast_1d(numbers("times", times, most=1))
-        if len(wanted) == 0 or not np.all(np.isfinite(wanted) & (wanted >= 0)):
-            raise wrong("times", times, "at least one time (s), finite and not negative")
-        return None, None, cast("list[float]", wanted.tolist())
+        return None, None, checked_times("times", times)
     return None, None if every is None else whole("every", every), None
 
 

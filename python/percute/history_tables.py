@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percute import element_fields
-from percute.checks import text
+from percute.checks import one_of
 from percute.contact import resultants_of
 from percute.contents import Contents, Quantity, at_one_instant, components, instants, places
-from percute.errors import InputError
 from percute.steps import Steps
 from percute.tables import to_pandas
 
@@ -60,11 +59,9 @@ def contents(history: Steps, fields: Iterable[str], steps: NDArray[np.intp] | No
 def table(history: Steps, over: object, step: int | None) -> _pandas.DataFrame:
     """Make a table over time, or over nodes or elements at one instant or at all."""
     at = None if step is None else np.array([element_fields.instant(history, step)])
-    if text("over", over) == "time":
-        return to_pandas(contents(history, ()), over, {"time": ("time",)})
     rows: dict[str, tuple[str, ...]] = {"time": ("time",), "nodes": ("time", "node"), "elements": ("time", "element")}
-    if over not in rows:
-        raise InputError(f"`over` is {over!r}; it must be one of {', '.join(rows)}")
+    if one_of("over", over, rows) == "time":
+        return to_pandas(contents(history, ()), over, rows)
     names = element_fields.NODAL if over == "nodes" else element_fields.OF_ELEMENTS
     found = contents(history, names, at, over_time=False)
     if at is None:

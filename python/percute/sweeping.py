@@ -165,12 +165,8 @@ class Sweep:
             One key gives a curve, two give a map with the first to the right; by default the keys that are varied.
         where : dict, optional
             Values of other keys: only cases with these are drawn.
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; new axes by default.
-        save : str or path, optional
-            A file ``.svg``, ``.png`` or ``.pdf`` for the picture.
-        overwrite : bool, default: False
-            Whether a file that exists already is replaced.
+        axes, save, overwrite
+            As for `History.plot_energies`.
 
         Returns
         -------

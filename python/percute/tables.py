@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percute._percute import __version__
-from percute.checks import text
+from percute.checks import one_of
 from percute.contents import AXES, Contents, Quantity
 from percute.errors import InputError, PercuteError
 
@@ -43,9 +43,7 @@ def to_pandas(contents: Contents, over: object, known: dict[str, tuple[str, ...]
     ``known`` has the dimensions by the names that ``over`` may have.
     """
     frames = pandas()
-    if text("over", over) not in known:
-        raise InputError(f"`over` is {over!r}; it must be one of {', '.join(known)}")
-    dims = known[str(over)]
+    dims = known[one_of("over", over, known)]
     # Only maps may be missing.
     if not set(dims) <= set(contents.coordinates):
         raise InputError(f"`over` is {over!r}, but the estimate has no maps; ask for them with `instants`")

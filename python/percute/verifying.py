@@ -112,10 +112,8 @@ class Verification:
         ----------
         axes : sequence of three matplotlib.axes.Axes, optional
             Axes of the plots; new ones by default.
-        save : str or path, optional
-            A file ``.svg``, ``.png`` or ``.pdf`` for the picture.
-        overwrite : bool, default: False
-            Whether a file that exists already is replaced.
+        save, overwrite
+            As for `History.plot_energies`.
 
         Returns
         -------

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percute._percute import unit
-from percute.checks import text, whole, wrong
+from percute.checks import one_of, whole, wrong
 from percute.contact_results import ContactResults, ContactStatus
 from percute.errors import InputError
 from percute.pictures.canvas import FIELD, Floats, legend_beside, new_axes, over_time, prefixed, pyplot, root, save_figure, writable
@@ -26,9 +26,7 @@ MOST_COLUMNS = 2000
 def plot_contact(contact: ContactResults, colour: str, axes: Sequence[Axes] | None, save: object, overwrite: object) -> list[Axes]:
     """Draw the resultant forces over time, and the zone of contact of each plane over time."""
     file = writable("save", save, overwrite)
-    known = ("status", "pressure")
-    if text("colour", colour) not in known:
-        raise InputError(f"`colour` is {colour!r}; it must be one of {', '.join(known)}")
+    one_of("colour", colour, ("status", "pressure"))
     _check(contact)
     panels = _panels(axes, 1 + len(contact._names))
     _draw_forces(panels[0], contact)

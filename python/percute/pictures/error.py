@@ -10,7 +10,7 @@ import numpy as np
 
 from percute import _percute
 from percute._percute import unit
-from percute.checks import flag, number, text
+from percute.checks import flag, number, one_of
 from percute.error_results import ErrorResults
 from percute.errors import InputError
 from percute.pictures.body import Line, draw_bar, draw_body, linear, scale_of
@@ -98,9 +98,7 @@ def plot_map(estimate: ErrorResults, scale: float, outline: bool, axes: Axes | N
 def plot_over_time(estimate: ErrorResults, by: str, axes: Axes | None, save: object, overwrite: object) -> Axes:
     """Draw √η, with the square roots of its parts or of its sources."""
     file = writable("save", save, overwrite)
-    known = ("parts", "sources")
-    if text("by", by) not in known:
-        raise InputError(f"`by` is {by!r}; it must be one of {', '.join(known)}")
+    one_of("by", by, ("parts", "sources"))
     if by == "sources" and estimate.sources is None:
         raise InputError('`by` is "sources", but the estimate has none; only the reconstruction "corrected" separates them')
     axes = new_axes(axes, (7.2, 4.0))

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from percute._percute import unit
-from percute.checks import number, text
+from percute.checks import number, one_of
 from percute.element_fields import element_field, instant
-from percute.errors import InputError
 from percute.pictures.body import Line, Scale, draw_bar, draw_body
 from percute.pictures.canvas import (
     COLOURS,
@@ -52,10 +51,7 @@ SCALARS = {
 def field(history: Steps, quantity: object, step: int) -> tuple[Floats, str, str, str]:
     """Give the values of a quantity at an instant, with its name, unit and colours."""
     bar = history.problem.mesh.dimension == 1
-    name = text("quantity", quantity)
-    scalars = ("stress", *list(SCALARS)[2:]) if bar else (*SCALARS, *STRESSES)
-    if name not in (known := (*MOTION, *scalars)):
-        raise InputError(f"`quantity` is {quantity!r}; it must be one of {', '.join(known)}")
+    name = one_of("quantity", quantity, (*MOTION, *(("stress", *list(SCALARS)[2:]) if bar else (*SCALARS, *STRESSES))))
     if name in MOTION:
         vectors: Floats = getattr(history, name)[step]
         return vectors[:, 0] if bar else np.linalg.norm(vectors, axis=1), name, MOTION[name], FIELD
