@@ -16,25 +16,17 @@ from percute import _percute
 from percute.balance import Balance
 from percute.checks import encodable, flag, instance, vtkhdf, warn, words
 from percute.contact import Contact
-from percute.errors import FileFormatError, InputError, MissingFileError, PercuteError, StorageError
+from percute.errors import InputError
 from percute.foreign import ForeignArrays
 from percute.immutable import Immutable
 from percute.impacts import Impacts
+from percute.mapped import MappedArrays
 from percute.problem import Problem
 from percute.rebound import Rebound
 from percute.termination import file_closed_at_signals
 from percute.words import counted
 
 __all__ = ["Steps"]
-
-MAPPED: dict[str, np.dtype[Any]] = {
-    "displacement": np.dtype("<f8"),
-    "reaction": np.dtype("<f8"),
-    "touching": np.dtype("u1"),
-    "checksums": np.dtype("<i8"),
-}
-AT_ONCE = 1 << 25
-"""Bytes whose checksums are computed at once, between looks for Ctrl-C."""
 
 
 class Steps(Immutable):
@@ -158,25 +150,29 @@ class Steps(Immutable):
     @cached_property
     def displacement(self) -> NDArray[np.float64]:
         """Displacements u_n (m), shape (instants, nodes, dimension), eq. [28]."""
-        mapped = self._checked("displacement")
+        mapped = self._mapped.checked("displacement")
         return self._data.displacement() if mapped is None else mapped[..., : self.problem.mesh.dimension]
 
     @cached_property
     def reaction(self) -> NDArray[np.float64]:
         """Reactions R_n of the planes on the contact nodes (N), shape (instants, contact nodes, dimension)."""
         self._expect("reaction")
-        mapped = self._checked("reaction")
+        mapped = self._mapped.checked("reaction")
         return self._data.reaction() if mapped is None else mapped
 
     @cached_property
     def touching(self) -> NDArray[np.bool_]:
         """Whether each contact node touches at t_n, shape (instants, contact nodes)."""
         self._expect("reaction")
-        mapped = self._checked("touching")
+        mapped = self._mapped.checked("touching")
         # Any byte but 0 means true in the file; a bool of numpy must be 1.
         if mapped is None or mapped.max(initial=0) > 1:
             return self._data.touching()
         return mapped.view(np.bool_)
+
+    @cached_property
+    def _mapped(self) -> MappedArrays:
+        return MappedArrays(self._data)
 
     def _expect(self, name: str) -> None:
         """Refuse a field that a thinned history lacks."""
@@ -184,64 +180,13 @@ class Steps(Immutable):
             told = f"{name} is not in this history, which keeps a part of its run; simulate again with {name!r} among `fields`"
             raise InputError(f"{self.path}: {told}")
 
-    def _checked(self, name: str) -> NDArray[Any] | None:
-        """Give an array of the file after it was compared with its checksums; None if it cannot be mapped."""
-        view = self._view(name)
-        if view is not None and view.size:
-            rows = max(AT_ONCE // view[0].nbytes, 1)
-            for start in range(0, len(self), rows):
-                self._check(name, np.arange(start, min(start + rows, len(self))), view[start : start + rows])
-        return view
-
-    def _check(self, name: str, steps: NDArray[np.intp], values: NDArray[Any]) -> None:
-        """Compare the values of a field at some instants with their checksums."""
-        sums = self._view("checksums")
-        if sums is None:
-            return
-        if name == "touching":
-            self._data.check_mapped_flags(steps.tolist(), values, np.ascontiguousarray(sums[steps]))
-        else:
-            self._data.check_mapped(name, steps.tolist(), values, np.ascontiguousarray(sums[steps]))
-
     def _displacement_at(self, steps: NDArray[np.intp]) -> NDArray[np.float64]:
         """Give the displacements at some instants, of which alone the checksums are compared."""
-        if "displacement" in vars(self) or (view := self._view("displacement")) is None:
+        if "displacement" in vars(self) or (view := self._mapped.view("displacement")) is None:
             return self.displacement[steps]
         values = np.ascontiguousarray(view[steps])
-        self._check("displacement", steps, values)
+        self._mapped.check("displacement", steps, values)
         return values[..., : self.problem.mesh.dimension]
-
-    def _view(self, name: str) -> NDArray[Any] | None:
-        """Give an array of the file; None if it cannot be mapped."""
-        array = self._mapped.get(name)
-        # A read beyond the end of a truncated mapped file ends the process by a signal.
-        if array is not None and array._mmap.size() < array.offset + array.nbytes:  # type: ignore[attr-defined]
-            raise FileFormatError(f"{self.path}: the file has been truncated")
-        return None if array is None else array[: len(self)]
-
-    @cached_property
-    def _mapped(self) -> dict[str, np.memmap[Any, Any]]:
-        """Map all possible arrays of the file into memory at once, so that they belong to one run."""
-        path = self.path
-        if path is None:
-            return {}
-        try:
-            with path.open("rb") as file:
-                # Checked after the file is open: this fails if it was replaced.
-                arrays = {name: (shape, offset) for name, shape, offset in self._data.arrays() if 0 not in shape}
-                return {
-                    name: np.memmap(file, dtype, "r", arrays[name][1], tuple(arrays[name][0]))
-                    for name, dtype in MAPPED.items()
-                    if name in arrays
-                }
-        except PercuteError:
-            raise
-        except FileNotFoundError:
-            raise MissingFileError(f"{path}: the file is no longer there") from None
-        except OSError as error:
-            raise StorageError(f"{path}: cannot be read: {error.strerror}") from error
-        except ValueError:
-            raise FileFormatError(f"{path}: the file has been truncated") from None
 
     @cached_property
     def contact_nodes(self) -> NDArray[np.int64]:
@@ -251,8 +196,7 @@ class Steps(Immutable):
     @cached_property
     def path(self) -> Path | None:
         """The file with the steps; None if they are in memory."""
-        path = self._data.path
-        return None if path is None else Path(path)
+        return self._data.path
 
     @cached_property
     def _motion(self) -> Sequence[NDArray[np.float64]]:
