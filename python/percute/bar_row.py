@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
+from percute.arrays import broadcast
 from percute.bodies import Body
-from percute.checks import broadcast, instance, items, number, text, whole
+from percute.checks import instance, items, number, text, whole
 from percute.compared import Compared
 from percute.errors import InputError
 from percute.history import History

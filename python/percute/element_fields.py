@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import LARGEST, flag, integers, numbers, one_of, text, whole, wrong
+from percute.arrays import integers, numbers
+from percute.checks import LARGEST, flag, one_of, text, whole, wrong
 from percute.errors import InputError
 from percute.mesh import Mesh
 from percute.mesh_arrays import boundary

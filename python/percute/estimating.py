@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from percute import _percute
-from percute.checks import flag, instance, text, times, warn_of_result, whole, wrong
+from percute.arrays import times
+from percute.checks import flag, instance, text, warn_of_result, whole, wrong
 from percute.errors import InputError
 from percute.estimation import Estimate
 from percute.history import History

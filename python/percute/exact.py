@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
+from percute.arrays import broadcast, numbers
 from percute.bar_row import BarRow
-from percute.checks import broadcast, instance, number, numbers, text, whole, wrong
+from percute.checks import instance, number, text, whole, wrong
 from percute.compared import Compared
 from percute.errors import InputError
 from percute.history import History

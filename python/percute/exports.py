@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import flag, integers, names, whole, wrong
+from percute.arrays import integers
+from percute.arrays import times as checked_times
+from percute.checks import flag, names, whole, wrong
 from percute.checks import path as file_name
-from percute.checks import times as checked_times
 from percute.errors import InputError
 from percute.mesh import Mesh
 from percute.progress import ProgressOption, shown

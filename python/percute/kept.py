@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from numpy.typing import ArrayLike
 
 from percute import _percute
+from percute.arrays import times as checked_times
 from percute.checks import names, whole
-from percute.checks import times as checked_times
 from percute.errors import InputError
 
 

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from percute import _percute, notebook
-from percute.checks import encodable, flag, flags, integers, new_file, number, numbers, table, text, transposed, whole, wrong
+from percute.arrays import flags, integers, numbers, transposed
+from percute.checks import encodable, flag, new_file, number, table, text, whole, wrong
 from percute.checks import path as file_name
 from percute.errors import InputError
 from percute.mesh_arrays import MeshArrays

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute, notebook
+from percute.arrays import numbers, transposed
 from percute.bodies import Body, Interface, join
-from percute.checks import instance, items, numbers, table, transposed, wrong
+from percute.checks import instance, items, table, wrong
 from percute.errors import InputError
 from percute.immutable import Immutable
 from percute.mesh import Mesh

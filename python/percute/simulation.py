@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from percute import _percute
+from percute.arrays import numbers
 from percute.attached import attached
-from percute.checks import encodable, flag, instance, items, numbers, optional_number, vtkhdf, warn, wrong
+from percute.checks import encodable, flag, instance, items, optional_number, vtkhdf, warn, wrong
 from percute.errors import InputError, SimulationWarning
 from percute.history import History, true_errors_of
 from percute.kept import kept

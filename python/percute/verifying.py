@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
+from percute.arrays import numbers
 from percute.attached import attached
-from percute.checks import flag, instance, numbers, text, warn, whole, wrong
+from percute.checks import flag, instance, text, warn, whole, wrong
 from percute.errors import InputError
 from percute.estimating import pace, sampling
 from percute.pictures import convergence
