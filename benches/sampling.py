@@ -1,6 +1,6 @@
 """Compare the sup and the mean of `every = "auto"` with those of all steps, on impacts of the evidence.
 
-    python benches/sampling.py [--list] [--only TEXT ...] [--all] [--markdown]
+    python -m benches.sampling [--list] [--only TEXT ...] [--all] [--markdown]
 
 The installed package percute is measured. Meshes of less than 2800 elements are left out: all steps are samples there, and both have the
 same bits. A line for each run has the seconds of both estimates.
@@ -16,8 +16,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import percute as pc
-from percute.verification import impacts, speeds
-from percute.verification.choices import RECONSTRUCTIONS
+from studies import impacts, speeds
+from studies.choices import RECONSTRUCTIONS
 
 SPEEDS = (400.0, 4.0)
 """Speeds of corners and curves across the plane (m/s)."""

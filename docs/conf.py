@@ -29,7 +29,7 @@ release = version = version_of("percute")
 root_doc = "docs/index"
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc"]
-include_patterns = ["*.md", "docs/**.md", "examples/README.md"]
+include_patterns = ["*.md", "docs/**.md", "examples/README.md", "studies/README.md"]
 # Folders without pages, which need not be searched.
 exclude_patterns = ["target", "venv", ".venv", ".git", "benches", "crates", "python", "tests", "tools"]
 

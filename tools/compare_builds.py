@@ -19,7 +19,7 @@ import h5py
 import numpy as np
 
 ROOT = Path(__file__).resolve().parent.parent
-CASES = ("examples", "python/percute/verification/benchmarks/cases")
+CASES = ("examples", "studies/benchmarks/cases")
 # Option and values by the names that a build knows.
 NAMES = {
     "--reconstruction": ("corrected", "consistent", "published"),

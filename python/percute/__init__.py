@@ -17,10 +17,11 @@ d'erreur en relation de comportement pour les problèmes d'impact*.
 
 from percute import exact
 from percute._percute import Progress, __version__
-from percute.adapting import Adaptation, Iterations, adapt
+from percute.adapting import Adaptation, adapt
 from percute.balance import Balance
 from percute.bodies import Body, Interface
-from percute.contact import Contact, ContactStatus, Resultants
+from percute.contact import Contact
+from percute.contact_results import ContactStatus, Resultants
 from percute.deformation import BodyDeformation, ContactPeak, Deformation, Extreme, MaterialStress, Nearest, PoorElement, Yielding
 from percute.errors import (
     EstimateError,
@@ -37,10 +38,10 @@ from percute.errors import (
 )
 from percute.estimating import estimate
 from percute.estimation import Estimate
-from percute.evidence import reproduce
 from percute.files import open, resume, run
 from percute.history import History
 from percute.impacts import BodyMotion, Impacts, InterfaceRebound, SlidingEstimate
+from percute.iterations import Iterations
 from percute.mesh import Mesh
 from percute.names import name_arguments as _name_arguments
 from percute.problem import Problem
@@ -113,7 +114,6 @@ __all__ = [
     "estimate",
     "exact",
     "open",
-    "reproduce",
     "resume",
     "run",
     "simulate",

@@ -4,17 +4,12 @@ import signal
 import sys
 
 from percute._percute import command
+from percute.pictures.command import main as plot
 
 
 def main() -> int:
     """Run the command with the arguments of this process and return its exit code."""
-    if sys.argv[1:2] == ["reproduce"]:
-        from percute.verification.command import main as reproduce
-
-        return reproduce(sys.argv[2:])
     if sys.argv[1:2] == ["plot"]:
-        from percute.pictures.command import main as plot
-
         return plot(sys.argv[2:])
     # Ctrl-C is the command's own: Python would answer only once the command has ended.
     signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -7,10 +7,9 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from percute import _percute
 from percute.attached import attached
@@ -19,7 +18,9 @@ from percute.errors import InputError
 from percute.estimating import pace, sampling
 from percute.estimation import Estimate
 from percute.history import History
+from percute.iterations import Iterations
 from percute.mesh import Mesh
+from percute.pictures import adaptation
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.simulation import instants_of, simulate, with_planes_moved
@@ -28,70 +29,7 @@ from percute.words import counted
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Adaptation", "Iterations", "adapt"]
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Iterations:
-    """The runs of an adaptation. Arrays have a value for each run, NaN where there is none."""
-
-    branch: tuple[str | None, ...]
-    """How the mesh was made: "uniform", "graded" or "map"; None for the first."""
-    elements: NDArray[np.int64]
-    """Number of elements."""
-    steps: NDArray[np.int64]
-    """Number of steps."""
-    element_steps: NDArray[np.float64]
-    """Elements times steps."""
-    smallest: NDArray[np.float64]
-    """Size of the smallest element (m): the root of its area, or its length."""
-    largest: NDArray[np.float64]
-    """Size of the largest element (m)."""
-    error: NDArray[np.float64]
-    """The relative error that the target is about."""
-    predicted: NDArray[np.float64]
-    """The error that was expected of the mesh."""
-    quantity: NDArray[np.float64]
-    """The value of the quantity that the target is about, if it is about one."""
-    surface: NDArray[np.float64]
-    """Part of the source ``surface`` in the squared mean error."""
-    front: NDArray[np.float64]
-    """The same of ``front``."""
-    dispersion: NDArray[np.float64]
-    """The same of ``dispersion``."""
-    mesh: NDArray[np.float64]
-    """The same of ``mesh``."""
-    trust: tuple[str, ...]
-    """How far the estimate can be trusted."""
-    doubts: tuple[tuple[str, ...], ...]
-    """Reasons not to trust it, beside strains and rotations that are not small."""
-
-    def __len__(self) -> int:
-        return len(self.elements)
-
-    @classmethod
-    def _of(cls, runs: Sequence[dict[str, Any]]) -> Iterations:
-        def floats(values: Sequence[Any]) -> NDArray[np.float64]:
-            return np.array([np.nan if value is None else value for value in values], np.float64)
-
-        sources = np.array([[np.nan] * 4 if run["sources"] is None else run["sources"] for run in runs], np.float64).reshape(-1, 4)
-        return cls(
-            branch=tuple(run["branch"] for run in runs),
-            elements=np.array([run["elements"] for run in runs], np.int64),
-            steps=np.array([run["steps"] for run in runs], np.int64),
-            element_steps=floats([run["element_steps"] for run in runs]),
-            smallest=floats([run["sizes"][0] for run in runs]),
-            largest=floats([run["sizes"][1] for run in runs]),
-            error=floats([run["error"] for run in runs]),
-            predicted=floats([run["predicted"] for run in runs]),
-            quantity=floats([run["quantity"] for run in runs]),
-            surface=sources[:, 0],
-            front=sources[:, 1],
-            dispersion=sources[:, 2],
-            mesh=sources[:, 3],
-            trust=tuple(run["trust"] for run in runs),
-            doubts=tuple(tuple(run["doubts"]) for run in runs),
-        )
+__all__ = ["Adaptation", "adapt"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -152,19 +90,16 @@ class Adaptation:
         ----------
         axes : sequence of two matplotlib.axes.Axes, optional
             Axes of the plots; new ones by default.
-        save : str or path, optional
-            A file ``.svg``, ``.png`` or ``.pdf`` for the picture.
-        overwrite : bool, default: False
-            Whether a file that exists already is replaced.
+        save, overwrite
+            As for `History.plot_energies`.
 
         Returns
         -------
         list of matplotlib.axes.Axes
             The axes of the two plots.
         """
-        from percute.pictures import adaptation
-
-        return adaptation.plot(self, axes, save, flag("overwrite", overwrite))
+        drawn = None if self.estimate is None or self.best is None else (self.estimate, self.best)
+        return adaptation.plot(drawn, self.iterations, self.measure, self.target, axes, save, flag("overwrite", overwrite))
 
 
 def adapt(

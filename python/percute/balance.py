@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from percute import tables
+from percute.contents import Contents, Quantity, instants
 from percute.words import counted
 
 if TYPE_CHECKING:
@@ -15,6 +17,17 @@ if TYPE_CHECKING:
     import xarray
 
 __all__ = ["Balance"]
+
+QUANTITIES = {
+    "kinetic": ("J", "kinetic energy"),
+    "strain": ("J", "strain energy"),
+    "work_of_loads": ("J", "work of tractions and body forces"),
+    "work_of_supports": ("J", "work of support reactions"),
+    "work_of_contact": ("J", "work of contact reactions, including friction"),
+    "friction": ("J", "energy dissipated by friction"),
+    "energy_drift": ("1", "largest error of the energy balance so far, over the largest energy or work"),
+    "impulse_drift": ("1", "largest error of the balance of momentum so far, over the largest momentum or impulse"),
+}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -44,15 +57,15 @@ class Balance:
 
     def to_pandas(self) -> _pandas.DataFrame:
         """Make a table over time (extra ``pandas``): one row for each instant; ``attrs["units"]`` has the units of the columns."""
-        from percute import contents, tables
-
-        return tables.to_pandas(contents.of_balance(self), "time", {"time": ("time",)})
+        return tables.to_pandas(self._contents(), "time", {"time": ("time",)})
 
     def to_xarray(self) -> xarray.Dataset:
         """Make a data set over ``time`` (extra ``xarray``); each variable has its unit and meaning as attributes."""
-        from percute import contents, tables
+        return tables.to_xarray(self._contents())
 
-        return tables.to_xarray(contents.of_balance(self))
+    def _contents(self) -> Contents:
+        quantities = {name: Quantity(("time",), getattr(self, name), *told) for name, told in QUANTITIES.items()}
+        return Contents(instants("time", self.time), quantities, {}).per_metre(self.per_metre)
 
     def __repr__(self) -> str:
         drifts = f"energy drift {self.energy_drift[-1]:.2g}, impulse drift {self.impulse_drift[-1]:.2g}"

@@ -11,12 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
+from percute.arrays import broadcast
 from percute.bodies import Body
-from percute.checks import instance, items, number, numbers, text, whole
+from percute.checks import instance, items, number, text, whole
+from percute.compared import Compared
 from percute.errors import InputError
 from percute.history import History
 from percute.statement import Elastic
-from percute.true_error import Compared, TrueError
+from percute.true_error import TrueError
 
 __all__ = ["BarRow"]
 
@@ -132,19 +134,15 @@ class BarRow(Compared):
         if text("body", body) not in names:
             raise InputError(f"`body` is {body!r}; the bars are {', '.join(names)}")
         start, length = _numbers(self.bodies[names.index(body)])[:2]
-        places, instants = (numbers(name, value, most=32, finite=True) for name, value in (("x", x), ("t", t)))
+        places, instants = broadcast(x=x, t=t)
         outside = (places < start) | (places > start + length)
         if outside.any():
             raise InputError(f"`x` holds {places[outside][0]:g} m; it must lie in {body}, from {start:g} to {start + length:g} m")
         late = (instants < 0) | (instants > self.end)
         if late.any():
             raise InputError(f"`t` holds {instants[late][0]:g} s; it must be from 0 to the `end` of {self.end:g} s")
-        try:
-            rows = [np.ascontiguousarray(row) for row in np.broadcast_arrays(places, instants)]
-        except ValueError:
-            raise InputError(f"`x` has the shape {places.shape} and `t` {instants.shape}; they cannot be broadcast") from None
-        found = self._data.evaluate(quantity, names.index(body), *(row.reshape(-1) for row in rows))
-        return found.reshape(rows[0].shape)
+        found = self._data.evaluate(quantity, names.index(body), *(np.ascontiguousarray(row).reshape(-1) for row in (places, instants)))
+        return found.reshape(places.shape)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return partial(BarRow, bodies=self.bodies, end=self.end), ()

@@ -8,10 +8,9 @@ import reprlib
 import sys
 import warnings
 from collections.abc import Iterable, Mapping
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from percute.errors import InputError, InputWarning, MissingFileError, SimulationWarning
 
@@ -33,7 +32,7 @@ _short = reprlib.Repr()
 _short.maxstring = _short.maxother = _short.maxlong = 80
 
 
-def _told(value: object) -> str:
+def told(value: object) -> str:
     """Show a value in one short line."""
     try:
         return " ".join(_short.repr(value).split())
@@ -43,7 +42,7 @@ def _told(value: object) -> str:
 
 def wrong(name: str, value: object, allowed: str) -> InputError:
     """Make an error with the value of an argument and its allowed values."""
-    return InputError(f"`{name}` is {_told(value)}; it must be {allowed}")
+    return InputError(f"`{name}` is {told(value)}; it must be {allowed}")
 
 
 def caller() -> int:
@@ -81,18 +80,6 @@ def flag(name: str, value: object) -> bool:
     return bool(value)
 
 
-def flags(name: str, value: object, count: int, of: str) -> list[bool]:
-    """Give an array of ``count`` truth values, one of each thing named by ``of``."""
-    refuse_masked(name, value)
-    try:
-        array = np.asarray(value)
-    except (TypeError, ValueError):
-        array = np.empty(0)
-    if array.dtype != np.bool_ or array.shape != (count,):
-        raise wrong(name, value, f"an array of {count} truth values, one for each {of}")
-    return cast("list[bool]", array.tolist())
-
-
 def text(name: str, value: object) -> str:
     """Give a text."""
     if not isinstance(value, str):
@@ -102,6 +89,14 @@ def text(name: str, value: object) -> str:
     except UnicodeEncodeError:
         raise wrong(name, value, "a text without lone surrogates") from None
     return value
+
+
+def one_of(name: str, value: object, known: Iterable[str]) -> str:
+    """Give a text out of some."""
+    names = list(known)
+    if text(name, value) not in names:
+        raise InputError(f"`{name}` is {value!r}; it must be one of {', '.join(names)}")
+    return str(value)
 
 
 def words(name: str, value: object) -> str | None:
@@ -188,28 +183,11 @@ def refuse_masked(name: str, value: object) -> None:
     """Refuse an array with missing values, or a list of such, which NumPy would fill."""
     if isinstance(value, np.ma.MaskedArray):
         raise InputError(f"`{name}` is a masked array; give an ordinary array, without missing values")
-    if isinstance(value, list | tuple) and _holds(value, (np.ma.MaskedArray,)):
+    if isinstance(value, list | tuple) and holds(value, (np.ma.MaskedArray,)):
         raise InputError(f"`{name}` holds masked arrays; give ordinary arrays, without missing values")
 
 
-def _array(name: str, value: object) -> NDArray[Any]:
-    refuse_masked(name, value)
-    try:
-        # Among numbers a truth value would become 0 or 1, but is probably a mistake.
-        return np.asarray(None if _has_truth(value) else value)
-    except (TypeError, ValueError, OverflowError, RecursionError):
-        return np.asarray(None)
-
-
-def _no_truth(value: object) -> str:
-    return ", not True or False" if _has_truth(value) else ""
-
-
-def _has_truth(value: object) -> bool:
-    return isinstance(value, list | tuple) and _holds(value, (bool, np.bool_))
-
-
-def _holds(rows: list[Any] | tuple[Any, ...], wanted: tuple[type, ...]) -> bool:
+def holds(rows: list[Any] | tuple[Any, ...], wanted: tuple[type, ...]) -> bool:
     """Tell whether a list, or a list in it, holds an object of these types. One that holds itself has no end, and no such object."""
     lists: list[list[Any] | tuple[Any, ...]] = [rows]
     seen = set()
@@ -226,52 +204,11 @@ def _holds(rows: list[Any] | tuple[Any, ...], wanted: tuple[type, ...]) -> bool:
     return False
 
 
-_CONVERT = {
-    "c": "; if all imaginary parts are zero, give its real part, array.real",
-    "O": "; if all are numbers, convert them with astype(float)",
-    "U": "; if all are numbers, convert them with astype(float)",
-}
-"""Ways out for arrays of other types, by the kinds of their elements."""
-
-
-def numbers(name: str, value: object, *, most: int, finite: bool = False) -> NDArray[np.float64]:
-    """Give an array of numbers with a maximum number of dimensions."""
-    array = _array(name, value)
-    if array.dtype.kind not in "fiu":
-        allowed = f"numbers in rows of equal length{_no_truth(value)}"
-        if hasattr(value, "dtype"):
-            raise InputError(f"`{name}` is an array of {array.dtype}; it must be {allowed}{_CONVERT.get(array.dtype.kind, '')}")
-        raise wrong(name, value, allowed)
-    if array.ndim > most:
-        raise InputError(f"`{name}` has the shape {array.shape}; it must have at most {most} dimensions")
-    if finite and not np.all(np.isfinite(array)):
-        raise wrong(name, value, "finite numbers")
-    return np.ascontiguousarray(array, dtype=np.float64)
-
-
-def transposed(name: str, array: NDArray[Any], *columns: int | None) -> str:
-    """Say that rows and columns of an array are exchanged, if it has as many rows as it should have columns."""
-    if array.ndim == 2 and array.shape[0] in columns and array.shape[1] not in columns:
-        return f": it is transposed, give `{name}.T`"
-    return ""
-
-
-def integers(name: str, value: object, columns: int | None) -> NDArray[np.int64]:
-    """Give whole numbers in rows of some columns; without columns, in one row."""
-    array = _array(name, value)
-    if array.size == 0 and array.dtype.kind == "f":
-        array = array.astype(np.int64)
-    if array.dtype.kind not in "iu" or (array.dtype.kind == "u" and array.max(initial=0) > LARGEST):
-        kind = f"an array of {array.dtype}" if array.dtype.kind in "fcbu" or hasattr(value, "dtype") else _told(value)
-        whole = "; convert floating-point numbers with astype(int)" if array.dtype.kind == "f" else ""
-        raise InputError(f"`{name}` is {kind}; it must be whole numbers in rows of equal length, counted from 0{whole}{_no_truth(value)}")
-    if columns == 1 and array.ndim == 1:
-        array = array[:, None]
-    shape = (-1,) if columns is None else (-1, columns)
-    if array.ndim != len(shape) or (columns is not None and array.shape[1] != columns):
-        needed = "(n,)" if columns is None else f"(n, {columns})"
-        raise InputError(f"`{name}` has the shape {array.shape}; it must have {needed}{transposed(name, array, columns)}")
-    return np.ascontiguousarray(array, dtype=np.int64)
+def names(name: str, value: Iterable[str] | None, example: str) -> list[str] | None:
+    """Give a list of names, or None."""
+    if isinstance(value, str):
+        raise wrong(name, value, f"a list of names, such as {example}")
+    return None if value is None else [text(name, each) for each in value]
 
 
 def items(name: str, value: object, kind: type[T]) -> list[T]:
@@ -289,6 +226,6 @@ def table(name: str, value: object, of: str) -> dict[str, Any]:
         raise wrong(name, value, f"a dict of group to {of}")
     for group in value:
         if not isinstance(group, str):
-            raise InputError(f"`{name}` has the key {_told(group)}; it must be the name of a group, a text")
+            raise InputError(f"`{name}` has the key {told(group)}; it must be the name of a group, a text")
         text(f"{name}[{group!r}]", group)
     return dict(value)

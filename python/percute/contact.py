@@ -1,154 +1,67 @@
-"""Contact results at each node and instant, and their resultants."""
+"""Contact results with their pictures and tables."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from enum import IntEnum
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
-from percute._percute import unit
-from percute.mesh import Mesh
-from percute.words import counted
+from percute import tables
+from percute.contact_results import ContactResults, Resultants
+from percute.contents import Contents, Quantity, components, instants, places
+from percute.pictures import contact as pictures
 
 if TYPE_CHECKING:
     import pandas as _pandas
     import xarray
     from matplotlib.axes import Axes
 
-__all__ = ["Contact", "ContactStatus", "Resultants"]
+__all__ = ["Contact"]
+
+RESULTANTS = {
+    "force": (("time", "component"), "N", "resultant of the contact forces"),
+    "normal_force": (("time",), "N", "sum of the normal components of the contact forces"),
+    "impulse": (("time", "component"), "N s", "impulse of contact on the body up to here"),
+    "area": (("time",), "m2", "area of contact"),
+    "in_contact": (("time",), "1", "number of nodes in contact"),
+    "slipping": (("time",), "1", "number of slipping nodes"),
+    "friction_energy": (("time",), "J", "energy dissipated by friction up to here"),
+    "centre": (("time", "component"), "m", "centre of pressure"),
+}
+AT_NODES = {
+    "force": ("N", "contact force R_n"),
+    "density": ("Pa", "contact density R_n/l_k"),
+    "tangential_force": ("N", "tangential part of the contact force"),
+    "sliding_velocity": ("m/s", "sliding velocity"),
+    "normal_force": ("N", "normal component of the contact force"),
+    "pressure": ("Pa", "contact pressure"),
+    "gap": ("m", "gap"),
+    "status": ("1", "0 free, 1 stick, 2 slip"),
+    "friction_energy": ("J", "energy dissipated by friction up to here"),
+}
+OF_NODES = {
+    "obstacle": ("1", "number of the plane that the node may touch"),
+    "area": ("m2", "share of the candidate edges"),
+    "first_touch": ("s", "time of the first touch"),
+    "time_in_contact": ("s", "total time in contact"),
+    "peak_normal_force": ("N", "largest normal force"),
+    "time_of_peak": ("s", "time of the largest normal force"),
+    "peak_pressure": ("Pa", "largest pressure"),
+    "impulse": ("N s", "impulse of the node"),
+}
 
 
-class ContactStatus(IntEnum):
-    """Status of a contact node under its reaction R_n, in the step from t_n to t_{n+1}."""
-
-    FREE = 0
-    """Free: R_n is zero."""
-    STICK = 1
-    """Stick: R_n is inside Coulomb's cone."""
-    SLIP = 2
-    """Slip: R_n is on the cone, eq. [2]. Without friction all contact slips."""
+def resultants_of(resultants: Resultants, prefix: str) -> dict[str, Quantity]:
+    """Give resultants over time, with a prefix to their names."""
+    return {prefix + name: Quantity(dims, getattr(resultants, name), unit, text) for name, (dims, unit, text) in RESULTANTS.items()}
 
 
-@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class Resultants:
-    """Resultants of the nodes of one plane, or of all planes, at each instant."""
-
-    force: NDArray[np.float64]
-    """ΣR_n (N), global axes, shape (instants, dimension)."""
-    normal_force: NDArray[np.float64]
-    """Sum of the normal components (N), shape (instants,)."""
-    impulse: NDArray[np.float64]
-    """Impulse on the body up to t_n (N s), shape (instants, dimension)."""
-    area: NDArray[np.float64]
-    """Area of contact (m²): the shares of the nodes that are not free, shape (instants,)."""
-    in_contact: NDArray[np.int64]
-    """Number of nodes that are not free, shape (instants,)."""
-    slipping: NDArray[np.int64]
-    """Number of slipping nodes, shape (instants,)."""
-    friction_energy: NDArray[np.float64]
-    """Energy dissipated by friction up to t_n (J), shape (instants,)."""
-    centre: NDArray[np.float64]
-    """Centre of pressure at t_n (m), NaN without contact, shape (instants, dimension)."""
-    per_metre: bool = False
-    """Whether forces and energies are per metre of thickness."""
-
-    def __repr__(self) -> str:
-        peak = self.normal_force.max(initial=0.0)
-        return f"<percute.Resultants: {counted(len(self.area), 'instant')}, at most {peak:.4g} {unit('N', self.per_metre)} on {counted(int(self.in_contact.max(initial=0)), 'node')}>"
-
-
-@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class Contact:
+class Contact(ContactResults):
     """Contact results at the nodes of the contact surface, and their resultants.
 
     Force, density, status and sliding velocity at t_n are those of the reaction R_n and of the step from t_n to t_{n+1}. A node
     is in contact (not free) at t_n if and only if it touches at t_{n+1}. Gaps and positions are those at t_n.
     """
-
-    time: NDArray[np.float64]
-    """Instants t_n (s), shape (instants,)."""
-    nodes: NDArray[np.int64]
-    """Nodes of the contact surface, along the boundary, shape (contact nodes,)."""
-    obstacle: NDArray[np.int64]
-    """The plane that each of them may touch, shape (contact nodes,); after the planes, the two sides of each interface of bodies."""
-    points: NDArray[np.float64]
-    """Their undeformed positions (m), shape (contact nodes, dimension)."""
-    normals: NDArray[np.float64]
-    """Outward unit normals of their planes, shape (contact nodes, dimension)."""
-    area: NDArray[np.float64]
-    """Their shares ℓ_k of the candidate edges, with thickness or section (m²), shape (contact nodes,), eq. [45]."""
-    force: NDArray[np.float64]
-    """R_n (N), global axes, shape (instants, contact nodes, dimension)."""
-    gap: NDArray[np.float64]
-    """Gap at t_n (m), shape (instants, contact nodes), eq. [3]."""
-    sliding_velocity: NDArray[np.float64]
-    """Tangential part of (u_{n+1} − u_n)/Δt_n (m/s), at the last instant that of the last step; 0 where free; global axes,
-    shape (instants, contact nodes, dimension)."""
-    status: NDArray[np.uint8]
-    """`ContactStatus` under R_n, shape (instants, contact nodes)."""
-    friction_energy: NDArray[np.float64]
-    """Energy dissipated by friction up to t_n (J), shape (instants, contact nodes)."""
-    first_touch: NDArray[np.float64]
-    """The first t_n at which each node touches (s), NaN if it never touches, shape (contact nodes,)."""
-    time_in_contact: NDArray[np.float64]
-    """Total time for which each node was not free (s), shape (contact nodes,)."""
-    peak_normal_force: NDArray[np.float64]
-    """Largest normal force on each node (N), shape (contact nodes,)."""
-    time_of_peak: NDArray[np.float64]
-    """Time of this force (s), NaN without force, shape (contact nodes,)."""
-    peak_pressure: NDArray[np.float64]
-    """Largest pressure on each node (Pa), shape (contact nodes,)."""
-    impulse: NDArray[np.float64]
-    """Impulse of each node (N s), shape (contact nodes, dimension)."""
-    resultants: Resultants
-    """Resultants of all planes over time, and of the first side of each interface of bodies."""
-    obstacles: tuple[Resultants, ...]
-    """Resultants of each plane, then of both sides of each interface of bodies."""
-    surfaces: tuple[str | None, ...]
-    """For each of ``obstacles`` None if it is a plane, or the group of edges of this side of an interface of bodies."""
-    mesh: Mesh = field()
-    """The mesh."""
-    per_metre: bool = False
-    """Whether forces and energies are per metre of thickness."""
-
-    @classmethod
-    def _of(cls, arrays: dict[str, Any], mesh: Mesh, surfaces: Sequence[str | None], per_metre: bool) -> Contact:
-        resultants = Resultants(**arrays.pop("resultants"), per_metre=per_metre)
-        obstacles = tuple(Resultants(**each, per_metre=per_metre) for each in arrays.pop("obstacles"))
-        return cls(**arrays, resultants=resultants, obstacles=obstacles, mesh=mesh, surfaces=tuple(surfaces), per_metre=per_metre)
-
-    @cached_property
-    def _names(self) -> dict[int, str]:
-        """The name of each obstacle that counts: each plane, and the first side of each interface of bodies."""
-        planes = sum(surface is None for surface in self.surfaces)
-        sides = range(planes, len(self.surfaces), 2)
-        return {k: f"plane {k}" for k in range(planes)} | {k: f"{self.surfaces[k]} with {self.surfaces[k + 1]}" for k in sides}
-
-    @cached_property
-    def density(self) -> NDArray[np.float64]:
-        """R_n/ℓ_k (Pa), global axes, shape (instants, contact nodes, dimension), eq. [45]."""
-        return _read_only(self.force / self.area[:, None])
-
-    @cached_property
-    def normal_force(self) -> NDArray[np.float64]:
-        """Normal component of R_n (N), shape (instants, contact nodes)."""
-        return _read_only(np.einsum("ncd,cd->nc", self.force, self.normals))
-
-    @cached_property
-    def tangential_force(self) -> NDArray[np.float64]:
-        """Tangential part of R_n (N), global axes, shape (instants, contact nodes, dimension)."""
-        return _read_only(self.force - self.normal_force[..., None] * self.normals)
-
-    @cached_property
-    def pressure(self) -> NDArray[np.float64]:
-        """Normal component of the density (Pa), shape (instants, contact nodes)."""
-        return _read_only(self.normal_force / self.area)
 
     def plot(
         self,
@@ -166,19 +79,15 @@ class Contact:
             Quantity that the colour of the zone shows.
         axes : sequence of matplotlib.axes.Axes, optional
             Axes of the plot, one for the forces and one for each plane; new ones by default.
-        save : str or path, optional
-            A file (``.svg``, ``.png`` or ``.pdf``) for the figure.
-        overwrite : bool, default: False
-            Whether a file that exists already is replaced.
+        save, overwrite
+            As for `History.plot_energies`.
 
         Returns
         -------
         list of matplotlib.axes.Axes
             The axes of the plot.
         """
-        from percute.pictures import contact
-
-        return contact.plot_contact(self, colour, axes, save, overwrite)
+        return pictures.plot_contact(self, colour, axes, save, overwrite)
 
     def to_pandas(self, over: Literal["time", "nodes", "both"] = "time") -> _pandas.DataFrame:
         """Make a table of the contact results (extra ``pandas``).
@@ -194,22 +103,26 @@ class Contact:
         pandas.DataFrame
             With one column for each component, such as ``total_force_x``; ``attrs["units"]`` has the units of the columns.
         """
-        from percute import contents, tables
-
         rows = {"time": ("time",), "nodes": ("contact_node",), "both": ("time", "contact_node")}
-        return tables.to_pandas(contents.of_contact(self), over, rows)
+        return tables.to_pandas(self._contents(), over, rows)
 
     def to_xarray(self) -> xarray.Dataset:
         """Make a data set over ``time`` and ``contact_node`` (extra ``xarray``); each variable has its unit and meaning as attributes."""
-        from percute import contents, tables
+        return tables.to_xarray(self._contents())
 
-        return tables.to_xarray(contents.of_contact(self))
-
-    def __repr__(self) -> str:
-        peak = self.resultants.normal_force.max(initial=0.0)
-        return f"<percute.Contact: {counted(len(self.nodes), 'node')}, {counted(len(self.time), 'instant')}, at most {peak:.4g} {unit('N', self.per_metre)}>"
-
-
-def _read_only(array: NDArray[np.float64]) -> NDArray[np.float64]:
-    array.flags.writeable = False
-    return array
+    def _contents(self) -> Contents:
+        """Give the results at nodes and instants, of nodes, and the resultants over time."""
+        coordinates = instants("time", self.time) | places("contact_node", self.points, self.nodes) | components(self.mesh)
+        quantities = resultants_of(self.resultants, "total_")
+        if len(self.obstacles) > 1:
+            for number, each in enumerate(self.obstacles):
+                quantities |= resultants_of(each, f"plane_{number}_")
+        for name, told in AT_NODES.items():
+            values = getattr(self, name)
+            dims = ("time", "contact_node", "component")[: values.ndim]
+            quantities[name] = Quantity(dims, values, *told)
+        for name, told in OF_NODES.items():
+            values = getattr(self, name)
+            # Names of quantities at nodes and instants are taken.
+            quantities[f"node_{name}"] = Quantity(("contact_node", "component")[: values.ndim], values, *told)
+        return Contents(coordinates, quantities, {}).per_metre(self.per_metre)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 __all__ = ["BodyDeformation", "ContactPeak", "Deformation", "Extreme", "MaterialStress", "Nearest", "PoorElement", "Yielding"]
 
@@ -77,19 +75,6 @@ class Deformation:
         """The largest principal strain of all bodies."""
         return max((body.strain for body in self.bodies), key=lambda strain: abs(strain.value))
 
-    @classmethod
-    def _of(cls, found: Mapping[str, Any] | None) -> Deformation | None:
-        """Make it from its JSON object."""
-        if found is None:
-            return None
-        bodies = [BodyDeformation(**{**body, "strain": Extreme(**body["strain"])}) for body in found["bodies"]]
-        return cls(bodies=tuple(bodies), materials=tuple(_material(each) for each in found["materials"]))
-
-
-def _material(found: Mapping[str, Any]) -> MaterialStress:
-    yielding = None if found["yielding"] is None else Yielding(**found["yielding"])
-    return MaterialStress(**{**found, "von_mises": Extreme(**found["von_mises"]), "yielding": yielding})
-
 
 @dataclass(frozen=True, kw_only=True)
 class PoorElement:
@@ -107,11 +92,6 @@ class PoorElement:
     """Its largest angle (degrees)."""
     share: float
     """Its part of the squared mean error."""
-
-    @classmethod
-    def _all(cls, found: Sequence[Mapping[str, Any]]) -> tuple[PoorElement, ...]:
-        """Make them from their JSON objects."""
-        return tuple(cls(**{**each, "centroid": tuple(each["centroid"])}) for each in found)
 
 
 @dataclass(frozen=True, kw_only=True)

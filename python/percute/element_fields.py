@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import LARGEST, flag, integers, numbers, text, whole, wrong
+from percute.arrays import integers, numbers
+from percute.checks import LARGEST, flag, one_of, text, whole, wrong
 from percute.errors import InputError
+from percute.mesh import Mesh
+from percute.mesh_arrays import boundary
+from percute.problem import Problem
+from percute.steps import Steps
 from percute.words import counted
-
-if TYPE_CHECKING:
-    from percute.history import History
-    from percute.mesh import Mesh
-    from percute.problem import Problem
 
 Floats = NDArray[np.float64]
 Step = int | slice | ArrayLike
@@ -30,7 +30,7 @@ OUTSIDE = 1e-9
 """Points may lie outside the body by this part of its size: rounding of coordinates."""
 
 
-def instant(history: History, step: object) -> int:
+def instant(history: Steps, step: object) -> int:
     """Check the number of an instant; negative ones count from the end."""
     count = len(history)
     if not -count <= (given := whole("step", step, least=-LARGEST)) < count:
@@ -38,7 +38,7 @@ def instant(history: History, step: object) -> int:
     return given % count
 
 
-def rows(history: History, step: Step) -> tuple[NDArray[np.intp], bool]:
+def rows(history: Steps, step: Step) -> tuple[NDArray[np.intp], bool]:
     """Give the numbers of the instants of an argument ``step``, and whether it is one instant only."""
     count = len(history)
     if isinstance(step, slice):
@@ -54,7 +54,7 @@ def rows(history: History, step: Step) -> tuple[NDArray[np.intp], bool]:
     return np.array([instant(history, step)]), True
 
 
-def element_field(history: History, quantity: str, step: Step) -> Floats:
+def element_field(history: Steps, quantity: str, step: Step) -> Floats:
     """Give a quantity of all elements at one instant, or at several along the first axis."""
     chosen, one = rows(history, step)
     motion = history.velocity[chosen] if quantity == "kinetic_energy" else history._displacement_at(chosen)
@@ -69,13 +69,11 @@ class Place(NamedTuple):
     weights: Floats
 
 
-def probe(history: History, where: object, quantity: object, each: object) -> Floats:
+def probe(history: Steps, where: object, quantity: object, each: object) -> Floats:
     """Read a quantity at a point or a group, at all instants."""
-    known = (*NODAL, *MEANS)
-    if text("quantity", quantity) not in known:
-        raise InputError(f"`quantity` is {quantity!r}; it must be one of {', '.join(known)}")
+    name = one_of("quantity", quantity, (*NODAL, *MEANS))
     mesh, apart = history.problem.mesh, flag("each", each)
-    nodal = quantity in NODAL
+    nodal = name in NODAL
     if isinstance(where, str):
         place = _group(mesh, text("where", where), nodal)
     elif apart:
@@ -83,13 +81,13 @@ def probe(history: History, where: object, quantity: object, each: object) -> Fl
     else:
         place = _point(mesh, where, nodal)
     if nodal:
-        values: Floats = getattr(history, str(quantity))[:, place.rows]
+        values: Floats = getattr(history, name)[:, place.rows]
     else:
-        values = _of_elements(history, str(quantity), place.rows)
+        values = _of_elements(history, name, place.rows)
     return values if apart else np.tensordot(values, place.weights, (1, 0))
 
 
-def _of_elements(history: History, quantity: str, elements: NDArray[np.int64]) -> Floats:
+def _of_elements(history: Steps, quantity: str, elements: NDArray[np.int64]) -> Floats:
     """Read a quantity of some elements at all instants."""
     if len(elements) == 1:
         problem, nodes = _alone(history.problem, int(elements[0]))
@@ -102,9 +100,6 @@ def _of_elements(history: History, quantity: str, elements: NDArray[np.int64]) -
 
 def _alone(problem: Problem, element: int) -> tuple[Problem, NDArray[np.int64]]:
     """Give an element as a problem of its own, and its nodes."""
-    from percute.mesh import Mesh
-    from percute.problem import Problem
-
     mesh, material = problem.mesh, problem.material
     nodes = mesh.cells[element].astype(np.int64)
     if isinstance(material, dict):
@@ -130,14 +125,6 @@ def _point(mesh: Mesh, where: object, nodal: bool) -> Place:
     if nodal:
         return Place(mesh.cells[element].astype(np.int64), shapes[element])
     return Place(np.array([element]), np.ones(1))
-
-
-def boundary(cells: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Give the edges that belong to one element only (of a bar: nodes), and this element."""
-    edges = np.concatenate([np.delete(cells, k, axis=1) for k in range(cells.shape[1])]).astype(np.int64)
-    _, first, times = np.unique(np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True)
-    outer = first[times == 1]
-    return edges[outer], outer % len(cells)
 
 
 def _nearest(mesh: Mesh, point: Floats, where: object) -> tuple[int, Floats]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Literal, cast
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from percute import _percute
-from percute.checks import flag, instance, numbers, text, warn_of_result, whole, wrong
+from percute.arrays import times
+from percute.checks import flag, instance, text, warn_of_result, whole, wrong
 from percute.errors import InputError
 from percute.estimation import Estimate
 from percute.history import History
@@ -157,10 +158,7 @@ def _wanted(instants: int | ArrayLike | None, history: History) -> int | list[fl
         return None
     if isinstance(instants, int | np.integer):
         return whole("instants", instants)
-    times = np.atleast_1d(numbers("instants", instants, most=1))
-    if len(times) == 0 or not np.all(np.isfinite(times) & (times >= 0)):
-        raise wrong("instants", instants, "a number of instants, or at least one time (s), finite and not negative")
-    end = float(history._data.times[-1])
-    if np.max(times) > end * (1 + 1e-3):
-        raise InputError(f"`instants` holds {np.max(times):g} s, but the run ends at {end:g} s; give instants before that, in seconds")
-    return cast("list[float]", times.tolist())
+    given, end = times("instants", instants, "a number of instants, or "), float(history._data.times[-1])
+    if max(given) > end * (1 + 1e-3):
+        raise InputError(f"`instants` holds {max(given):g} s, but the run ends at {end:g} s; give instants before that, in seconds")
+    return given

@@ -1,271 +1,71 @@
-"""Estimates of the error of a simulation, over elements and over time."""
+"""Estimates of the error of a simulation, with their pictures, tables and files."""
 
 from __future__ import annotations
 
 import json
 import os
 from collections.abc import Mapping
-from functools import cached_property
-from types import MappingProxyType
-from typing import Any, Literal, cast
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from percute import _percute
-from percute.checks import flag, instance, vtkhdf, whole, words
+from percute import _percute, notebook, tables
+from percute._percute import unit
+from percute.checks import flag, instance, vtkhdf, words
 from percute.checks import path as file_name
 from percute.contact import Contact
-from percute.deformation import ContactPeak, Deformation, Nearest, PoorElement
+from percute.contents import Contents, Quantity, components, instants, places
+from percute.error_results import ErrorResults
 from percute.errors import InputError
-from percute.estimate_views import EstimateViews
-from percute.history import History
-from percute.impacts import Impacts, SlidingEstimate
-from percute.mesh import Mesh
-from percute.problem import Problem
-from percute.rebound import Rebound
-from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
-from percute.stored import StoredEstimate
+from percute.pictures import error as pictures
+from percute.records import ElementMap
+from percute.stored import MEASURES, StoredEstimate
 from percute.true_error import Effectivity, TrueError
-from percute.words import counted
+from percute.views import File, Views
+
+if TYPE_CHECKING:
+    import pandas as _pandas
+    import xarray
+    from matplotlib.axes import Axes
 
 __all__ = ["Estimate"]
 
+SAMPLES = {
+    "kinetic": ("J", "kinetic part of eta"),
+    "elastic": ("J", "elastic part of eta"),
+    "contact": ("J", "contact part of eta"),
+    "total": ("J", "eta, the square of the error"),
+    "reference": ("J", "the square of the reference"),
+}
+MAPS = {
+    "kinetic": (("instant", "element"), "element_kinetic", "J", "kinetic part of eta of the element"),
+    "elastic": (("instant", "element"), "element_elastic", "J", "elastic part of eta of the element"),
+    "contact": (("instant", "element"), "element_contact", "J", "contact part of eta of the element"),
+    "total": (("instant", "element"), "element_total", "J", "eta of the element"),
+    "error": (("instant", "element"), "accumulated", "J^0.5", "contribution of the element up to here"),
+    "displacement": (("instant", "node", "component"), "admissible_displacement", "m", "admissible displacement"),
+    "velocity": (("instant", "node", "component"), "admissible_velocity", "m/s", "rate of the admissible displacement"),
+    "acceleration": (("instant", "element", "component"), "admissible_acceleration", "m/s2", "admissible acceleration"),
+    "stress": (("instant", "element", "component", "component2"), "admissible_stress", "Pa", "statically admissible stress"),
+    "compatible_stress": (("instant", "element", "component", "component2"), "compatible_stress", "Pa", "stress of the admissible displacement"),
+}
 
-def _measure(name: str, meaning: str) -> cached_property[float]:
-    """Make a property of an estimate from one of its measures."""
-    made: cached_property[float] = cached_property(lambda estimate: estimate._measures[name])
-    made.__doc__ = meaning
-    return made
+
+def _maps(maps: tuple[ElementMap, ...]) -> dict[str, Quantity]:
+    """Give the maps, one behind the other."""
+    found = {}
+    for name, (dims, known_as, unit, text) in MAPS.items():
+        if getattr(maps[0], name) is not None:
+            found[known_as] = Quantity(dims, np.stack([getattr(each, name) for each in maps]), unit, text)
+    return found
 
 
-class Estimate(EstimateViews):
+class Estimate(ErrorResults, Views):
     """The constitutive relation error of a history.
 
     Made by `estimate`, `run` or `percute.open`. Errors are in J^½ and include the thickness of a plane body. ``verdict``
     says how far they can be trusted.
     """
-
-    _data: _percute.EstimateData | StoredEstimate
-    _history: History | None
-    _named: str
-
-    def __init__(self) -> None:
-        raise TypeError("estimates are made by percute.estimate, percute.run and percute.open")
-
-    @classmethod
-    def _of(cls, data: _percute.EstimateData | StoredEstimate, history: History | None, name: str) -> Estimate:
-        made = cls.__new__(cls)
-        made._data = data
-        made._history = history
-        made._named = name
-        return made
-
-    @property
-    def _name(self) -> str:
-        """The name of the case or history; that of a file into which the history was saved later."""
-        return self._named or ("" if self._history is None else self._history._name)
-
-    @property
-    def history(self) -> History | None:
-        """The history that was estimated; None if the estimate was unpickled."""
-        return self._history
-
-    @cached_property
-    def problem(self) -> Problem | None:
-        """The problem that was simulated; None if the estimate comes from a file, which has no initial fields."""
-        if isinstance(self._data, StoredEstimate):
-            return None
-        return self._history.problem if self._history is not None else Problem._of(self._data.problem())
-
-    @cached_property
-    def mesh(self) -> Mesh:
-        """The mesh."""
-        if isinstance(self._data, StoredEstimate):
-            return self._data.mesh
-        assert self.problem is not None
-        return self.problem.mesh
-
-    @cached_property
-    def _measures(self) -> _percute._Measures:
-        return cast("_percute._Measures", self._data.measures())
-
-    sup = _measure("sup", "e_sup = √(sup η) (J^½), eq. [15].")
-    mean = _measure("mean", "e_mean = √((1/T)∫η dt) (J^½), eq. [16].")
-    mean_from_touch = _measure("mean_from_touch", "The same mean from the first touch on (J^½); from the start without contact.")
-    energy = _measure("energy", "Largest energy of deformation and vibration (J): strain energy plus kinetic energy relative to the rigid motion of each body.")
-    strain_energy = _measure("strain_energy", "Largest strain energy (J).")
-    kinetic_energy = _measure("kinetic_energy", "Largest kinetic energy relative to the rigid motion of each body (J).")
-    relative_sup = _measure("relative_sup", "``sup`` over √``energy``.")
-    relative_mean = _measure("relative_mean", "``mean_from_touch`` over √``energy``.")
-    relative_stress_sup = _measure("relative_stress_sup", "Error of the stresses: √sup of the elastic part of η over √``strain_energy``.")
-    relative_stress_mean = _measure("relative_stress_mean", "The same with the mean from the first touch on.")
-    relative_velocity_sup = _measure("relative_velocity_sup", "Error of the velocities: √sup of the kinetic part of η over √``kinetic_energy``.")
-    relative_velocity_mean = _measure("relative_velocity_mean", "The same with the mean from the first touch on.")
-    published_relative_sup = _measure("published_relative_sup", "``sup`` over ``reference_sup``, eq. [22].")
-    published_relative_mean = _measure("published_relative_mean", "``mean`` over ``reference_mean``.")
-    reference_sup = _measure("reference_sup", "D = √(sup d) (J^½), eq. [23].")
-    reference_mean = _measure("reference_mean", "√((1/T)∫d dt) (J^½).")
-    time_of_sup = _measure("time_of_sup", "Time of the largest η (s).")
-
-    @property
-    def steps(self) -> int:
-        """The last step that was estimated."""
-        return self._measures["steps"]
-
-    end = _measure("end", "Its time T (s).")
-
-    @property
-    def per_metre(self) -> bool:
-        """Whether forces and energies are per metre of thickness; errors are then in (J/m)^½."""
-        return bool((self._verdict.get("problem") or {}).get("per_metre", False))
-
-    @property
-    def meaning(self) -> str:
-        """The meaning of the error; `verdict` has its limits in cases like this one."""
-        return _percute.meaning()
-
-    @cached_property
-    def _verdict(self) -> dict[str, Any]:
-        found: dict[str, Any] = json.loads(self._data.verdict())
-        return found
-
-    @property
-    def verdict(self) -> str | None:
-        """Situation and effectivity index in tests of such cases, place of the error, and a recommendation.
-
-        It begins with whether nothing touched, and ends with elements to repair and with stress beyond the linear law, if there are any. None if the estimate comes from a file of an earlier version.
-        """
-        verdict = self._verdict.get("verdict")
-        return None if verdict is None else " ".join(verdict["text"])
-
-    @property
-    def trust(self) -> Literal["high", "limited", "low"] | None:
-        """How far the estimate can be trusted; None if it comes from a file of an earlier version."""
-        verdict = self._verdict.get("verdict")
-        return None if verdict is None else cast("Literal['high', 'limited', 'low']", verdict["trust"])
-
-    @cached_property
-    def warnings(self) -> tuple[str, ...]:
-        """All warnings about the problem, the simulation and the estimate, as ``percute run`` prints them."""
-        return tuple(each["message"] for each in self._verdict.get("warnings", ()))
-
-    @cached_property
-    def rebound(self) -> Rebound | None:
-        """Velocities before and after contact, restitution and time in contact; None without contact."""
-        return Rebound._of(self._verdict.get("rebound"))
-
-    @cached_property
-    def impacts(self) -> Impacts | None:
-        """Velocities of several bodies before and after contact, and restitution at each interface; None of a single body."""
-        return Impacts._of(self._verdict.get("impacts"))
-
-    @cached_property
-    def deformation(self) -> Deformation | None:
-        """The largest strains, rotations and stresses; None if the estimate comes from a file of an earlier version."""
-        return Deformation._of(self._verdict.get("deformation"))
-
-    @cached_property
-    def contact_peak(self) -> ContactPeak | None:
-        """The largest contact force and pressure, averaged over the time in which a wave crosses the struck element; None without contact."""
-        found = (self._verdict.get("contact") or {}).get("averaged_peak")
-        return None if found is None else ContactPeak(**found)
-
-    @cached_property
-    def poor_elements(self) -> tuple[PoorElement, ...]:
-        """The elements to repair, with the largest parts of the error first; empty where bad shapes do not matter."""
-        return PoorElement._all((self._verdict.get("verdict") or {}).get("poor_elements", ()))
-
-    @cached_property
-    def nearest(self) -> Nearest | None:
-        """The gap that is left if nothing touched, although there is a plane or another body; else None."""
-        found = (self._verdict.get("contact") or {}).get("nearest")
-        return None if found is None else Nearest(**found)
-
-    @cached_property
-    def sliding(self) -> tuple[SlidingEstimate, ...]:
-        """The estimate at surfaces that slide along each other, in the order of ``problem.contacts``; empty without any."""
-        return SlidingEstimate._all(self._verdict.get("sliding", ()))
-
-    @property
-    def kept_impulse(self) -> float | None:
-        """Normal impulse of the admissible contact force over that of the simulation; None without contact."""
-        return self._measures["kept_impulse"]
-
-    @cached_property
-    def parts(self) -> Parts:
-        """Parts of η at its largest value (J), eq. [14]."""
-        return Parts(*self._data.parts())
-
-    @cached_property
-    def over_time(self) -> OverTime:
-        """η, its parts and d over time (J)."""
-        return OverTime(**self._data.over_time())
-
-    @cached_property
-    def sources(self) -> Separation | None:
-        """The sources of the error; None without an auxiliary solution, as with "consistent" and "published"."""
-        found = self._data.sources()
-        if found is None:
-            return None
-        return Separation(
-            at_sup=Sources(*found["at_sup"]),
-            mean=Sources(*found["mean"]),
-            half_size=Sources(*found["half_size"]),
-            half_step=found["half_step"],
-            over_time=SourcesOverTime(**found["over_time"]),
-        )
-
-    @cached_property
-    def by_element(self) -> NDArray[np.float64]:
-        """e_E of each element (J^½), shape (elements,), eq. [20]; a read-only view."""
-        return self._data.by_element()
-
-    @cached_property
-    def residuals(self) -> Mapping[str, float]:
-        """Relative residuals of all admissibility conditions; above 1e-10 a field is not admissible (see ``docs/json.md``)."""
-        return MappingProxyType(self._data.residuals())
-
-    @cached_property
-    def maps(self) -> tuple[ElementMap, ...]:
-        """Contributions of the elements at the requested instants."""
-        kept = [{k: v for k, v in each.items() if k not in ("step", "accumulated")} for each in self._data.maps()]
-        return tuple(ElementMap(**arguments) for arguments in kept)
-
-    @cached_property
-    def contact(self) -> Contact | None:
-        """Contact results from the history or the file; None after unpickling, or if the file has none: `no_contact` tells why."""
-        if self._history is not None:
-            return self._history.contact
-        if not isinstance(self._data, StoredEstimate):
-            return None
-        found = self._data.contact()
-        return None if found is None else Contact._of(found, self.mesh, self._data.surfaces(), self.per_metre)
-
-    @property
-    def no_contact(self) -> str | None:
-        """Why `contact` is None; None if it is not."""
-        if self.contact is not None:
-            return None
-        if isinstance(self._data, StoredEstimate):
-            return "the file has no contact results: nothing could touch, or the estimate had been unpickled without its history"
-        return "the estimate was unpickled without its history, which has the contact results; pickle both, or save the estimate to a file"
-
-    @property
-    def given(self) -> Mapping[str, bool]:
-        """Whether the history has its own ``velocity`` and ``acceleration``; otherwise they follow from the scheme."""
-        return MappingProxyType(dict(zip(("velocity", "acceleration"), self._data.given(), strict=True)))
-
-    @cached_property
-    def consistency(self) -> Mapping[str, float | None] | None:
-        """How consistent a history of another program is: the figures of ``docs/foreign.md``; None for percute's own."""
-        found = json.loads(self.to_json()).get("consistency")
-        return None if found is None else MappingProxyType(found)
-
-    @property
-    def options(self) -> Mapping[str, str | int]:
-        """The options ``reconstruction``, ``acceleration`` and ``every`` of the estimate."""
-        return MappingProxyType(dict(zip(("reconstruction", "acceleration", "every"), self._data.options(), strict=True)))
 
     def effectivity(self, error: TrueError) -> Effectivity:
         """Give the effectivity index: the estimated over the true error, of the largest and of the mean error.
@@ -291,20 +91,6 @@ class Estimate(EstimateViews):
             if not of_other:
                 raise InputError(f"`error` has {last} steps, but the estimate {self.steps}; give the true error of the same history")
         return Effectivity(sup=self.sup / true.sup, mean=self.mean / true.mean)
-
-    def worst_elements(self, n: int = 5) -> list[WorstElement]:
-        """Give the ``n`` largest contributions of elements, largest first."""
-        count = whole("n", n, least=0)
-        mesh = self.mesh
-        worst = []
-        for element, error in self._data.worst_elements(count):
-            centroid = mesh.points[mesh.cells[element]].mean(axis=0)
-            worst.append(WorstElement(element, error, tuple(centroid.tolist())))
-        return worst
-
-    def to_json(self) -> str:
-        """Give the document that ``percute run --json`` prints, described in ``docs/json.md``."""
-        return self._data.to_json(self._name)
 
     def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
         """Write an estimate file for ParaView, h5py and `percute.open`, described in ``docs/estimate.md``.
@@ -396,31 +182,124 @@ class Estimate(EstimateViews):
         history = None if self._history is None else self._history._data
         _percute.present(self._data, page, file, replace, self._name, history)
 
-    def __repr__(self) -> str:
-        norm = _percute.unit("J^½", self.per_metre)
-        return (
-            f"<percute.Estimate: sup {self.sup:.4g} {norm} ({self.relative_sup:.3%}) at {self.time_of_sup:.4g} s, "
-            f"mean {self.mean_from_touch:.4g} {norm} ({self.relative_mean:.3%}), {counted(len(self.by_element), 'element')}, {counted(self.steps, 'step')}>"
-        )
+    def plot_map(
+        self, *, scale: float = 0.0, outline: bool = True, axes: Axes | None = None, save: File = None, overwrite: bool = False
+    ) -> Axes:
+        """Draw e_E, the contribution of each element (J^½), eq. [20], with mesh lines and planes.
 
-    def __str__(self) -> str:
-        verdict = [] if self.verdict is None else [f"trust {self.trust}: {self.verdict}"]
-        warnings = [f"warning: {each}" for each in self.warnings]
-        return "\n".join([repr(self).strip("<>"), *warnings, *verdict, self.meaning])
+        The colours are logarithmic if the largest contribution exceeds five times the median.
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle all but the history, which is large and can be pickled separately."""
-        data = self._data
-        if isinstance(data, StoredEstimate):
-            return _reopen, (data.path,)
-        return _restore, (self.problem, data.state(self._name), self._name)
+        Parameters
+        ----------
+        scale : float, default: 0.0
+            By how much the displacement at the time of the sup, rigid motion included, is exaggerated; 0 draws the undeformed mesh.
+        outline : bool, default: True
+            Whether the outline of a plane body at the end is drawn over the undeformed mesh: its rigid motion as it is, its deformation
+            times a round factor that makes it visible.
+        axes, save, overwrite
+            As for `plot_energies`.
 
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes of the plot.
+        """
+        return pictures.plot_map(self, scale, outline, axes, save, overwrite)
 
-def _reopen(path: str) -> Estimate:
-    return Estimate._of(StoredEstimate(path), None, path)
+    def plot_over_time(
+        self,
+        by: Literal["parts", "sources"] = "parts",
+        *,
+        axes: Axes | None = None,
+        save: File = None,
+        overwrite: bool = False,
+    ) -> Axes:
+        """Draw √η over time, with the square roots of its parts or of its sources (J^½).
 
+        A curve with many samples that goes up and down from one to the next is drawn as a band from the least to the largest of
+        some samples, with their mean as a line.
 
-def _restore(problem: Problem, state: bytes, name: str) -> Estimate:
-    restored = Estimate._of(_percute.EstimateData.restore(problem._data, state), None, name)
-    restored.__dict__["problem"] = problem
-    return restored
+        Parameters
+        ----------
+        by : {"parts", "sources"}, default: "parts"
+            Kinetic, elastic and contact part, eq. [14], or surface, front, dispersion and mesh.
+        axes, save, overwrite
+            As for `plot_energies`.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes of the plot.
+        """
+        return pictures.plot_over_time(self, by, axes, save, overwrite)
+
+    def to_pandas(self, over: Literal["time", "elements", "both"] = "time") -> _pandas.DataFrame:
+        """Make a table (extra ``pandas``).
+
+        Parameters
+        ----------
+        over : {"time", "elements", "both"}, default: "time"
+            The rows: η with its parts and sources at each sample, e_E of each element, or the contributions of the elements at each
+            instant of ``maps``.
+
+        Returns
+        -------
+        pandas.DataFrame
+            ``attrs["units"]`` has the units of the columns, and ``attrs`` the measures of the error.
+        """
+        rows = {"time": ("time",), "elements": ("element",), "both": ("instant", "element")}
+        return tables.to_pandas(self._contents(), over, rows)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Make a data set (extra ``xarray``): the error over ``time``, over ``element``, and over both at each ``instant`` of the maps.
+
+        Each variable has its unit and meaning as attributes; the measures of the error are attributes of the data set.
+        """
+        return tables.to_xarray(self._contents())
+
+    def _contents(self) -> Contents:
+        """Give the error over time, over elements, and of both at the instants of the maps."""
+        mesh, samples = self.mesh, self.over_time
+        centroids = mesh.points[mesh.cells].mean(axis=1)
+        coordinates = instants("time", samples.time) | places("element", centroids, np.arange(len(mesh.cells))) | components(mesh)
+        quantities = {name: Quantity(("time",), getattr(samples, name), *told) for name, told in SAMPLES.items()}
+        # Rounding may leave a total slightly below zero before the first contact.
+        quantities["error"] = Quantity(("time",), np.sqrt(np.maximum(samples.total, 0.0)), "J^0.5", "error")
+        if self.sources is not None:
+            over_time = self.sources.over_time
+            for name in ("surface", "front", "dispersion", "mesh"):
+                quantities[f"source_{name}"] = Quantity(("time",), getattr(over_time, name), "J", f"part of eta from the source {name}")
+        quantities["by_element"] = Quantity(("element",), self.by_element, "J^0.5", "contribution of the element to the mean error")
+        if self.maps:
+            coordinates |= instants("instant", np.array([each.time for each in self.maps]))
+            quantities |= _maps(self.maps)
+        if any("node" in quantity.dims for quantity in quantities.values()):
+            coordinates |= places("node", mesh.points, np.arange(len(mesh.points)), "node_")
+        facts = {name: getattr(self, name) for name in (*MEASURES, "time_of_sup", "end")} | dict(self.options)
+        return Contents(coordinates, quantities, facts).per_metre(self.per_metre)
+
+    def _energies(self) -> Mapping[str, Any]:
+        if self.history is not None:
+            return self.history._energies()
+        columns = json.loads(self.to_json()).get("balance_over_time")
+        if columns is None:
+            raise InputError("the estimate has no energies; take them from its history")
+        return {name: np.array(values, dtype=np.float64) for name, values in columns.items()} | {"per_metre": self.per_metre}
+
+    def _touch(self) -> Contact:
+        if self.contact is None:
+            raise InputError(f"there is nothing to draw: {self.no_contact}")
+        return self.contact
+
+    def _repr_html_(self) -> str:
+        norm = unit("J^½", self.per_metre).replace("^½", "½")
+        rows = [
+            ("largest error", f"{100 * self.relative_sup:.3g} %, {self.sup:.4g} {norm} at {notebook.time(self.time_of_sup)}"),
+            ("mean error", f"{100 * self.relative_mean:.3g} %, {self.mean_from_touch:.4g} {norm}, from the touch"),
+            ("steps", f"{self.steps} to {notebook.time(self.end)}"),
+            ("reconstruction", str(self.options["reconstruction"])),
+        ]
+        if self.trust is not None:
+            rows += [("trust", self.trust), ("verdict", str(self.verdict))]
+        rows += [("worst element", f"{each.element} at {notebook.vector(each.centroid)} m, {each.error:.3g} {norm}") for each in self.worst_elements(1)]
+        return notebook.page("Estimate", rows + notebook.mesh_rows(self.mesh)[:2], notebook.error_map(self.mesh, self.by_element))

@@ -11,12 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
+from percute.arrays import broadcast, numbers
 from percute.bar_row import BarRow
-from percute.checks import instance, number, numbers, text, whole, wrong
+from percute.checks import instance, number, text, whole, wrong
+from percute.compared import Compared
 from percute.errors import InputError
 from percute.history import History
 from percute.statement import Elastic
-from percute.true_error import Compared, Effectivity, TrueError
+from percute.true_error import Effectivity, TrueError
 
 __all__ = [
     "BarImpact",
@@ -71,13 +73,8 @@ class _Exact:
 
     def _evaluate(self, name: str, **at: ArrayLike) -> NDArray[np.float64]:
         """Evaluate a function at positions and instants, broadcast against each other."""
-        given = [numbers(each, value, most=32, finite=True) for each, value in at.items()]
-        try:
-            rows = np.stack(np.broadcast_arrays(*given), axis=-1)
-        except ValueError:
-            shapes = ", ".join(f"`{each}` has the shape {value.shape}" for each, value in zip(at, given, strict=True))
-            raise InputError(f"{shapes}; they cannot be broadcast") from None
-        return self._data.evaluate(name, rows.reshape(-1, len(at))).reshape(np.broadcast_shapes(*map(np.shape, at.values())))
+        rows = np.stack(broadcast(**at), axis=-1)
+        return self._data.evaluate(name, rows.reshape(-1, len(at))).reshape(rows.shape[:-1])
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,49 +5,58 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import Protocol, cast, runtime_checkable
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.checks import flag, integers, numbers, text, whole, wrong
+from percute.arrays import integers
+from percute.arrays import times as checked_times
+from percute.checks import flag, names, whole, wrong
 from percute.checks import path as file_name
 from percute.errors import InputError
+from percute.mesh import Mesh
 from percute.progress import ProgressOption, shown
+from percute.steps import Steps
+from percute.stored import StoredEstimate
 from percute.words import counted
-
-if TYPE_CHECKING:
-    from percute.estimation import Estimate
-    from percute.history import History
 
 Choice = tuple[list[int] | None, int | None, list[float] | None]
 
 
+@runtime_checkable
+class Estimated(Protocol):
+    """What an export takes from a `percute.Estimate`."""
+
+    @property
+    def mesh(self) -> Mesh: ...
+    @property
+    def by_element(self) -> NDArray[np.float64]: ...
+
+
 def export(
-    history: History,
+    history: Steps,
     path: str | os.PathLike[str],
     steps: ArrayLike | None,
     every: int | None,
     times: ArrayLike | None,
     fields: Iterable[str] | None,
-    estimate: Estimate | str | os.PathLike[str] | None,
+    estimate: Estimated | str | os.PathLike[str] | None,
     overwrite: bool,
     progress: ProgressOption,
 ) -> list[Path]:
     """Write fields of a history; see `History.export`."""
     file, replace = os.path.abspath(file_name("path", path)), flag("overwrite", overwrite)
     choice = _choice(steps, every, times, history)
-    if isinstance(fields, str):
-        raise wrong("fields", fields, 'a list of names, such as ["stress", "velocity"]')
-    names = None if fields is None else [text("fields", name) for name in fields]
+    wanted = names("fields", fields, '["stress", "velocity"]')
     error, inputs = _error(history, estimate)
     inputs += [] if history.path is None else [os.fspath(history.path)]
     with shown(progress) as tell:
-        return _percute.export(history._data, file, choice, names, error, inputs, replace, tell)
+        return _percute.export(history._data, file, choice, wanted, error, inputs, replace, tell)
 
 
-def _choice(steps: ArrayLike | None, every: int | None, times: ArrayLike | None, history: History) -> Choice:
+def _choice(steps: ArrayLike | None, every: int | None, times: ArrayLike | None, history: Steps) -> Choice:
     """Check the steps; negative ones count from the end."""
     count = len(history)
     if sum(given is not None for given in (steps, every, times)) > 1:
@@ -61,29 +70,26 @@ def _choice(steps: ArrayLike | None, every: int | None, times: ArrayLike | None,
             raise wrong("steps", steps, allowed)
         return (chosen % count).tolist(), None, None
     if times is not None:
-        wanted = np.atleast_1d(numbers("times", times, most=1))
-        if len(wanted) == 0 or not np.all(np.isfinite(wanted) & (wanted >= 0)):
-            raise wrong("times", times, "at least one time (s), finite and not negative")
-        return None, None, cast("list[float]", wanted.tolist())
+        return None, None, checked_times("times", times)
     return None, None if every is None else whole("every", every), None
 
 
-def _error(history: History, estimate: Estimate | str | os.PathLike[str] | None) -> tuple[list[float] | None, list[str]]:
+def _error(history: Steps, estimate: Estimated | str | os.PathLike[str] | None) -> tuple[list[float] | None, list[str]]:
     """Give e_E of the elements, and the file of the estimate."""
-    from percute.estimation import Estimate
-    from percute.files import open as open_file
-
     if estimate is None:
         return None, []
     files = []
     if isinstance(estimate, str | os.PathLike):
         files = [file_name("estimate", estimate)]
-        opened = open_file(estimate)
-        if not isinstance(opened, Estimate):
+        if not _percute.is_estimate(os.path.abspath(files[0])):
+            _percute.open_history(os.path.abspath(files[0]))
             raise wrong("estimate", estimate, "an estimate, or the name of an estimate file; this file holds a history")
-        estimate = opened
-    elif not isinstance(estimate, Estimate):
+        stored = StoredEstimate(os.path.abspath(files[0]))
+        mesh, errors = stored.mesh, stored.by_element()
+    elif isinstance(estimate, Estimated):
+        mesh, errors = estimate.mesh, estimate.by_element
+    else:
         raise wrong("estimate", estimate, "an estimate, or the name of an estimate file")
-    if estimate.mesh != history.problem.mesh:
+    if mesh != history.problem.mesh:
         raise InputError("`estimate` has another mesh than the history; take the estimate of this history")
-    return cast("list[float]", estimate.by_element.tolist()), files
+    return cast("list[float]", errors.tolist()), files

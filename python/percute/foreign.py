@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from percute.checks import integers, numbers, refuse_masked
+from percute.arrays import integers, numbers
+from percute.checks import refuse_masked
 from percute.errors import InputError
 from percute.problem import Problem
 

@@ -1,310 +1,41 @@
-"""Histories: all steps of a simulation."""
+"""Histories: all steps of a simulation, with fields, pictures, tables and exports."""
 
 from __future__ import annotations
 
-import json
 import os
-from collections.abc import Sequence
-from functools import cached_property
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from percute import _percute
-from percute.balance import Balance
-from percute.checks import encodable, flag, instance, vtkhdf, warn, words
+from percute import _percute, element_fields, exports, history_tables, notebook, tables
+from percute.checks import flag, instance
 from percute.contact import Contact
-from percute.errors import FileFormatError, InputError, MissingFileError, PercuteError, StorageError
-from percute.foreign import ForeignArrays
-from percute.impacts import Impacts
-from percute.problem import Problem
-from percute.rebound import Rebound
+from percute.contents import chosen
+from percute.element_fields import Step
+from percute.pictures import animation
+from percute.pictures import fields as pictures
+from percute.progress import ProgressOption
+from percute.steps import Steps
 from percute.true_error import TrueError
-from percute.termination import file_closed_at_signals
-from percute.views import HistoryViews
-from percute.words import counted
+from percute.views import File, Views
+
+if TYPE_CHECKING:
+    import pandas as _pandas
+    import xarray
+    from matplotlib.axes import Axes
 
 __all__ = ["History"]
 
-MAPPED: dict[str, np.dtype[Any]] = {
-    "displacement": np.dtype("<f8"),
-    "reaction": np.dtype("<f8"),
-    "touching": np.dtype("u1"),
-    "checksums": np.dtype("<i8"),
-}
-AT_ONCE = 1 << 25
-"""Bytes whose checksums are computed at once, between looks for Ctrl-C."""
 
-
-class History(HistoryViews):
+class History(Steps, Views):
     """The steps of a simulation: displacements, contact reactions and touching status at each instant t_n.
 
     Made by `simulate`, `percute.open` or `from_arrays`. Its arrays are read-only views without copies, of memory that lives as
     long as any of them, or of the file.
     """
-
-    _problem: Problem | None
-    _name: str
-    _saved: str = ""
-    _file: str | None
-
-    def __init__(self) -> None:
-        raise TypeError("histories are made by percute.simulate, percute.run, percute.open and History.from_arrays")
-
-    @classmethod
-    def from_arrays(
-        cls,
-        problem: Problem,
-        time: ArrayLike,
-        displacement: ArrayLike,
-        reaction: ArrayLike | None = None,
-        touching: ArrayLike | None = None,
-        velocity: ArrayLike | None = None,
-        acceleration: ArrayLike | None = None,
-        contact_nodes: ArrayLike | None = None,
-        program: str | None = None,
-    ) -> History:
-        """Make a history of the arrays of another program.
-
-        Missing contact forces are derived from the balance M a + K u − F at the nodes of the planes, and a missing touching
-        status from gaps and forces; ``derived`` and the report name both.
-
-        Parameters
-        ----------
-        problem : Problem
-            What the other program simulated.
-        time : (instants,) floats
-            t_n (s), from 0 on.
-        displacement : (instants, nodes, dimension) floats
-            u_n (m). Of a bar the last axis may be missing, here and below.
-        reaction : (instants, contact nodes, dimension) floats, optional
-            R_n (N): the forces of the planes on the nodes in the step from t_n to t_{n+1}, in global axes. Those of the last
-            instant may be missing, or NaN.
-        touching : (instants, contact nodes) booleans, optional
-            Whether a node touches at t_n: in percute if and only if R_{n−1} is not zero.
-        velocity, acceleration : (instants, nodes, dimension) floats, optional
-            v_n (m/s) and a_n (m/s²). By default they follow from the scheme.
-        contact_nodes : (contact nodes,) ints, optional
-            The nodes of the rows of ``reaction`` and ``touching``, by default `Problem.contact_nodes`. Arrays of all nodes are
-            accepted without it.
-        program : str, optional
-            The name of the other program, for reports.
-
-        Returns
-        -------
-        History
-            In memory, with copies of the arrays.
-
-        Warns
-        -----
-        InputWarning
-            The last instant is left out, because its contact forces are not known.
-
-        Raises
-        ------
-        InputError
-            An array has a wrong shape, is transposed, masked, of half precision or not finite; a node that can touch no plane
-            has a contact force.
-        """
-        arrays = ForeignArrays(instance("problem", problem, Problem), time, displacement, contact_nodes)
-        data, notice = _percute.HistoryData.foreign(
-            problem._data,
-            arrays.time.tolist(),
-            arrays.displacement,
-            arrays.reaction(reaction),
-            arrays.touching(touching),
-            arrays.optional("velocity", velocity),
-            arrays.optional("acceleration", acceleration),
-            words("program", program),
-        )
-        warn([] if notice is None else [notice])
-        return cls._of(data, problem)
-
-    @classmethod
-    def _of(cls, data: _percute.HistoryData, problem: Problem | None = None, name: str = "") -> History:
-        history = cls._at(None, problem, name)
-        history._data = data
-        return history
-
-    @classmethod
-    def _at(cls, file: str | None, problem: Problem | None, name: str = "") -> History:
-        """Give a history in a file, which is opened on demand."""
-        history = cls.__new__(cls)
-        history._file = file
-        history._problem = problem
-        history._name = name
-        return history
-
-    @cached_property
-    def _data(self) -> _percute.HistoryData:
-        assert self._file is not None
-        return _percute.open_history(self._file)
-
-    @property
-    def problem(self) -> Problem:
-        """The problem that was simulated."""
-        if self._problem is None:
-            self._problem = Problem._of(self._data.problem)
-        return self._problem
-
-    @cached_property
-    def time(self) -> NDArray[np.float64]:
-        """Instants t_n (s), shape (instants,)."""
-        return self._data.times[: self._data.count]
-
-    @cached_property
-    def steps(self) -> NDArray[np.int64]:
-        """Number of the step of each instant in the run, shape (instants,): 0, 1, 2, … unless a file keeps a part of them."""
-        kept = self._data.steps()
-        return np.arange(len(self)) if kept is None else kept
-
-    @cached_property
-    def displacement(self) -> NDArray[np.float64]:
-        """Displacements u_n (m), shape (instants, nodes, dimension), eq. [28]."""
-        mapped = self._checked("displacement")
-        return self._data.displacement() if mapped is None else mapped[..., : self.problem.mesh.dimension]
-
-    @cached_property
-    def reaction(self) -> NDArray[np.float64]:
-        """Reactions R_n of the planes on the contact nodes (N), shape (instants, contact nodes, dimension)."""
-        self._expect("reaction")
-        mapped = self._checked("reaction")
-        return self._data.reaction() if mapped is None else mapped
-
-    @cached_property
-    def touching(self) -> NDArray[np.bool_]:
-        """Whether each contact node touches at t_n, shape (instants, contact nodes)."""
-        self._expect("reaction")
-        mapped = self._checked("touching")
-        # Any byte but 0 means true in the file; a bool of numpy must be 1.
-        if mapped is None or mapped.max(initial=0) > 1:
-            return self._data.touching()
-        return mapped.view(np.bool_)
-
-    def _expect(self, name: str) -> None:
-        """Refuse a field that a thinned history lacks."""
-        if name in self._data.lacks():
-            told = f"{name} is not in this history, which keeps a part of its run; simulate again with {name!r} among `fields`"
-            raise InputError(f"{self.path}: {told}")
-
-    def _checked(self, name: str) -> NDArray[Any] | None:
-        """Give an array of the file after it was compared with its checksums; None if it cannot be mapped."""
-        view = self._view(name)
-        if view is not None and view.size:
-            rows = max(AT_ONCE // view[0].nbytes, 1)
-            for start in range(0, len(self), rows):
-                self._check(name, np.arange(start, min(start + rows, len(self))), view[start : start + rows])
-        return view
-
-    def _check(self, name: str, steps: NDArray[np.intp], values: NDArray[Any]) -> None:
-        """Compare the values of a field at some instants with their checksums."""
-        sums = self._view("checksums")
-        if sums is None:
-            return
-        if name == "touching":
-            self._data.check_mapped_flags(steps.tolist(), values, np.ascontiguousarray(sums[steps]))
-        else:
-            self._data.check_mapped(name, steps.tolist(), values, np.ascontiguousarray(sums[steps]))
-
-    def _displacement_at(self, steps: NDArray[np.intp]) -> NDArray[np.float64]:
-        """Give the displacements at some instants, of which alone the checksums are compared."""
-        if "displacement" in vars(self) or (view := self._view("displacement")) is None:
-            return self.displacement[steps]
-        values = np.ascontiguousarray(view[steps])
-        self._check("displacement", steps, values)
-        return values[..., : self.problem.mesh.dimension]
-
-    def _view(self, name: str) -> NDArray[Any] | None:
-        """Give an array of the file; None if it cannot be mapped."""
-        array = self._mapped.get(name)
-        # A read beyond the end of a truncated mapped file ends the process by a signal.
-        if array is not None and array._mmap.size() < array.offset + array.nbytes:  # type: ignore[attr-defined]
-            raise FileFormatError(f"{self.path}: the file has been truncated")
-        return None if array is None else array[: len(self)]
-
-    @cached_property
-    def _mapped(self) -> dict[str, np.memmap[Any, Any]]:
-        """Map all possible arrays of the file into memory at once, so that they belong to one run."""
-        path = self.path
-        if path is None:
-            return {}
-        try:
-            with path.open("rb") as file:
-                # Checked after the file is open: this fails if it was replaced.
-                arrays = {name: (shape, offset) for name, shape, offset in self._data.arrays() if 0 not in shape}
-                return {
-                    name: np.memmap(file, dtype, "r", arrays[name][1], tuple(arrays[name][0]))
-                    for name, dtype in MAPPED.items()
-                    if name in arrays
-                }
-        except PercuteError:
-            raise
-        except FileNotFoundError:
-            raise MissingFileError(f"{path}: the file is no longer there") from None
-        except OSError as error:
-            raise StorageError(f"{path}: cannot be read: {error.strerror}") from error
-        except ValueError:
-            raise FileFormatError(f"{path}: the file has been truncated") from None
-
-    @cached_property
-    def contact_nodes(self) -> NDArray[np.int64]:
-        """Nodes of the rows of ``reaction`` and ``touching``, shape (contact nodes,)."""
-        return self._data.contact_nodes
-
-    @cached_property
-    def path(self) -> Path | None:
-        """The file with the steps; None if they are in memory."""
-        path = self._data.path
-        return None if path is None else Path(path)
-
-    @cached_property
-    def _motion(self) -> Sequence[NDArray[np.float64]]:
-        return self._data.motion()
-
-    def _moving(self, which: int) -> NDArray[np.float64]:
-        """Give velocity or acceleration: by the scheme, or as a thinned history keeps them."""
-        if self._data.steps() is None:
-            return self._motion[which]
-        self._expect(("velocity", "acceleration")[which])
-        return self._data.stored_motion(which == 1)
-
-    @cached_property
-    def velocity(self) -> NDArray[np.float64]:
-        """Velocities v_n (m/s), shape (instants, nodes, dimension), eq. [29], [31]; computed on first access."""
-        return self._moving(0)
-
-    @cached_property
-    def acceleration(self) -> NDArray[np.float64]:
-        """Accelerations a_n (m/s²), shape (instants, nodes, dimension), eq. [30]; computed on first access."""
-        return self._moving(1)
-
-    @cached_property
-    def balance(self) -> Balance:
-        """Energies and works over time (J)."""
-        return Balance(time=self.time, per_metre=self.problem.per_metre, **self._data.balance())
-
-    @cached_property
-    def contact(self) -> Contact:
-        """Contact results at each node, and their resultants; computed on first access."""
-        surfaces = [None] * len(self.problem.obstacles) + [group for each in self.problem.contacts for group in each.groups or ()]
-        return Contact._of(self._data.contact(), self.problem.mesh, surfaces, self.problem.per_metre)
-
-    @cached_property
-    def rebound(self) -> Rebound | None:
-        """Velocities before and after contact, restitution and time in contact; None without contact."""
-        return Rebound._of(self._rebounds["rebound"])
-
-    @cached_property
-    def impacts(self) -> Impacts | None:
-        """Velocities of several bodies before and after contact, and restitution at each interface; None of a single body."""
-        return Impacts._of(self._rebounds["impacts"])
-
-    @cached_property
-    def _rebounds(self) -> dict[str, Any]:
-        found: dict[str, Any] = json.loads(self._data.rebound())
-        return found
 
     def error(self, reference: History, *, nested: bool = True) -> TrueError:
         """Return the true error of this history, measured against a finer one.
@@ -337,76 +68,255 @@ class History(HistoryViews):
         within = flag("nested", nested)
         return true_errors_of(_percute.errors_against_history([self._data], other._data, within), within)[0]
 
-    @property
-    def derived(self) -> tuple[str, ...]:
-        """The parts of a history of another program that were derived: "reaction", "touching"."""
-        return tuple(self._data.derived or ())
+    def displacement_at(self, step: Step) -> NDArray[np.float64]:
+        """Give the displacement of each node (m), shape (nodes, dimension); ``step`` as for `strain`.
 
-    @property
-    def program(self) -> str | None:
-        """The program that simulated a history of another program, if its name is known."""
-        return self._data.program
+        Of a history in a file, only these instants are read and compared with their checksums; ``displacement`` compares all.
+        """
+        chosen, one = element_fields.rows(self, step)
+        values = self._displacement_at(chosen)
+        return values[0] if one else values
 
-    @property
-    def complete(self) -> bool:
-        """Whether all planned steps are present."""
-        return self._data.complete
-
-    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
-        """Write a history that is in memory into a file, for ``percute estimate``, ``report``, ``info``, ``export`` and `percute.open`.
-
-        It is the file that ``store`` of `simulate` makes, byte by byte. A history of another program stays one. The file gives
-        the same arrays and the same estimate, bit by bit. Described in ``docs/history.md``.
+    def strain(self, step: Step) -> NDArray[np.float64]:
+        """Give the strain of each element, eq. [5].
 
         Parameters
         ----------
-        path : str or path
-            The file, such as ``"history.vtkhdf"``.
-        overwrite : bool, default: False
-            Whether a file that exists already is replaced.
+        step : int, slice or array of ints
+            Which instant; negative ones count from the end. A slice or an array gives several, along the first axis.
+
+        Returns
+        -------
+        ndarray
+            Shape (elements, dimension, dimension).
+        """
+        return element_fields.element_field(self, "strain", step)
+
+    def stress(self, step: Step) -> NDArray[np.float64]:
+        """Give the stress of each element (Pa), shape (elements, dimension, dimension), eq. [9]; ``step`` as for `strain`."""
+        return element_fields.element_field(self, "stress", step)
+
+    def von_mises(self, step: Step) -> NDArray[np.float64]:
+        """Give the von Mises stress of each element (Pa), shape (elements,), with σ_zz in plane strain; ``step`` as for `strain`."""
+        return element_fields.element_field(self, "von_mises", step)
+
+    def pressure(self, step: Step) -> NDArray[np.float64]:
+        """Give −⅓ tr σ of each element (Pa), shape (elements,), positive in compression; ``step`` as for `strain`."""
+        return element_fields.element_field(self, "pressure", step)
+
+    def strain_energy(self, step: Step) -> NDArray[np.float64]:
+        """Give the strain energy of each element (J), shape (elements,); the sum is that of ``balance``. ``step`` as for `strain`."""
+        return element_fields.element_field(self, "strain_energy", step)
+
+    def kinetic_energy(self, step: Step) -> NDArray[np.float64]:
+        """Give the kinetic energy of each element's share of the lumped masses (J), shape (elements,), with v_n; ``step`` as for `strain`."""
+        return element_fields.element_field(self, "kinetic_energy", step)
+
+    def probe(
+        self, where: str | ArrayLike, quantity: str = "displacement", *, each: bool = False
+    ) -> NDArray[np.float64]:
+        """Read a quantity at a point or a group, at all instants.
+
+        Parameters
+        ----------
+        where : (dimension,) floats or str
+            A point of the undeformed body (m), or the name of a group of edges or elements.
+        quantity : str, default: "displacement"
+            Of the nodes ``displacement``, ``velocity`` or ``acceleration``: linear in an element. Of the elements ``strain``,
+            ``stress``, ``von_mises`` or ``pressure``: constant in an element; on an edge between elements that of one of them.
+        each : bool, default: False
+            For a group: whether each of its nodes (elements), in ascending order, has its own values. Otherwise the result is the
+            mean over the length of the edges, or over the area of the elements.
+
+        Returns
+        -------
+        ndarray
+            Shape (instants, …) with the components of the quantity, or (instants, members, …) with ``each``.
 
         Raises
         ------
         InputError
-            The history is in a file; copy that instead.
-        ExistingFileError, MissingFileError, StorageError
-            The file exists already, its folder does not exist, or it cannot be written.
+            The point is outside the body; the message has the nearest point. Or there is no group of this name.
         """
-        file, replace = vtkhdf("path", path), flag("overwrite", overwrite)
-        if self.path is not None:
-            raise InputError(f"the history is in the file {str(self.path)!r}; copy that")
-        with file_closed_at_signals(file):
-            self._data.save(os.path.abspath(file), replace)
-        # A page names the file that was saved last; the history of a case keeps the name of the case.
-        if self._name in ("", self._saved):
-            self._name = self._saved = encodable(file)
+        return element_fields.probe(self, where, quantity, each)
 
-    def __len__(self) -> int:
-        return self._data.count
+    def plot(
+        self,
+        quantity: str = "displacement",
+        *,
+        step: int = -1,
+        scale: float = 1.0,
+        axes: Axes | None = None,
+        save: File = None,
+        overwrite: bool = False,
+    ) -> Axes:
+        """Draw a field on the deformed body, with mesh lines and planes.
 
-    def __repr__(self) -> str:
-        kept = "" if self._data.steps() is None else "part of a run: "
-        held = f"{kept}{counted(len(self), 'instant')} to {self.time[-1]:.4g} s"
-        planned = "" if self.complete else f" of {len(self._data.times)} planned"
-        nodes, dimension = self.problem.mesh.points.shape
-        return f"<percute.History: {held}{planned}, {counted(nodes, 'node')}, {dimension}D>"
+        Parameters
+        ----------
+        quantity : str, default: "displacement"
+            Magnitude of ``displacement`` (m), ``velocity`` (m/s) or ``acceleration`` (m/s²); ``von_mises``, ``pressure``, ``stress_xx``,
+            ``stress_yy`` or ``stress_xy`` (Pa); ``strain_energy`` or ``kinetic_energy`` of the elements (J). Of a bar its displacement,
+            velocity, acceleration, ``stress`` or energies along it.
+        step : int, default: -1
+            Which instant; negative ones count from the end.
+        scale : float, default: 1.0
+            By how much the displacement, rigid motion included, is exaggerated; the title of a plane body tells it.
+        axes, save, overwrite
+            As for `plot_energies`.
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        if self.path is not None:
-            return _reopen, (str(self.path),)
-        arrays = (self.displacement.copy(), self.reaction.copy(), self.touching.copy())
-        velocity, acceleration = self._data.given
-        motion = (self.velocity.copy() if velocity else None, self.acceleration.copy() if acceleration else None)
-        origin = None if self._data.derived is None else (self._data.program, self._data.derived)
-        return _rebuild, (self.problem, self._data.times.tolist(), *arrays, self._data.options(), motion, origin)
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes of the plot.
+        """
+        return pictures.plot_field(self, quantity, step, scale, axes, save, overwrite)
 
+    def animate(
+        self,
+        path: str | os.PathLike[str],
+        quantity: str | None = None,
+        *,
+        frames: int = 60,
+        rate: float = 15.0,
+        scale: float = 1.0,
+        overwrite: bool = False,
+        progress: ProgressOption = None,
+    ) -> None:
+        """Write an animation of a field on the moving body.
 
-def _reopen(path: str) -> History:
-    return History._of(_percute.open_history(path), name=path)
+        Colours have one scale, and the picture one frame, for all instants. The file is complete or not there: an exception or Ctrl-C
+        removes what has been written.
 
+        Parameters
+        ----------
+        path : str or path
+            A file that ends in ``.gif``, or in ``.mp4``, for which the program ffmpeg must be installed.
+        quantity : str, optional
+            As for `plot`; by default ``von_mises``, of a bar ``stress``.
+        frames : int, default: 60
+            Number of frames, at most 10 000, at evenly spaced steps from the first to the last; at most one for each step.
+        rate : float, default: 15
+            Frames per second, from 0.1 to 100.
+        scale : float, default: 1.0
+            By how much the displacement, rigid motion included, is exaggerated; the title of a plane body tells it.
+        overwrite : bool, default: False
+            Whether a file that exists already is replaced.
+        progress : bool or callable, optional
+            As for `simulate`; the stage is ``animating``, and frames are counted.
 
-def _rebuild(problem: Problem, *contents: Any) -> History:
-    return History._of(_percute.HistoryData.from_arrays(problem._data, *contents), problem)
+        Raises
+        ------
+        InputError
+            An argument is wrong.
+        PercuteError
+            There is no matplotlib, or no ffmpeg for an ``.mp4``.
+        ExistingFileError, StorageError
+            The file exists already or cannot be written.
+        """
+        animation.animate(self, path, quantity, frames, rate, scale, overwrite, progress)
+
+    def export(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        steps: ArrayLike | None = None,
+        every: int | None = None,
+        times: ArrayLike | None = None,
+        fields: Iterable[str] | None = None,
+        estimate: exports.Estimated | str | os.PathLike[str] | None = None,
+        overwrite: bool = False,
+        progress: ProgressOption = None,
+    ) -> list[Path]:
+        """Write fields for ParaView, pyvista and other programs, like ``percute export``; see ``docs/export.md``.
+
+        Parameters
+        ----------
+        path : str or path
+            The ending says the format: ``.vtkhdf``, one file with all instants; ``.vtu`` or ``.pvd``, a file for each instant
+            and an index.
+        steps : int or (n,) ints, optional
+            Steps to write; negative ones count from the end. By default all.
+        every : int, optional
+            Instead of ``steps``: every k-th step, and the last.
+        times : float or (n,) floats, optional
+            Instead of ``steps``: the steps nearest to these times (s).
+        fields : list of str, optional
+            Of ``"displacement"`` (m, always written), ``"velocity"`` (m/s), ``"acceleration"`` (m/s²), ``"reaction"`` (N, at
+            all nodes), ``"stress"`` (Pa, 3 x 3), ``"von_mises"``, ``"pressure"`` (Pa), ``"error"`` (e_E of the whole run,
+            J^½, eq. [20]). By default displacement, velocity, reaction, stress and von Mises stress, and the error if
+            ``estimate`` is given.
+        estimate : Estimate, str or path, optional
+            The estimate of this history, or its file.
+        overwrite : bool, default: False
+            Whether files that exist already are replaced.
+        progress : bool or callable, optional
+            As for `simulate`.
+
+        Returns
+        -------
+        list of pathlib.Path
+            The files; the first is the one to open.
+
+        Raises
+        ------
+        InputError
+            An argument is wrong, or the estimate has another mesh.
+        ExistingFileError, StorageError
+            A file exists already or cannot be written.
+        """
+        return exports.export(self, path, steps, every, times, fields, estimate, overwrite, progress)
+
+    def to_pandas(self, over: Literal["time", "nodes", "elements"] = "time", *, step: int | None = -1) -> _pandas.DataFrame:
+        """Make a table (extra ``pandas``).
+
+        Parameters
+        ----------
+        over : {"time", "nodes", "elements"}, default: "time"
+            The rows: energies and contact resultants at each instant; displacement, velocity and acceleration of each node; or
+            strain, stress and energies of each element.
+        step : int or None, default: -1
+            For nodes and elements: which instant; negative ones count from the end. With None the table has all instants.
+
+        Returns
+        -------
+        pandas.DataFrame
+            With one column for each component, such as ``displacement_x``; ``attrs["units"]`` has the units of the columns.
+        """
+        return history_tables.table(self, over, step)
+
+    def to_xarray(self, fields: Iterable[str] = ("displacement", "reaction", "touching")) -> xarray.Dataset:
+        """Make a data set (extra ``xarray``): energies, contact resultants and fields over ``time``.
+
+        Parameters
+        ----------
+        fields : iterable of str, default: ("displacement", "reaction", "touching")
+            Which fields, at all instants: ``displacement``, ``velocity``, ``acceleration``, ``reaction``, ``touching``, and of the
+            elements ``strain``, ``stress``, ``von_mises``, ``pressure``, ``strain_energy`` and ``kinetic_energy``. Those of the
+            default are views without a copy.
+
+        Returns
+        -------
+        xarray.Dataset
+            Each variable has its unit and meaning as attributes.
+        """
+        return tables.to_xarray(history_tables.contents(self, chosen(fields, history_tables.FIELDS)))
+
+    def _energies(self) -> Mapping[str, Any]:
+        return vars(self.balance)
+
+    def _touch(self) -> Contact:
+        return self.contact
+
+    def _repr_html_(self) -> str:
+        # Nothing is computed.
+        count, planned = len(self), len(self._data.times)
+        told = f"{count} to {notebook.time(float(self.time[-1]))}" if count else "none"
+        rows = [("instants", told if self.complete else f"{told}, of {planned} planned")]
+        if count > 1:
+            rows.append(("longest step", notebook.time(float(np.diff(self.time).max()))))
+        rows.append(("steps are", "in memory" if self.path is None else f"in {self.path}"))
+        return notebook.page("History", rows + notebook.mesh_rows(self.problem.mesh)[:2], notebook.outline(self.problem.mesh))
 
 
 def true_errors_of(found: list[Any], nested: bool) -> list[TrueError]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from percute.documents import record
 
 __all__ = ["BodyMotion", "Impacts", "InterfaceRebound", "SlidingEstimate"]
 
@@ -71,9 +73,7 @@ class Impacts:
         if found is None:
             return None
         # Estimate files of earlier versions call the span time in contact.
-        bodies = [BodyMotion(**{**body, **_vectors(body, "velocity_before", "velocity_after")}) for body in found["bodies"]]
-        interfaces = [InterfaceRebound(**{"span": each["time_in_contact"], **each, **_vectors(each, "normal"), "groups": tuple(each["groups"])}) for each in found["interfaces"]]
-        return cls(bodies=tuple(bodies), interfaces=tuple(interfaces))
+        return record(cls, {**found, "interfaces": [{"span": each["time_in_contact"], **each} for each in found["interfaces"]]})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,12 +92,3 @@ class SlidingEstimate:
     """How often the penetration of the admissible motion was looked for, until there was none."""
     stress: float
     """The part of the squared mean error that comes from the stress of the contact density beside its linear part."""
-
-    @classmethod
-    def _all(cls, found: Sequence[Mapping[str, Any]]) -> tuple[SlidingEstimate, ...]:
-        """Make them from their JSON objects."""
-        return tuple(cls(**{"couple": None, **each, "groups": tuple(each["groups"])}) for each in found)
-
-
-def _vectors(found: Mapping[str, Any], *names: str) -> dict[str, NDArray[np.float64] | None]:
-    return {name: None if found[name] is None else np.array(found[name]) for name in names}

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from functools import cached_property
-from types import MappingProxyType
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from percute import _percute
-from percute.checks import encodable, flag, flags, integers, new_file, number, numbers, table, text, transposed, whole, wrong
+from percute import _percute, notebook
+from percute.arrays import flags, integers, numbers, transposed
+from percute.checks import encodable, flag, new_file, number, table, text, whole, wrong
 from percute.checks import path as file_name
 from percute.errors import InputError
-from percute.immutable import Immutable
+from percute.mesh_arrays import MeshArrays
 from percute.mesh_files import is_gmsh, read_foreign, tell_of_mesh, write_foreign
 from percute.statement import Vector, vector_of
-from percute.words import counted
 
 __all__ = ["Mesh"]
 
@@ -27,7 +25,7 @@ MOST, MOST_RINGS = 20_000_000, 1825
 """Largest numbers of elements, and of rings of a disc, in a generated mesh."""
 
 
-class Mesh(Immutable):
+class Mesh(MeshArrays):
     """A mesh of 2-node bars or 3-node triangles, checked once at its creation.
 
     Parameters
@@ -47,8 +45,6 @@ class Mesh(Immutable):
         With the number of the node or element at fault: coordinates that are not finite, nodes that do not exist, belong to
         no element or lie at the same place, elements that are degenerate or overlap, edges not on the boundary.
     """
-
-    _data: _percute.MeshData
 
     def __init__(
         self,
@@ -71,12 +67,6 @@ class Mesh(Immutable):
             {name: integers(f"edge_groups[{name!r}]", each, dimension) for name, each in edges.items()},
             {name: integers(f"element_groups[{name!r}]", each, None) for name, each in elements.items()},
         )
-
-    @classmethod
-    def _of(cls, data: _percute.MeshData) -> Mesh:
-        mesh = cls.__new__(cls)
-        mesh._data = data
-        return mesh
 
     @classmethod
     def rectangle(cls, width: float, height: float, *, nx: int, ny: int, diagonals: Literal["right", "alternating", "crossed"] = "right") -> Mesh:
@@ -299,98 +289,5 @@ class Mesh(Immutable):
             raise InputError(f"`version` and `binary` are those of .msh files; {encodable(file)!r} is none")
         write_foreign(self, file, replace)
 
-    @property
-    def dimension(self) -> int:
-        """1 for bars, 2 for triangles."""
-        return self._data.dimension
-
-    @cached_property
-    def points(self) -> NDArray[np.float64]:
-        """Coordinates of the nodes (m), shape (nodes, dimension); a read-only view."""
-        return self._data.points
-
-    @cached_property
-    def cells(self) -> NDArray[np.uint32]:
-        """Nodes of each element, counterclockwise, shape (elements, dimension + 1); a read-only view."""
-        return self._data.cells
-
-    @cached_property
-    def edge_groups(self) -> Mapping[str, NDArray[np.int64]]:
-        """Named groups of boundary edges, each by its nodes: arrays (edges, dimension)."""
-        return MappingProxyType(self._data.edge_groups)
-
-    @cached_property
-    def element_groups(self) -> Mapping[str, NDArray[np.int64]]:
-        """Named groups of elements, by number: arrays (n,)."""
-        return MappingProxyType(self._data.element_groups)
-
-    @cached_property
-    def bodies(self) -> NDArray[np.int64]:
-        """Number of the body of each element, from 0 in the order of their first nodes, shape (elements,)."""
-        return self._data.bodies
-
-    @cached_property
-    def areas(self) -> NDArray[np.float64]:
-        """Area of each triangle (m²), of a bar the length of each element (m), shape (elements,)."""
-        return self._data.areas()
-
-    @cached_property
-    def sizes(self) -> NDArray[np.float64]:
-        """Size of each element (m), shape (elements,): the root of the area of a triangle, the length of a bar."""
-        if self.dimension == 1:
-            return self.areas
-        sizes = np.sqrt(self.areas)
-        sizes.flags.writeable = False
-        return sizes
-
-    @cached_property
-    def outline(self) -> tuple[NDArray[np.int64], ...]:
-        """The closed lines around the bodies and their holes, each by its nodes in order: arrays (n,); none of a bar.
-
-        They go counterclockwise around a body and clockwise around a hole, each from its smallest number on.
-        """
-        return tuple(self._data.outline())
-
-    @property
-    def size(self) -> float:
-        """Diagonal of the bounding box of the mesh (m)."""
-        return self._data.size
-
-    @property
-    def reoriented_elements(self) -> int:
-        """Number of elements that were given with the wrong orientation and reoriented."""
-        return self._data.reoriented_elements
-
-    def __eq__(self, other: object) -> bool:
-        """Tell whether another mesh has the same points, cells and groups, number by number."""
-        if not isinstance(other, Mesh):
-            return NotImplemented
-        if self is other:
-            return True
-        same = np.array_equal(self.points, other.points) and np.array_equal(self.cells, other.cells)
-        return same and _same_groups(self.edge_groups, other.edge_groups) and _same_groups(self.element_groups, other.element_groups)
-
-    def __hash__(self) -> int:
-        return self._hash
-
-    @cached_property
-    def _hash(self) -> int:
-        # Adding 0 turns −0 into 0, which is equal to it.
-        return hash(((self.points + 0.0).tobytes(), self.cells.tobytes()))
-
     def _repr_html_(self) -> str:
-        from percute import notebook
-
-        return notebook.of_mesh(self)
-
-    def __repr__(self) -> str:
-        kind = "bar" if self.dimension == 1 else "triangle"
-        return f"<percute.Mesh: {counted(len(self.cells), kind)}, {counted(len(self.points), 'node')}>"
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return Mesh, (self.points.copy(), self.cells.copy(), dict(self.edge_groups), dict(self.element_groups))
-
-
-def _same_groups(first: Mapping[str, NDArray[np.int64]], second: Mapping[str, NDArray[np.int64]]) -> bool:
-    """Tell whether groups have the same names and members."""
-    return first.keys() == second.keys() and all(np.array_equal(first[name], second[name]) for name in first)
+        return notebook.page("Mesh", notebook.mesh_rows(self), notebook.outline(self))

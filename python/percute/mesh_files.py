@@ -9,7 +9,7 @@ import tempfile
 import warnings
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,12 +24,11 @@ from percute.errors import (
     PercuteError,
     StorageError,
 )
+from percute.mesh_arrays import MeshArrays
 from percute.mesh_losses import checked, lost_in, refused
 from percute.words import counted
 
-if TYPE_CHECKING:
-    from percute.mesh import Mesh
-
+M = TypeVar("M", bound=MeshArrays)
 _Integers = NDArray[np.int64]
 
 KINDS = {"vertex": 0, "line": 1, "triangle": 2}
@@ -73,7 +72,7 @@ def _meshlane(file: str) -> Any:
     return meshlane
 
 
-def read_foreign(kind: type[Mesh], file: str, scale: float) -> tuple[Mesh, list[str]]:
+def read_foreign(kind: Callable[..., M], file: str, scale: float) -> tuple[M, list[str]]:
     """Read a mesh by meshlane; give it with its import warnings."""
     if not 1e-12 <= scale <= 1e12:
         raise InputError(
@@ -229,7 +228,7 @@ def _sets(found: Any) -> dict[str, list[_Integers]]:
     return sets
 
 
-def write_foreign(mesh: Mesh, file: str, overwrite: bool) -> None:
+def write_foreign(mesh: MeshArrays, file: str, overwrite: bool) -> None:
     """Write a mesh by meshlane, completely or not at all."""
     name, meshlane, target = encodable(file), _meshlane(file), Path(file)
     if os.path.lexists(file) and not overwrite:

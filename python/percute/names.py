@@ -47,7 +47,15 @@ def _refusal(function: Callable[..., Any], name: str, positional: int, keywords:
     return f"{name}() needs {_list(missing)}" if missing else None
 
 
-def _named(function: Callable[..., T], name: str) -> Callable[..., T]:
+def _label(function: Callable[..., Any], arguments: tuple[Any, ...]) -> str:
+    """Give the name of a function; that of a method begins with the class of its object, which may inherit it."""
+    if "." not in function.__qualname__ or not arguments:
+        return function.__qualname__
+    kind = arguments[0] if isinstance(arguments[0], type) else type(arguments[0])
+    return kind.__name__ if function.__name__ == "__init__" else f"{kind.__name__}.{function.__name__}"
+
+
+def _named(function: Callable[..., T]) -> Callable[..., T]:
     """Give the function with messages about the names of its arguments, and with its own signature."""
     hidden = 1 if "." in function.__qualname__ else 0
 
@@ -59,7 +67,7 @@ def _named(function: Callable[..., T], name: str) -> Callable[..., T]:
             # An error from within the function has a further frame.
             if error.__traceback__ is not None and error.__traceback__.tb_next is not None:
                 raise
-            told = _refusal(function, name, len(arguments) - hidden, named)
+            told = _refusal(function, _label(function, arguments), len(arguments) - hidden, named)
             if told is None:
                 raise
         raise TypeError(told)
@@ -74,7 +82,7 @@ def _name_members(kind: type) -> None:
             function = member.__func__ if isinstance(member, classmethod | staticmethod) else member
             if (name.startswith("_") and name != "__init__") or not isinstance(function, FunctionType) or hasattr(function, "__wrapped__"):
                 continue
-            called = _named(function, base.__name__ if name == "__init__" else f"{base.__name__}.{name}".lstrip("_"))
+            called = _named(function)
             setattr(base, name, called if function is member else type(member)(called))
 
 
@@ -84,6 +92,6 @@ def name_arguments(module: str) -> None:
     for name in namespace["__all__"]:
         member = namespace[name]
         if isinstance(member, FunctionType):
-            namespace[name] = vars(sys.modules[member.__module__])[name] = _named(member, name)
+            namespace[name] = vars(sys.modules[member.__module__])[name] = _named(member)
         elif isinstance(member, type) and member.__module__.startswith("percute") and not issubclass(member, BaseException | Warning | enum.Enum):
             _name_members(member)

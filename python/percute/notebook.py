@@ -1,25 +1,18 @@
-"""How meshes, problems, histories and estimates show themselves in a notebook: a thumbnail and a small table, without matplotlib."""
+"""Pages for notebooks: a thumbnail of a mesh and a small table, without matplotlib."""
 
 from __future__ import annotations
 
 import html
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from percute._percute import unit
-from percute.element_fields import boundary
+from percute.mesh_arrays import MeshArrays, boundary
 from percute.pictures.body import Scale, scale_of
 from percute.pictures.canvas import prefixed
 from percute.words import counted
-
-if TYPE_CHECKING:
-    from percute.estimation import Estimate
-    from percute.history import History
-    from percute.mesh import Mesh
-    from percute.problem import Problem
 
 Floats = NDArray[np.float64]
 Rows = list[tuple[str, str]]
@@ -32,53 +25,8 @@ VIRIDIS = ("#440154", "#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#3
 """Ten colours of viridis by van der Walt and Smith (public domain)."""
 
 
-def of_mesh(mesh: Mesh) -> str:
-    """Show a mesh."""
-    return _page("Mesh", _mesh_rows(mesh), _outline(mesh))
-
-
-def of_problem(problem: Problem) -> str:
-    """Show a problem."""
-    material = problem.material
-    laws = [("", material)] if not isinstance(material, dict) else [(f" of {name}", law) for name, law in material.items()]
-    rows = _mesh_rows(problem.mesh)[:2]
-    rows += [(f"material{of}", _law(law)) for of, law in laws]
-    rows += [("plane", f"friction {each.friction:g}, normal {_vector(each.normal)}") for each in problem.obstacles]
-    for name in ("supports", "tractions", "body_forces"):
-        if members := getattr(problem, name):
-            rows.append((name.replace("_", " "), str(len(members))))
-    speeds = np.linalg.norm(problem.initial_velocity, axis=1)
-    rows += [("mass", f"{problem.mass.sum():.4g} kg"), ("speed at the start", f"at most {speeds.max():.4g} m/s, of waves {problem.wave_speed:.4g} m/s")]
-    return _page("Problem", rows, _outline(problem.mesh))
-
-
-def of_history(history: History) -> str:
-    """Show a history; nothing is computed."""
-    count, planned = len(history), len(history._data.times)
-    told = f"{count} to {_time(float(history.time[-1]))}" if count else "none"
-    rows = [("instants", told if history.complete else f"{told}, of {planned} planned")]
-    if count > 1:
-        rows.append(("longest step", _time(float(np.diff(history.time).max()))))
-    rows.append(("steps are", "in memory" if history.path is None else f"in {history.path}"))
-    return _page("History", rows + _mesh_rows(history.problem.mesh)[:2], _outline(history.problem.mesh))
-
-
-def of_estimate(estimate: Estimate) -> str:
-    """Show an estimate."""
-    norm = unit("J^½", estimate.per_metre).replace("^½", "½")
-    rows = [
-        ("largest error", f"{100 * estimate.relative_sup:.3g} %, {estimate.sup:.4g} {norm} at {_time(estimate.time_of_sup)}"),
-        ("mean error", f"{100 * estimate.relative_mean:.3g} %, {estimate.mean_from_touch:.4g} {norm}, from the touch"),
-        ("steps", f"{estimate.steps} to {_time(estimate.end)}"),
-        ("reconstruction", str(estimate.options["reconstruction"])),
-    ]
-    if estimate.trust is not None:
-        rows += [("trust", estimate.trust), ("verdict", str(estimate.verdict))]
-    rows += [("worst element", f"{each.element} at {_vector(each.centroid)} m, {each.error:.3g} {norm}") for each in estimate.worst_elements(1)]
-    return _page("Estimate", rows + _mesh_rows(estimate.mesh)[:2], _map(estimate.mesh, estimate.by_element))
-
-
-def _page(kind: str, rows: Rows, picture: str) -> str:
+def page(kind: str, rows: Rows, picture: str) -> str:
+    """Show an object of a class by rows of names and texts, and a picture."""
     cell = '<td style="text-align:left;padding:0 0.8em 0 0">'
     shown = [(html.escape(name), html.escape(text).replace("½", "<sup>½</sup>")) for name, text in rows]
     cells = "".join(f"<tr>{cell}{name}</td>{cell}{text}</td></tr>" for name, text in shown)
@@ -86,7 +34,8 @@ def _page(kind: str, rows: Rows, picture: str) -> str:
     return f'<div><b>percute.{kind}</b><br>{picture}{table}</div>'
 
 
-def _mesh_rows(mesh: Mesh) -> Rows:
+def mesh_rows(mesh: MeshArrays) -> Rows:
+    """Tell the numbers of elements and nodes, the size, and the groups."""
     kind = "bar" if mesh.dimension == 1 else "triangle"
     factor, prefix = prefixed(mesh.points)
     sides = " × ".join(f"{side:.4g}" for side in np.ptp(mesh.points, axis=0) / factor)
@@ -97,21 +46,18 @@ def _mesh_rows(mesh: Mesh) -> Rows:
     return rows
 
 
-def _law(law: Any) -> str:
-    told = f"E = {law.young:.4g} Pa, ρ = {law.density:.4g} kg/m³"
-    return told if law.poisson is None else f"{told}, ν = {law.poisson:g}, plane {law.plane}"
-
-
-def _vector(values: Any) -> str:
+def vector(values: Any) -> str:
+    """Tell the components of a vector."""
     return "(" + ", ".join(f"{x:.4g}" for x in np.ravel(values)) + ")"
 
 
-def _time(seconds: float) -> str:
+def time(seconds: float) -> str:
+    """Tell a time in a suitable unit."""
     factor, prefix = prefixed(np.array([seconds]))
     return f"{seconds / factor:.4g} {prefix}s"
 
 
-def _pixels(mesh: Mesh) -> tuple[Floats, float, float]:
+def _pixels(mesh: MeshArrays) -> tuple[Floats, float, float]:
     """Give the places of the nodes (pixels, y downwards; a bar as a strip), and width and height."""
     points = np.column_stack([mesh.points, np.zeros((len(mesh.points), 2 - mesh.dimension))])
     low, high = points.min(axis=0), points.max(axis=0)
@@ -128,7 +74,7 @@ def _path(places: Floats, polygons: Iterable[Any], closed: bool) -> str:
     return "".join("M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in places[polygon]) + ("Z" if closed else "") for polygon in polygons)
 
 
-def _outline(mesh: Mesh) -> str:
+def outline(mesh: MeshArrays) -> str:
     """Draw the elements, or the boundary of a large mesh."""
     places, width, height = _pixels(mesh)
     if mesh.dimension == 1:
@@ -146,7 +92,7 @@ def _colour(value: float, scale: Scale) -> str:
     return VIRIDIS[min(int(part * len(VIRIDIS)), len(VIRIDIS) - 1)]
 
 
-def _map(mesh: Mesh, values: Floats) -> str:
+def error_map(mesh: MeshArrays, values: Floats) -> str:
     """Draw the elements in the colours of their errors."""
     places, width, height = _pixels(mesh)
     scale = scale_of(values)

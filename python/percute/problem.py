@@ -9,15 +9,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from percute import _percute
+from percute import _percute, notebook
+from percute.arrays import numbers, transposed
 from percute.bodies import Body, Interface, join
-from percute.checks import instance, items, numbers, table, transposed, wrong
+from percute.checks import instance, items, table, wrong
 from percute.errors import InputError
 from percute.immutable import Immutable
 from percute.mesh import Mesh
 from percute.statement import BodyForce, Elastic, Plane, Support, Traction
 
 __all__ = ["Problem"]
+
+
+def _law(law: Elastic) -> str:
+    """Tell the properties of a material."""
+    told = f"E = {law.young:.4g} Pa, ρ = {law.density:.4g} kg/m³"
+    return told if law.poisson is None else f"{told}, ν = {law.poisson:g}, plane {law.plane}"
+
 
 def _materials(material: Elastic | Mapping[str, Elastic] | None) -> list[tuple[str | None, Elastic]]:
     if isinstance(material, Elastic):
@@ -238,9 +246,15 @@ class Problem(Immutable):
         return Problem._of(self._data.on(instance("mesh", mesh, Mesh)._data))
 
     def _repr_html_(self) -> str:
-        from percute import notebook
-
-        return notebook.of_problem(self)
+        material = self.material
+        laws = [("", material)] if isinstance(material, Elastic) else [(f" of {name}", law) for name, law in material.items()]
+        rows = notebook.mesh_rows(self.mesh)[:2]
+        rows += [(f"material{of}", _law(law)) for of, law in laws]
+        rows += [("plane", f"friction {each.friction:g}, normal {notebook.vector(each.normal)}") for each in self.obstacles]
+        rows += [(name.replace("_", " "), str(len(members))) for name in ("supports", "tractions", "body_forces") if (members := getattr(self, name))]
+        speeds = np.linalg.norm(self.initial_velocity, axis=1)
+        rows += [("mass", f"{self.mass.sum():.4g} kg"), ("speed at the start", f"at most {speeds.max():.4g} m/s, of waves {self.wave_speed:.4g} m/s")]
+        return notebook.page("Problem", rows, notebook.outline(self.mesh))
 
     def __repr__(self) -> str:
         parts = [repr(self.mesh)[len("<percute.Mesh: ") : -1]]

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from percute.documents import record
+
 __all__ = ["NextTouch", "Rebound"]
 
 
@@ -61,13 +63,5 @@ class Rebound:
     @classmethod
     def _of(cls, found: Mapping[str, Any] | None) -> Rebound | None:
         """Make it from its JSON object."""
-        if found is None:
-            return None
         # Estimate files of earlier versions have no reason, and call the span time in contact.
-        later = {"no_restitution": None, "angular_velocity_after": None, "touches_again": None}
-        found = {**later, "span": found["time_in_contact"], **found}
-        after = found["velocity_after"]
-        made: dict[str, Any] = {"velocity_before": np.array(found["velocity_before"]), "velocity_after": None if after is None else np.array(after)}
-        again = found["touches_again"]
-        made["touches_again"] = None if again is None else NextTouch(**again)
-        return cls(**{name: made.get(name, found[name]) for name in cls.__dataclass_fields__})
+        return None if found is None else record(cls, {"no_restitution": None, "span": found["time_in_contact"], **found})

@@ -6,23 +6,22 @@ import os
 from collections.abc import Iterable
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from percute import _percute
+from percute.arrays import numbers
 from percute.attached import attached
-from percute.checks import encodable, flag, instance, items, numbers, optional_number, vtkhdf, warn, wrong
+from percute.checks import encodable, flag, instance, items, optional_number, vtkhdf, warn, wrong
 from percute.errors import InputError, SimulationWarning
 from percute.history import History, true_errors_of
 from percute.kept import kept
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.termination import file_closed_at_signals
-
-if TYPE_CHECKING:
-    from percute.true_error import TrueError
+from percute.true_error import TrueError
 
 __all__ = ["simulate", "true_errors"]
 

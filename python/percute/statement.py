@@ -12,7 +12,8 @@ from typing import Literal, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from percute.checks import number, numbers, text, wrong
+from percute.arrays import numbers
+from percute.checks import number, text, wrong
 from percute.errors import InputError
 from percute.words import counted
 

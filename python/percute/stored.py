@@ -11,10 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percute import _percute
-from percute.contents import MEASURES
 from percute.errors import FileFormatError
 from percute.mesh import Mesh
 
+MEASURES = (
+    "sup", "mean", "mean_from_touch", "energy", "strain_energy", "kinetic_energy", "relative_sup", "relative_mean",
+    "relative_stress_sup", "relative_stress_mean", "relative_velocity_sup", "relative_velocity_mean",
+    "published_relative_sup", "published_relative_mean", "reference_sup", "reference_mean",
+)  # fmt: skip
 SOURCES = ("surface", "front", "dispersion", "mesh")
 FIELDS = {
     "accumulated": "error",

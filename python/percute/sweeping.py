@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from percute import _percute
+from percute import _percute, tables
 from percute.checks import flag, text, whole, wrong
 from percute.checks import path as file_name
 from percute.errors import InputError
 from percute.files import read_case
+from percute.pictures import sweep as pictures
 from percute.progress import Progress, ProgressOption, shown
 from percute.words import counted
 
@@ -115,8 +116,6 @@ class Sweep:
 
         ``to_parquet`` and ``to_csv`` of pandas write it to files.
         """
-        from percute import tables
-
         table = tables.pandas().DataFrame({name: values for name, values in self._columns.items() if name != "case"}, index=list(self.cases))
         table.index.name = "case"
         table.attrs["units"] = self.units
@@ -124,8 +123,6 @@ class Sweep:
 
     def to_xarray(self) -> xarray.Dataset:
         """Make a data set (extra ``xarray``): over the keys that are varied if there is a case for each combination, else over ``case``."""
-        from percute import tables
-
         library = tables.xarray()
         results = {name: values for name, values in self._columns.items() if name not in self._parameters}
         axes = self._axes()
@@ -168,12 +165,8 @@ class Sweep:
             One key gives a curve, two give a map with the first to the right; by default the keys that are varied.
         where : dict, optional
             Values of other keys: only cases with these are drawn.
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; new axes by default.
-        save : str or path, optional
-            A file ``.svg``, ``.png`` or ``.pdf`` for the picture.
-        overwrite : bool, default: False
-            Whether a file that exists already is replaced.
+        axes, save, overwrite
+            As for `History.plot_energies`.
 
         Returns
         -------
@@ -184,9 +177,7 @@ class Sweep:
         InputError
             A column or key that is not there or has no numbers, or several cases at one place.
         """
-        from percute.pictures import sweep as pictures
-
-        return pictures.plot(self, quantity, over, where, axes, save, overwrite)
+        return pictures.plot(self.__getitem__, self._parameters, self._units.get(quantity), quantity, over, where, axes, save, overwrite)
 
     def __repr__(self) -> str:
         status = list(self["status"])

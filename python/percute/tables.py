@@ -8,17 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percute._percute import __version__
-from percute.checks import text
-from percute.contents import AXES, Contents, Quantity, at_one_instant
-from percute.contents import of_history as of_fields
-from percute.element_fields import NODAL, OF_ELEMENTS
+from percute.checks import one_of
+from percute.contents import AXES, Contents, Quantity
 from percute.errors import InputError, PercuteError
 
 if TYPE_CHECKING:
     import pandas as _pandas
     import xarray as _xarray
-
-    from percute.history import History
 
 VECTORS = ("component", "component2")
 
@@ -47,9 +43,7 @@ def to_pandas(contents: Contents, over: object, known: dict[str, tuple[str, ...]
     ``known`` has the dimensions by the names that ``over`` may have.
     """
     frames = pandas()
-    if text("over", over) not in known:
-        raise InputError(f"`over` is {over!r}; it must be one of {', '.join(known)}")
-    dims = known[str(over)]
+    dims = known[one_of("over", over, known)]
     # Only maps may be missing.
     if not set(dims) <= set(contents.coordinates):
         raise InputError(f"`over` is {over!r}, but the estimate has no maps; ask for them with `instants`")
@@ -88,20 +82,6 @@ def _columns(name: str, quantity: Quantity, dims: tuple[str, ...], contents: Con
     if flat.ndim == 2:
         return [(f"{name}_{AXES[i]}", flat[:, i]) for i in range(flat.shape[1])]
     return [(f"{name}_{AXES[i]}{AXES[j]}", flat[:, i, j]) for i in range(flat.shape[1]) for j in range(i, flat.shape[2])]
-
-
-def of_history(history: History, over: object, step: int | None) -> _pandas.DataFrame:
-    """Make a table of a history: over time, or over nodes at one instant or at all."""
-    if text("over", over) == "time":
-        return to_pandas(of_fields(history, ()), over, {"time": ("time",)})
-    rows: dict[str, tuple[str, ...]] = {"time": ("time",), "nodes": ("time", "node"), "elements": ("time", "element")}
-    if over not in rows:
-        raise InputError(f"`over` is {over!r}; it must be one of {', '.join(rows)}")
-    names = NODAL if over == "nodes" else OF_ELEMENTS
-    found = of_fields(history, names, None if step is None else np.array([step]), over_time=False)
-    if step is None:
-        return to_pandas(found, over, rows)
-    return to_pandas(at_one_instant(found), over, {name: dims[1:] or dims for name, dims in rows.items()})
 
 
 def to_xarray(contents: Contents) -> _xarray.Dataset:

@@ -1,23 +1,15 @@
-"""The true error of a simulation, and how an exact solution measures it."""
+"""The true error of a simulation, and the estimate over it."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from percute.checks import instance
-from percute.errors import InputError
 from percute.words import counted
 
-if TYPE_CHECKING:
-    from percute.estimation import Estimate
-    from percute.history import History
-
-__all__ = ["Compared", "Effectivity", "TrueError"]
+__all__ = ["Effectivity", "TrueError"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -58,29 +50,3 @@ class Effectivity:
     """Of the largest error."""
     mean: float
     """Of the mean error."""
-
-
-class Compared(ABC):
-    """An exact solution that gives the true error of its simulations."""
-
-    @abstractmethod
-    def error(self, history: History) -> TrueError:
-        """Give the true error of a simulation, eq. [60]."""
-
-    def effectivity(self, estimate: Estimate, history: History | None = None) -> Effectivity:
-        """Give the estimated over the true error, for the largest and the mean one.
-
-        Parameters
-        ----------
-        estimate : Estimate
-            The estimate.
-        history : History, optional
-            What it is the estimate of; needed only if the estimate comes from a file.
-        """
-        from percute.estimation import Estimate
-
-        instance("estimate", estimate, Estimate)
-        measured = history if history is not None else estimate.history
-        if measured is None:
-            raise InputError("`history` is missing: an estimate from a file does not hold it")
-        return estimate.effectivity(self.error(measured))

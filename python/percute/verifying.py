@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
+from percute.arrays import numbers
 from percute.attached import attached
-from percute.checks import flag, instance, numbers, text, warn, whole, wrong
+from percute.checks import flag, instance, text, warn, whole, wrong
 from percute.errors import InputError
 from percute.estimating import pace, sampling
+from percute.pictures import convergence
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.simulation import instants_of, with_planes_moved
@@ -111,19 +113,15 @@ class Verification:
         ----------
         axes : sequence of three matplotlib.axes.Axes, optional
             Axes of the plots; new ones by default.
-        save : str or path, optional
-            A file ``.svg``, ``.png`` or ``.pdf`` for the picture.
-        overwrite : bool, default: False
-            Whether a file that exists already is replaced.
+        save, overwrite
+            As for `History.plot_energies`.
 
         Returns
         -------
         list of matplotlib.axes.Axes
             The axes of the three plots.
         """
-        from percute.pictures import convergence
-
-        return convergence.plot(self, axes, save, flag("overwrite", overwrite))
+        return convergence.plot(self.size, vars(self), self.expected, self.per_metre, axes, save, flag("overwrite", overwrite))
 
     @classmethod
     def _of(cls, document: dict[str, Any], table: str) -> Verification:

@@ -1,8 +1,8 @@
 """The summaries of the bar maps."""
 
 import percute as pc
-from percute.verification.bar import Outcome, Setting
-from percute.verification.bar_maps import Summary
+from studies.bar import Outcome, Setting
+from studies.bar_maps import Summary
 
 
 def test_a_summary_of_four_runs() -> None:

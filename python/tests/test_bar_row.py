@@ -7,7 +7,7 @@ import numpy as np
 import percute as pc
 import pytest
 from percute.exact import BarImpact, BarRow
-from percute.verification import bar_rows
+from studies import bar_rows
 
 ALUMINIUM = pc.Elastic(young=70e9, density=2700, section=1e-4)
 STEEL = pc.Elastic(young=210e9, density=7800, section=1e-4)

@@ -15,9 +15,9 @@ import math
 
 import numpy as np
 import pytest
-from percute.verification.benchmarks import BENCHMARKS
-from percute.verification.benchmarks.trial import CASES, Outcome, Quantity
-from percute.verification.choices import PLANE_CHOICES
+from studies.benchmarks import BENCHMARKS
+from studies.benchmarks.trial import CASES, Outcome, Quantity
+from studies.choices import PLANE_CHOICES
 
 FRONT, RETURN, LOSS = (0.23, 0.43), (0.57, 0.97), (0.8, 1.2)
 NONE = None

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from percute.verification.beyond import Run, runs
+from studies.beyond import Run, runs
 
 PAGE = (Path(__file__).parents[2] / "docs" / "verdict.md").read_text(encoding="utf-8")
 ROWS = list(runs())

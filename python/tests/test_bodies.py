@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import percute as pc
 import pytest
-from percute.verification.block import ALUMINIUM
+from studies.block import ALUMINIUM
 
 BASE = Path(__file__).parents[2] / "tests" / "bases" / "bodies.toml"
 

@@ -5,7 +5,7 @@ import pytest
 
 import percute as pc
 from percute import InputError
-from percute.verification.corners import Corner
+from studies.corners import Corner
 
 
 @pytest.fixture(scope="module")

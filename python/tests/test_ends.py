@@ -1,7 +1,7 @@
 """Ends of surfaces that slide along the edges of the other one."""
 
 import pytest
-from percute.verification import ends
+from studies import ends
 
 
 @pytest.mark.parametrize("pair", ends.PAIRS[-2:], ids=lambda pair: pair.name)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
 import percute as pc
-from percute import contents
+from percute import stored
 import pytest
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -86,7 +86,7 @@ def test_a_problem_stated_in_python_is_that_of_the_case() -> None:
 def test_the_estimate_says_what_its_document_says(block_history: pc.History) -> None:
     estimate = pc.estimate(block_history)
     document = json.loads(estimate.to_json())
-    for name in contents.MEASURES:
+    for name in stored.MEASURES:
         assert getattr(estimate, name) == document["error"][name]
     assert estimate.by_element.tolist() == document["by_element"]
     assert dict(estimate.residuals) == document["residuals"]

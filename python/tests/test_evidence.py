@@ -17,21 +17,29 @@ from typing import Any
 
 import percute as pc
 import pytest
-from percute.verification import impacts, speeds, studies
-from percute.verification.impacts import steps_past
-from percute.verification.page import Column, Table, percent, short
-from percute.verification.parallel import Resolution
-from percute.verification.studies import STUDIES
+from studies import catalogue, impacts, speeds
+from studies.impacts import steps_past
+from studies.page import Column, Table, percent, short
+from studies.parallel import Resolution, Stop
+from studies.catalogue import STUDIES, chosen
 
 FORMATS = ("{x:g}",)
 """Texts with braces that are meant so: formats of matplotlib."""
-PAGE = Path(__file__).parents[2] / "docs/verification.md"
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs/verification.md"
+AT_ROOT = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])}
+"""The environment of a command that finds the studies from any folder."""
 Rows = list[list[str]]
+
+
+def reproduce(folder: Path, *studies: str, threads: int | None = None, tell: Stop | None = None) -> Path:
+    """The page of some studies, or of all, at the small resolution."""
+    return catalogue.run(folder, chosen(studies), Resolution(small=True, threads=threads, tell=tell), overwrite=False)
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    page = pc.reproduce(tmp_path_factory.mktemp("evidence") / "ev", small=True)
+    page = reproduce(tmp_path_factory.mktemp("evidence") / "ev")
     assert page.name == "index.html"
     return page.parent
 
@@ -136,7 +144,7 @@ def test_numbers_are_the_same_in_all_files(folder: Path) -> None:
 
 
 def test_no_number_depends_on_the_threads(folder: Path, tmp_path: Path) -> None:
-    pc.reproduce(tmp_path, ["ablation", "time-steps"], small=True, threads=3)
+    reproduce(tmp_path, "ablation", "time-steps", threads=3)
     for name, table in tables(tmp_path):
         assert table["rows"] == dict(tables(folder))[name]["rows"], name
 
@@ -172,7 +180,7 @@ def test_no_text_has_a_placeholder(folder: Path) -> None:
     """A string of a study that lacks its prefix f shows braces on the page; the small resolution leaves some texts out."""
     for page in (PAGE, folder / "verification.md"):
         assert "{" not in page.read_text(encoding="utf-8"), page
-    sources = list(Path(studies.__file__).parent.rglob("*.py"))
+    sources = list(Path(catalogue.__file__).parent.rglob("*.py"))
     assert len(sources) > 10
     for source in sources:
         for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
@@ -263,18 +271,15 @@ def test_the_page_holds_the_aims_of_the_default() -> None:
 
 def test_what_cannot_be_is_refused(folder: Path, tmp_path: Path) -> None:
     with pytest.raises(pc.ExistingFileError, match=r"not empty.*overwrite=True"):
-        pc.reproduce(folder, ["table1"], small=True)
+        reproduce(folder, "table1")
     with pytest.raises(pc.InputError, match=r"no study \"tabel1\".*did you mean `table1`"):
-        pc.reproduce(tmp_path / "ev", ["tabel1"])
-    for wrong in ("table1", [], 3, [1]):
-        with pytest.raises(pc.InputError, match="`studies"):
-            pc.reproduce(tmp_path / "ev", wrong)  # type: ignore[arg-type]
+        reproduce(tmp_path / "ev", "tabel1")
     with pytest.raises(pc.StorageError, match="there is no folder"):
-        pc.reproduce(tmp_path / "none" / "ev", ["table1"])
+        reproduce(tmp_path / "none" / "ev", "table1")
     assert not list(tmp_path.iterdir())
     (tmp_path / "file").write_text("mine")
     with pytest.raises(pc.StorageError, match="not a folder"):
-        pc.reproduce(tmp_path / "file", ["table1"])
+        reproduce(tmp_path / "file", "table1")
 
 
 def test_finished_studies_stay_when_it_is_interrupted(tmp_path: Path) -> None:
@@ -286,7 +291,7 @@ def test_finished_studies_stay_when_it_is_interrupted(tmp_path: Path) -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        pc.reproduce(tmp_path, ["stress-maps", "time-steps"], small=True, progress=stop)
+        reproduce(tmp_path, "stress-maps", "time-steps", tell=stop)
     assert list(numbers(tmp_path)["studies"]) == ["stress-maps"]
     others = [study.key for study in STUDIES if study.key != "stress-maps"]
     assert f"Not on this page: {', '.join(others)}." in (tmp_path / "verification.md").read_text(encoding="utf-8")
@@ -298,9 +303,9 @@ def test_a_computed_study_stays_when_its_drawing_is_interrupted(tmp_path: Path, 
         raise KeyboardInterrupt
 
     done: list[str] = []
-    monkeypatch.setattr("percute.verification.figures.save", interrupt)
+    monkeypatch.setattr("studies.figures.save", interrupt)
     with pytest.raises(KeyboardInterrupt):
-        studies.run(tmp_path, studies.chosen(["stress-maps"]), Resolution(small=True), False, lambda study: done.append(study.key))
+        catalogue.run(tmp_path, chosen(["stress-maps"]), Resolution(small=True), False, lambda study: done.append(study.key))
     assert done == list(numbers(tmp_path)["studies"]) == ["stress-maps"] and list(tables(tmp_path))
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert "(not drawn)" in page and "<img" not in page and page.endswith("</html>\n")
@@ -309,7 +314,7 @@ def test_a_computed_study_stays_when_its_drawing_is_interrupted(tmp_path: Path, 
 
 
 def command(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([sys.executable, "-m", "percute", "reproduce", *arguments], cwd=cwd, capture_output=True, text=True)
+    return subprocess.run([sys.executable, "-m", "studies", *arguments], cwd=cwd, env=AT_ROOT, capture_output=True, text=True)
 
 
 def test_the_command_has_its_options_and_exit_codes(tmp_path: Path) -> None:
@@ -332,8 +337,8 @@ def test_the_command_has_its_options_and_exit_codes(tmp_path: Path) -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="signals")
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_an_interrupt_ends_with_a_message(tmp_path: Path, name: str) -> None:
-    arguments = [sys.executable, "-m", "percute", "reproduce", "stress-maps", "effectivity", "--output", "ev"]
-    child = subprocess.Popen(arguments, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    arguments = [sys.executable, "-m", "studies", "stress-maps", "effectivity", "--output", "ev"]
+    child = subprocess.Popen(arguments, cwd=tmp_path, env=AT_ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     # Effectivity comes first on the page and takes minutes.
     time.sleep(3)
     os.kill(child.pid, getattr(signal, name))
@@ -342,9 +347,9 @@ def test_an_interrupt_ends_with_a_message(tmp_path: Path, name: str) -> None:
 
 
 def test_without_matplotlib_the_extra_is_named(tmp_path: Path) -> None:
-    script = "import sys; sys.modules['matplotlib'] = None; import percute as pc; pc.reproduce('ev', ['table1'], small=True)"
-    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 1 and 'PercuteError: the figures need matplotlib: pip install matplotlib' in done.stderr
+    script = "import sys; sys.modules['matplotlib'] = None; from studies.__main__ import main; sys.exit(main(['table1', '--small']))"
+    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=AT_ROOT, capture_output=True, text=True)
+    assert done.returncode == 1 and done.stderr.startswith("error: the figures need matplotlib: pip install matplotlib")
     assert not list(tmp_path.iterdir())
 
 

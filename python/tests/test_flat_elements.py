@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import percute as pc
-from percute.verification.flat_elements import angles, meshes, moved, problem, row, share
+from studies.flat_elements import angles, meshes, moved, problem, row, share
 
 ROOT = Path(__file__).parents[2]
 

@@ -9,7 +9,7 @@ import numpy as np
 import percute as pc
 import pytest
 from conftest import bar, block, disc, tilted
-from percute.verification.penalties import Springs, matrices
+from studies.penalties import Springs, matrices
 from spoiling import FALLS
 from test_penalty import penalty
 

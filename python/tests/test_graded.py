@@ -7,7 +7,7 @@ import numpy as np
 import percute as pc
 import pytest
 from conftest import block
-from percute.verification.consistency import FIGURES, Cases, table
+from studies.consistency import FIGURES, Cases, table
 
 ROOT = Path(__file__).parents[2]
 

@@ -8,8 +8,8 @@ import numpy as np
 import percute as pc
 import pytest
 from conftest import block, tilted
-from percute.verification.durations import Impact
-from percute.verification.penalties import matrices, row, simulated
+from studies.durations import Impact
+from studies.penalties import matrices, row, simulated
 from spoiling import FALLS, STATED, Parts, cause, given, parts, shifted, without
 
 

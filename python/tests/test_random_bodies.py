@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import percute as pc
 import pytest
-from percute.verification.random_bodies import __main__ as command
-from percute.verification.random_bodies import judge
-from percute.verification.random_bodies.cases import KINDS, OF_CELLS, body
-from percute.verification.random_bodies.draws import Draws
-from percute.verification.random_bodies.judge import Row, summary
-from percute.verification.random_bodies.meshes import MOST, Sizes, by_gmsh, delaunay, longest, of_cells, sized
-from percute.verification.random_bodies.shapes import SHAPES, Shape
+from studies.random_bodies import __main__ as command
+from studies.random_bodies import judge
+from studies.random_bodies.cases import KINDS, OF_CELLS, body
+from studies.random_bodies.draws import Draws
+from studies.random_bodies.judge import Row, summary
+from studies.random_bodies.meshes import MOST, Sizes, by_gmsh, delaunay, longest, of_cells, sized
+from studies.random_bodies.shapes import SHAPES, Shape
 
 try:
     import gmsh  # noqa: F401

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import percute as pc
 import pytest
-from percute.verification.sampled import problem, sampled, table
+from studies.sampled import problem, sampled, table
 from test_foreign import write
 
 

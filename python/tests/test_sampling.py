@@ -4,7 +4,7 @@ from pathlib import Path
 
 import percute as pc
 import pytest
-from percute.verification.block import ALUMINIUM
+from studies.block import ALUMINIUM
 
 
 @pytest.fixture(scope="module")

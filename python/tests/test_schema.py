@@ -18,7 +18,7 @@ from percute._percute import CaseData
 from test_mistakes import MISTAKES, case_of
 
 ROOT = Path(__file__).parents[2]
-FOLDERS = [ROOT / "examples", ROOT / "tests" / "bases", Path(pc.__file__).parent / "verification" / "benchmarks" / "cases"]
+FOLDERS = [ROOT / "examples", ROOT / "tests" / "bases", ROOT / "studies" / "benchmarks" / "cases"]
 CASES = [file for folder in FOLDERS for file in sorted(folder.glob("*.toml"))]
 
 MORE = """

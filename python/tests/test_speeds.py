@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 import pytest
-from percute.verification import speeds
-from percute.verification.impacts import Case
+from studies import speeds
+from studies.impacts import Case
 
 # Slow discs touch on less than an edge.
 pytestmark = pytest.mark.filterwarnings("ignore:the contact is narrower")

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import percute as pc
 import pytest
-from percute.verification.block import ALUMINIUM
-from percute.verification.struck import Problem, beside_end, disc, overlapping, tilted
+from studies.block import ALUMINIUM
+from studies.struck import Problem, beside_end, disc, overlapping, tilted
 
 # Discs touch plates on less than an edge.
 pytestmark = [pytest.mark.filterwarnings("ignore::percute.SimulationWarning"), pytest.mark.filterwarnings("ignore:the contact is narrower")]

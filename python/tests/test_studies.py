@@ -9,11 +9,11 @@ import numpy as np
 import percute as pc
 import pytest
 from conftest import bar, block
-from percute.verification import sources, speeds
-from percute.verification.bodies import BODIES, corners, graded
-from percute.verification.impacts import MESHES, RECONSTRUCTION_OPTIONS, Case, cases
-from percute.verification.parallel import Resolution
-from percute.verification.turning import ACCELERATIONS, bodies
+from studies import sources, speeds
+from studies.bodies import BODIES, corners, graded
+from studies.impacts import MESHES, RECONSTRUCTION_OPTIONS, Case, cases
+from studies.parallel import Resolution
+from studies.turning import ACCELERATIONS, bodies
 
 
 def area(mesh: pc.Mesh) -> float:
@@ -260,7 +260,7 @@ def test_references_that_do_not_fit_are_refused(block_history: pc.History, bar_h
 @pytest.mark.parametrize(("count", "letters", "columns"), [(5, 17, 3), (11, 32, 2), (4, 28, 1), (6, 33, 1), (9, 60, 2), (2, 99, 1)])
 def test_legends_fill_their_rows_and_stay_inside(count: int, letters: int, columns: int) -> None:
     """No more columns than their rows need, and none beyond the figure."""
-    from percute.verification import figures
+    from studies import figures
 
     curves = [figures.Curve(f"{k:02d} " + "at " * (letters // 3 - 1), [0.0, 1.0], [0.0, 1.0], marked=True) for k in range(count)]
     figure = figures.lines([("panel", curves)] * columns, "x", "y", columns=columns)

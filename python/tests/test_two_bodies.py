@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from percute.verification.two_bodies import Pair, pairs, row
+from studies.two_bodies import Pair, pairs, row
 
 PAGE = (Path(__file__).parents[2] / "docs" / "bodies.md").read_text(encoding="utf-8")
 

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import percute as pc
 import pytest
-from percute.verification import ends
-from percute.verification.bodies import BODIES
-from percute.verification.durations import Impact
+from studies import ends
+from studies.bodies import BODIES
+from studies.durations import Impact
 
 pytestmark = pytest.mark.filterwarnings("ignore::percute.InputWarning")
 ALUMINIUM = {"young": 70e9, "poisson": 0.3, "density": 2700.0}

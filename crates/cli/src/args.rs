@@ -25,9 +25,10 @@ use std::str::FromStr;
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (Ctrl-C, SIGTERM; the summary of \
     the completed steps is still printed).";
 
-/// The remedy for `percute reproduce` without the Python package.
-pub(crate) const NEEDS_PYTHON: &str = "`percute reproduce` needs the Python package: pip install \".[plot]\" in the \
-    source folder. Its command `percute` computes the evidence";
+/// The way to the evidence, which is not installed.
+pub(crate) const STUDIES: &str = "the studies of the evidence are not installed with percute. In its source folder, \
+    a clone or an unpacked source distribution, `pip install \".[plot]\"` and `python -m studies` compute them \
+    (studies/README.md)";
 
 /// The remedy for `percute plot` without the Python package.
 pub(crate) const PLOT_NEEDS_PYTHON: &str = "`percute plot` needs the Python package: pip install \"percute[plot]\", or \
@@ -77,8 +78,7 @@ pub enum Command {
     /// Draw a picture of a case, a history or an estimate file (with the Python package): error, energies, contact,
     /// fields, animations
     Plot(PlotArguments),
-    /// Compute the evidence again (with the Python package): the paper's tables and figures, exact solutions,
-    /// effectivity indices
+    /// Tell how to compute the evidence again: the paper's tables and figures, exact solutions, effectivity indices
     Reproduce(ReproduceArguments),
 }
 
@@ -279,9 +279,9 @@ pub struct RecoverArguments {
 
 /// Arguments of `percute reproduce`.
 #[derive(Clone, Debug, Args)]
-#[command(after_help = NEEDS_PYTHON)]
+#[command(after_help = STUDIES)]
 pub struct ReproduceArguments {
-    /// Its arguments, which the Python package reads
+    /// Its arguments, which the studies read
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
     pub all: Vec<OsString>,
 }

@@ -9,31 +9,39 @@ import numpy as np
 
 from percute import _percute
 from percute.errors import InputError
+from percute.estimation import Estimate
+from percute.iterations import Iterations
 from percute.pictures.canvas import axes_below, pyplot, root, save_figure, writable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from percute.adapting import Adaptation
 
-
-def plot(adaptation: Adaptation, axes: Sequence[Axes] | None, save: object, overwrite: object) -> list[Axes]:
-    """Draw the map and the errors."""
+def plot(
+    best: tuple[Estimate, int] | None,
+    runs: Iterations,
+    measure: str,
+    target: float,
+    axes: Sequence[Axes] | None,
+    save: object,
+    overwrite: object,
+) -> list[Axes]:
+    """Draw the map and the errors; ``best`` is the estimate of the best run, with its number."""
     file = writable("save", save, overwrite)
-    if adaptation.estimate is None:
+    if best is None:
         raise InputError("there is no picture: no run is done")
     upper, lower = plots = axes_below(axes, 2, "two")
-    adaptation.estimate.plot_map(axes=upper)
-    runs = adaptation.iterations
+    estimate, number = best
+    estimate.plot_map(axes=upper)
     # The map is titled with the largest error; the picture is about that of the target.
-    error = f"{len(adaptation.estimate.by_element)} elements: relative error ({adaptation.measure}) {100 * runs.error[adaptation.best]:.3g} %"
-    upper.set_title("\n".join([f"{error}, target {100 * adaptation.target:.3g} %", *upper.get_title().split("\n")[1:]]), fontsize="medium")
+    error = f"{len(estimate.by_element)} elements: relative error ({measure}) {100 * runs.error[number]:.3g} %"
+    upper.set_title("\n".join([f"{error}, target {100 * target:.3g} %", *upper.get_title().split("\n")[1:]]), fontsize="medium")
     cost = np.cumsum(runs.element_steps)
-    lower.plot(cost, 100 * runs.error, marker="o", color=_percute.SERIES[0], label=f"relative error, {adaptation.measure}")
+    lower.plot(cost, 100 * runs.error, marker="o", color=_percute.SERIES[0], label=f"relative error, {measure}")
     known = np.isfinite(runs.predicted)
     if np.any(known):
         lower.plot(cost[known], 100 * runs.predicted[known], marker="x", linestyle="none", color=_percute.SERIES[1], label="expected")
-    lower.axhline(100 * adaptation.target, color="#6e6e78", linewidth=1.0, linestyle=(0, (4, 3)), label="target")
+    lower.axhline(100 * target, color="#6e6e78", linewidth=1.0, linestyle=(0, (4, 3)), label="target")
     lower.set(xscale="log", yscale="log", xlabel="elements times steps, all runs so far", ylabel="relative error (%)")
     lower.yaxis.set_major_formatter(pyplot().matplotlib.ticker.ScalarFormatter())
     lower.yaxis.set_minor_formatter(pyplot().matplotlib.ticker.LogFormatter(minor_thresholds=(2, 1)))

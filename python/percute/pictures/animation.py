@@ -18,12 +18,11 @@ from percute.pictures.body import SLIM
 from percute.pictures.canvas import SIGNED, Floats, pyplot, replacing, writable, writing
 from percute.pictures.fields import draw_field, field
 from percute.progress import Progress, ProgressOption, shown
+from percute.steps import Steps
 
 if TYPE_CHECKING:
     from matplotlib.animation import AbstractMovieWriter
     from matplotlib.figure import Figure
-
-    from percute.history import History
 
 ENDINGS = (".gif", ".mp4")
 DOTS = 100
@@ -32,7 +31,7 @@ MOST_FRAMES = 10_000
 
 
 def animate(
-    history: History,
+    history: Steps,
     path: object,
     quantity: object,
     frames: object,
@@ -107,7 +106,7 @@ def _finish(writer: AbstractMovieWriter, file: str) -> None:
         raise StorageError(f"{encodable(file)}: ffmpeg cannot write it: exit code {error.returncode}; write a .gif instead") from error
 
 
-def _figure(history: History, extent: Floats) -> Figure:
+def _figure(history: Steps, extent: Floats) -> Figure:
     """Make a figure that no window or notebook shows, lower for a slim body."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -133,7 +132,7 @@ def _writer(plt: Any, ending: str, rate: float) -> AbstractMovieWriter:
     return animation.FFMpegWriter(fps=rate, extra_args=["-pix_fmt", "yuv420p"])  # type: ignore[arg-type]
 
 
-def _span(history: History, name: object, steps: list[int], scale: float) -> tuple[tuple[float, float], Floats]:
+def _span(history: Steps, name: object, steps: list[int], scale: float) -> tuple[tuple[float, float], Floats]:
     """Give the range of the values at all instants, and the outermost places of the body."""
     low, high, colours = np.inf, -np.inf, ""
     planes = [np.asarray(plane.normal, dtype=np.float64).ravel() for plane in history.problem.obstacles]

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percute import _percute
-from percute.element_fields import boundary
 from percute.errors import InputError
+from percute.mesh_arrays import boundary
 from percute.pictures.canvas import FIELD, SIGNED, Floats, prefixed, pyplot, typeset
 
 if TYPE_CHECKING:

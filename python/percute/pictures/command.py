@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from percute.errors import ExistingFileError, FileFormatError, InputError, MissingFileError, PercuteError, StorageError
+from percute.errors import ExistingFileError, FileFormatError, InputError, MissingFileError, PercuteError
 from percute.estimating import estimate
 from percute.estimation import Estimate
 from percute.files import open as open_file

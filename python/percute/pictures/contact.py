@@ -10,28 +10,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percute._percute import unit
-from percute.checks import text, whole, wrong
-from percute.contact import Contact, ContactStatus
+from percute.checks import one_of, whole, wrong
+from percute.contact_results import ContactResults, ContactStatus
 from percute.errors import InputError
 from percute.pictures.canvas import FIELD, Floats, legend_beside, new_axes, over_time, prefixed, pyplot, root, save_figure, writable
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from percute.estimation import Estimate
-    from percute.history import History
-
 COLOURS = {ContactStatus.STICK: "#1f5fa8", ContactStatus.SLIP: "#e8862e"}
 MOST_COLUMNS = 2000
 """Largest number of drawn steps; more are thinned out."""
 
 
-def plot_contact(contact: Contact, colour: str, axes: Sequence[Axes] | None, save: object, overwrite: object) -> list[Axes]:
+def plot_contact(contact: ContactResults, colour: str, axes: Sequence[Axes] | None, save: object, overwrite: object) -> list[Axes]:
     """Draw the resultant forces over time, and the zone of contact of each plane over time."""
     file = writable("save", save, overwrite)
-    known = ("status", "pressure")
-    if text("colour", colour) not in known:
-        raise InputError(f"`colour` is {colour!r}; it must be one of {', '.join(known)}")
+    one_of("colour", colour, ("status", "pressure"))
     _check(contact)
     panels = _panels(axes, 1 + len(contact._names))
     _draw_forces(panels[0], contact)
@@ -44,9 +39,9 @@ def plot_contact(contact: Contact, colour: str, axes: Sequence[Axes] | None, sav
     return panels
 
 
-def plot_force(subject: History | Estimate, axes: Axes | None, save: object, overwrite: object) -> Axes:
+def plot_force(contact: ContactResults, axes: Axes | None, save: object, overwrite: object) -> Axes:
     """Draw the resultant forces of each plane over time."""
-    file, results = writable("save", save, overwrite), _results(subject)
+    file, results = writable("save", save, overwrite), _check(contact)
     axes = new_axes(axes, (7.2, 4.0))
     over_time(axes, results.time)
     _draw_forces(axes, results)
@@ -54,9 +49,9 @@ def plot_force(subject: History | Estimate, axes: Axes | None, save: object, ove
     return axes
 
 
-def plot_pressure(subject: History | Estimate, plane: int | None, axes: Axes | None, save: object, overwrite: object) -> Axes:
+def plot_pressure(contact: ContactResults, plane: int | None, axes: Axes | None, save: object, overwrite: object) -> Axes:
     """Draw the pressure along the surface over time; of a bar, the pressure of its end."""
-    file, results = writable("save", save, overwrite), _results(subject)
+    file, results = writable("save", save, overwrite), _check(contact)
     if plane is None:
         chosen = max(results._names, key=lambda k: results.obstacles[k].normal_force.max(initial=0.0))
     else:
@@ -72,7 +67,7 @@ def plot_pressure(subject: History | Estimate, plane: int | None, axes: Axes | N
     return axes
 
 
-def _draw_ends(axes: Axes, contact: Contact, plane: int) -> None:
+def _draw_ends(axes: Axes, contact: ContactResults, plane: int) -> None:
     """Draw the pressure of the ends of a bar that may touch a plane."""
     seconds = prefixed(contact.time)[0]
     factor, prefix = prefixed(contact.pressure)
@@ -82,15 +77,7 @@ def _draw_ends(axes: Axes, contact: Contact, plane: int) -> None:
     legend_beside(axes)
 
 
-def _results(subject: History | Estimate) -> Contact:
-    """Give the contact results of a history or an estimate."""
-    if subject.contact is None:
-        # A history always has them.
-        raise InputError(f"there is nothing to draw: {getattr(subject, 'no_contact', None)}")
-    return _check(subject.contact)
-
-
-def _check(contact: Contact) -> Contact:
+def _check(contact: ContactResults) -> ContactResults:
     """Make sure that there is something to draw."""
     if not contact.obstacles or len(contact.time) < 2:
         what = "the history has one instant only" if contact.obstacles else "the problem has no planes and no interfaces"
@@ -109,7 +96,7 @@ def _panels(axes: Sequence[Axes] | None, count: int) -> list[Axes]:
     return [new_axes(each) for each in given]
 
 
-def _draw_forces(axes: Axes, contact: Contact) -> None:
+def _draw_forces(axes: Axes, contact: ContactResults) -> None:
     """Draw normal and tangential resultants of each plane."""
     seconds, _ = prefixed(contact.time)
     factor, prefix = prefixed(contact.resultants.normal_force)
@@ -129,7 +116,7 @@ def _draw_forces(axes: Axes, contact: Contact) -> None:
     legend_beside(axes)
 
 
-def _along(contact: Contact, plane: int) -> tuple[Floats, str]:
+def _along(contact: ContactResults, plane: int) -> tuple[Floats, str]:
     """Give the unit vector along a plane, positive in its larger component, and its name."""
     x, y = contact.normals[contact.obstacle == plane][0]
     along = np.array([y, -x])
@@ -138,7 +125,7 @@ def _along(contact: Contact, plane: int) -> tuple[Floats, str]:
     return along, names.get((abs(along[0]), abs(along[1])), "along the plane")
 
 
-def _draw_zone(axes: Axes, contact: Contact, plane: int, colour: str) -> None:
+def _draw_zone(axes: Axes, contact: ContactResults, plane: int, colour: str) -> None:
     """Draw the nodes of a plane in contact over time. The status at t_n fills the step after it."""
     seconds, _ = prefixed(contact.time)
     rows = np.flatnonzero(contact.obstacle == plane)
@@ -174,7 +161,7 @@ def _style(colour: str, most: float) -> dict[str, Any]:
 
 
 def _cells(
-    axes: Axes, contact: Contact, plane: int, rows: NDArray[np.intp], touched: NDArray[np.bool_]
+    axes: Axes, contact: ContactResults, plane: int, rows: NDArray[np.intp], touched: NDArray[np.bool_]
 ) -> list[tuple[slice, Floats]]:
     """Give the pieces of the contact surface near contact, with the borders of the shares of their nodes."""
     if contact.mesh.dimension == 1:
@@ -198,7 +185,7 @@ def _cells(
     return pieces
 
 
-def _pieces(contact: Contact, rows: NDArray[np.intp]) -> list[slice]:
+def _pieces(contact: ContactResults, rows: NDArray[np.intp]) -> list[slice]:
     """Give the runs of consecutive nodes along the boundary."""
     cells = contact.mesh.cells
     nodes = contact.nodes[rows]

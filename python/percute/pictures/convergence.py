@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,8 +14,7 @@ from percute.pictures.canvas import Floats, axes_below, pyplot, root, save_figur
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from percute.verifying import Verification
-
+Values = Mapping[str, Any]
 DASHED = (0, (3.3, 1.7))
 ERRORS: tuple[tuple[str, str, int, Any], ...] = (
     ("estimate_mean", "estimate, mean", 0, "-"),
@@ -32,27 +31,34 @@ BESIDE, AROUND, PADDING = 1.1, 1.25, 0.1
 """Room beside the first and the last mesh and around errors, as a factor; around other values, as a part of their range."""
 
 
-def plot(verification: Verification, axes: Sequence[Axes] | None, save: object, overwrite: object) -> list[Axes]:
-    """Draw the three plots, one above the other."""
+def plot(
+    sizes: Floats,
+    values: Values,
+    expected: tuple[float, float],
+    per_metre: bool,
+    axes: Sequence[Axes] | None,
+    save: object,
+    overwrite: object,
+) -> list[Axes]:
+    """Draw the three plots, one above the other; ``values`` are those of a `Verification`, by name."""
     file = writable("save", save, overwrite)
-    sizes = verification.size
-    if len(sizes) < 2 or not np.any(_values(verification, ERRORS) > 0.0):
+    if len(sizes) < 2 or not np.any(_finite(values, ERRORS) > 0.0):
         raise InputError("there is no picture without errors on two meshes")
     plots = axes_below(axes, 3, "three")
     errors, indices, contact = plots
-    values = _values(verification, ERRORS)
-    positive = values[values > 0.0]
+    all_errors = _finite(values, ERRORS)
+    positive = all_errors[all_errors > 0.0]
     errors.set(yscale="log", ylim=(positive.min() / AROUND, positive.max() * AROUND))
     errors.yaxis.set_minor_formatter(pyplot().matplotlib.ticker.LogFormatter(minor_thresholds=(1, 0.5)))
-    indices.axhspan(*verification.expected, color=_percute.SERIES[BAND], alpha=0.2, linewidth=0.0, label="expected by the verdict on the first mesh")
-    below = _below(verification)
-    for each, quantities in ((errors, _of(verification, ERRORS)), (indices, _of(verification, INDICES)), (contact, below)):
+    indices.axhspan(*expected, color=_percute.SERIES[BAND], alpha=0.2, linewidth=0.0, label="expected by the verdict on the first mesh")
+    below = _below(values)
+    for each, quantities in ((errors, _of(values, ERRORS)), (indices, _of(values, INDICES)), (contact, below)):
         for shown, label, colour, line in quantities:
             if np.any(shown > 0.0 if each is errors else np.isfinite(shown)):
                 each.plot(sizes, shown, marker="o", markersize=5, linestyle=line, color=_percute.SERIES[colour], label=label)
-    _pad(indices, [*_values(verification, INDICES), *verification.expected], "the error is zero to rounding")
+    _pad(indices, [*_finite(values, INDICES), *expected], "the error is zero to rounding")
     _pad(contact, [value for shown, *_ in below for value in shown], "nothing touches")
-    for each, label, columns in zip(plots, (f"error ({_percute.unit('J^½', verification.per_metre)})".replace("^½", "$^{1/2}$"), "effectivity index", "over the finest"), (2, 3, 3), strict=True):
+    for each, label, columns in zip(plots, (f"error ({_percute.unit('J^½', per_metre)})".replace("^½", "$^{1/2}$"), "effectivity index", "over the finest"), (2, 3, 3), strict=True):
         each.set(xscale="log", xlim=(sizes[-1] / BESIDE, BESIDE), ylabel=label)
         each.set_xticks(list(sizes), [f"1/{round(1 / size)}" if size < 1 else "1" for size in sizes])
         each.set_xticks([], minor=True)
@@ -63,25 +69,23 @@ def plot(verification: Verification, axes: Sequence[Axes] | None, save: object, 
     return plots
 
 
-def _values(verification: Verification, quantities: Sequence[tuple[str, str, int, Any]]) -> Floats:
+def _finite(values: Values, quantities: Sequence[tuple[str, str, int, Any]]) -> Floats:
     """Give all values of some quantities that are numbers."""
-    values: Floats = np.concatenate([getattr(verification, name) for name, *_ in quantities])
-    return values[np.isfinite(values)]
+    found: Floats = np.concatenate([values[name] for name, *_ in quantities])
+    return found[np.isfinite(found)]
 
 
-def _of(verification: Verification, quantities: Sequence[tuple[str, str, int, Any]]) -> list[tuple[Floats, str, int, Any]]:
+def _of(values: Values, quantities: Sequence[tuple[str, str, int, Any]]) -> list[tuple[Floats, str, int, Any]]:
     """Give the values of quantities in place of their names."""
-    return [(getattr(verification, name), label, colour, line) for name, label, colour, line in quantities]
+    return [(values[name], label, colour, line) for name, label, colour, line in quantities]
 
 
-def _below(verification: Verification) -> list[tuple[Floats, str, int, Any]]:
+def _below(values: Values) -> list[tuple[Floats, str, int, Any]]:
     """Give contact and probes over their values on the finest mesh; without that they are not drawn."""
     # Three colours are left; a fourth probe has the first of them, and a dashed line.
-    probes = [
-        (values, name, len(CONTACT) + at % 3, DASHED if at // 3 % 2 else "-") for at, (name, values) in enumerate(verification.probes.items())
-    ]
-    over = [(values / values[-1] if values[-1] != 0.0 else np.full_like(values, np.nan), *look) for values, *look in (*_of(verification, CONTACT), *probes)]
-    return [(np.asarray(values), str(label), int(colour), line) for values, label, colour, line in over]
+    probes = [(shown, name, len(CONTACT) + at % 3, DASHED if at // 3 % 2 else "-") for at, (name, shown) in enumerate(values["probes"].items())]
+    over = [(shown / shown[-1] if shown[-1] != 0.0 else np.full_like(shown, np.nan), *look) for shown, *look in (*_of(values, CONTACT), *probes)]
+    return [(np.asarray(shown), str(label), int(colour), line) for shown, label, colour, line in over]
 
 
 def _pad(axes: Axes, values: Sequence[float], none: str) -> None:

@@ -10,7 +10,8 @@ import numpy as np
 
 from percute import _percute
 from percute._percute import unit
-from percute.checks import flag, number, text
+from percute.checks import flag, number, one_of
+from percute.error_results import ErrorResults
 from percute.errors import InputError
 from percute.pictures.body import Line, draw_bar, draw_body, linear, scale_of
 from percute.pictures.canvas import (
@@ -32,13 +33,11 @@ from percute.pictures.curves import draw_curve, mark_of_range
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from percute.estimation import Estimate
-
 PARTS = ("kinetic", "elastic", "contact")
 SOURCES = ("surface", "front", "dispersion", "mesh")
 
 
-def planes_of(estimate: Estimate) -> list[Line]:
+def planes_of(estimate: ErrorResults) -> list[Line]:
     """Give the planes; an estimate from a file has them in its report."""
     if estimate.problem is not None:
         return [(each.point, each.normal) for each in estimate.problem.obstacles if each.point is not None]
@@ -46,7 +45,7 @@ def planes_of(estimate: Estimate) -> list[Line]:
     return [(each["point"], each["normal"]) for each in obstacles if each["point"] is not None]
 
 
-def _displacement(estimate: Estimate) -> tuple[Floats, float]:
+def _displacement(estimate: ErrorResults) -> tuple[Floats, float]:
     """Give the displacement near the time of the sup, and its time: of the history, or of the maps of a file."""
     if estimate.history is not None:
         step = int(np.argmin(np.abs(estimate.history.time - estimate.time_of_sup)))
@@ -61,13 +60,13 @@ def _displacement(estimate: Estimate) -> tuple[Floats, float]:
     return nearest.displacement, nearest.time
 
 
-def _outline(estimate: Estimate) -> tuple[list[Floats], str]:
+def _outline(estimate: ErrorResults) -> tuple[list[Floats], str]:
     """Give the deformed outline at the end and what it is; nothing of a bar, nor from files of earlier versions."""
     found = _percute.deformed_outline(estimate.mesh._data, estimate.to_json())
     return ([], "") if found is None else ([np.array(line) for line in found[0]], f"\n— {found[1]}")
 
 
-def plot_map(estimate: Estimate, scale: float, outline: bool, axes: Axes | None, save: object, overwrite: object) -> Axes:
+def plot_map(estimate: ErrorResults, scale: float, outline: bool, axes: Axes | None, save: object, overwrite: object) -> Axes:
     """Draw e_E of each element (J^½), eq. [20]."""
     file, factor = writable("save", save, overwrite), number("scale", scale, finite=True)
     mesh, values, label = estimate.mesh, estimate.by_element, typeset(f"e_E ({unit('J^½', estimate.per_metre)})")
@@ -96,12 +95,10 @@ def plot_map(estimate: Estimate, scale: float, outline: bool, axes: Axes | None,
     return axes
 
 
-def plot_over_time(estimate: Estimate, by: str, axes: Axes | None, save: object, overwrite: object) -> Axes:
+def plot_over_time(estimate: ErrorResults, by: str, axes: Axes | None, save: object, overwrite: object) -> Axes:
     """Draw √η, with the square roots of its parts or of its sources."""
     file = writable("save", save, overwrite)
-    known = ("parts", "sources")
-    if text("by", by) not in known:
-        raise InputError(f"`by` is {by!r}; it must be one of {', '.join(known)}")
+    one_of("by", by, ("parts", "sources"))
     if by == "sources" and estimate.sources is None:
         raise InputError('`by` is "sources", but the estimate has none; only the reconstruction "corrected" separates them')
     axes = new_axes(axes, (7.2, 4.0))

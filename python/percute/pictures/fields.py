@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from percute._percute import unit
-from percute.checks import number, text
-from percute.element_fields import instant
-from percute.errors import InputError
+from percute.checks import number, one_of
+from percute.element_fields import element_field, instant
 from percute.pictures.body import Line, Scale, draw_bar, draw_body
 from percute.pictures.canvas import (
     COLOURS,
@@ -26,12 +25,10 @@ from percute.pictures.canvas import (
     save_figure,
     writable,
 )
+from percute.steps import Steps
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from percute.estimation import Estimate
-    from percute.history import History
 
 WORKS = {
     "work_of_loads": "work of loads",
@@ -51,28 +48,24 @@ SCALARS = {
 }
 
 
-def field(history: History, quantity: object, step: int) -> tuple[Floats, str, str, str]:
+def field(history: Steps, quantity: object, step: int) -> tuple[Floats, str, str, str]:
     """Give the values of a quantity at an instant, with its name, unit and colours."""
     bar = history.problem.mesh.dimension == 1
-    name = text("quantity", quantity)
-    scalars = ("stress", *list(SCALARS)[2:]) if bar else (*SCALARS, *STRESSES)
-    if name not in (known := (*MOTION, *scalars)):
-        raise InputError(f"`quantity` is {quantity!r}; it must be one of {', '.join(known)}")
+    name = one_of("quantity", quantity, (*MOTION, *(("stress", *list(SCALARS)[2:]) if bar else (*SCALARS, *STRESSES))))
     if name in MOTION:
         vectors: Floats = getattr(history, name)[step]
         return vectors[:, 0] if bar else np.linalg.norm(vectors, axis=1), name, MOTION[name], FIELD
     if name == "stress":
-        return history.stress(step)[:, 0, 0], name, "Pa", FIELD
+        return element_field(history, name, step)[:, 0, 0], name, "Pa", FIELD
     if name in STRESSES:
         row, column = STRESSES[name]
-        return history.stress(step)[:, row, column], f"stress σ$_{{{name[-2:]}}}$", "Pa", SIGNED
-    values: Floats = getattr(history, name)(step)
+        return element_field(history, "stress", step)[:, row, column], f"stress σ$_{{{name[-2:]}}}$", "Pa", SIGNED
     told, of, colours = SCALARS[name]
-    return values, told, unit(of, history.problem.per_metre), colours
+    return element_field(history, name, step), told, unit(of, history.problem.per_metre), colours
 
 
 def plot_field(
-    history: History, quantity: str, step: int, scale: float, axes: Axes | None, save: object, overwrite: object
+    history: Steps, quantity: str, step: int, scale: float, axes: Axes | None, save: object, overwrite: object
 ) -> Axes:
     """Draw a field of a history on the deformed body."""
     file, row = writable("save", save, overwrite), instant(history, step)
@@ -86,7 +79,7 @@ def plot_field(
 
 def draw_field(
     axes: Axes,
-    history: History,
+    history: Steps,
     step: int,
     scale: float,
     found: tuple[Floats, str, str, str],
@@ -110,12 +103,9 @@ def draw_field(
     axes.set_title(f"t = {history.time[step] / seconds:.4g} {small}s{told}", fontsize="medium")
 
 
-def plot_energies(subject: History | Estimate, axes: Axes | None, save: object, overwrite: object) -> Axes:
-    """Draw energies and works over time."""
-    from percute.history import History
-
+def plot_energies(values: Mapping[str, Any], axes: Axes | None, save: object, overwrite: object) -> Axes:
+    """Draw energies and works over time; ``values`` are those of a `Balance`, by name."""
     file = writable("save", save, overwrite)
-    values = _energies(subject)
     axes = new_axes(axes, (7.2, 4.0))
     total = values["kinetic"] + values["strain"]
     factor, prefix = prefixed(np.concatenate([total, *(values[name] for name in WORKS)]))
@@ -128,23 +118,7 @@ def plot_energies(subject: History | Estimate, axes: Axes | None, save: object, 
     for name, label in WORKS.items():
         if np.abs(values[name]).max(initial=0.0) > least:
             axes.plot(time, values[name] / factor, color=COLOURS[name], linewidth=1.1, linestyle="--", label=label)
-    per_metre = subject.problem.per_metre if isinstance(subject, History) else subject.per_metre
-    axes.set_ylabel(f"energy ({prefix}{unit('J', per_metre)})")
+    axes.set_ylabel(f"energy ({prefix}{unit('J', values['per_metre'])})")
     legend_beside(axes)
     save_figure(root(axes), file)
     return axes
-
-
-def _energies(subject: History | Estimate) -> dict[str, Floats]:
-    """Give energies and works over time: of a history, or from the report of an estimate."""
-    from percute.history import History
-
-    history = subject if isinstance(subject, History) else subject.history
-    names = ("time", "kinetic", "strain", *WORKS)
-    if history is not None:
-        return {name: getattr(history.balance, name) for name in names}
-    assert not isinstance(subject, History)
-    columns = json.loads(subject.to_json()).get("balance_over_time")
-    if columns is None:
-        raise InputError("the estimate has no energies; take them from its history")
-    return {name: np.array(columns[name], dtype=np.float64) for name in names}

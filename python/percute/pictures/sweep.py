@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,66 +15,77 @@ from percute.pictures.canvas import FIELD, new_axes, root, save_figure, writable
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from percute.sweeping import Sweep
-
 MOST_NUMBERS = 200
 """Maps of at most so many cells show their numbers."""
 WIDE_CELLS = 6
 """Rows of at most so many cells show numbers with three digits."""
 
 
-def plot(sweep: Sweep, quantity: str, over: object, where: object, axes: Axes | None, save: object, overwrite: object) -> Axes:
+Column = Callable[[str], NDArray[Any]]
+"""Gives the column of a name."""
+
+
+def plot(
+    column: Column,
+    parameters: Sequence[str],
+    unit: str | None,
+    quantity: str,
+    over: object,
+    where: object,
+    axes: Axes | None,
+    save: object,
+    overwrite: object,
+) -> Axes:
     """Draw a column over the keys ``over``."""
     file = writable("save", save, overwrite)
-    values = sweep[text("quantity", quantity)]
+    values = column(text("quantity", quantity))
     if values.dtype == object:
         raise InputError(f"`quantity` is {quantity!r}, which has no numbers to draw")
-    keys = _keys(sweep, over, where)
-    chosen = _chosen(sweep, where)
-    places = list(zip(*(sweep[key][chosen] for key in keys), strict=True))
+    keys = _keys(column, parameters, over, where)
+    chosen = _chosen(column, parameters, where)
+    places = list(zip(*(column(key)[chosen] for key in keys), strict=True))
     if len(set(places)) < len(places):
-        others = [key for key in sweep.parameters if key not in keys]
+        others = [key for key in parameters if key not in keys]
         raise InputError(f"several cases have the same {' and '.join(keys)}; choose some by `where`, with values of {', '.join(others)}")
     axes = new_axes(axes, (6.4, 4.4))
-    unit = sweep.units.get(quantity)
     label = quantity.replace("_", " ") + (f" ({unit})" if unit else "")
     if len(keys) == 1:
-        _curve(axes, sweep[keys[0]][chosen], values[chosen])
+        _curve(axes, column(keys[0])[chosen], values[chosen])
         axes.set_ylabel(label)
     else:
-        _map(axes, [sweep[key][chosen] for key in keys], values[chosen], label)
+        _map(axes, [column(key)[chosen] for key in keys], values[chosen], label)
         axes.set_ylabel(keys[1])
     axes.set_xlabel(keys[0])
     save_figure(root(axes), file)
     return axes
 
 
-def _keys(sweep: Sweep, over: object, where: object) -> list[str]:
+def _keys(column: Column, parameters: Sequence[str], over: object, where: object) -> list[str]:
     """Give one or two keys."""
     fixed = where if isinstance(where, Mapping) else {}
-    varied = [key for key in sweep.parameters if len(set(sweep[key])) > 1 and key not in fixed] or list(sweep.parameters[:1])
+    varied = [key for key in parameters if len(set(column(key))) > 1 and key not in fixed] or list(parameters[:1])
     several = isinstance(over, Sequence) and not isinstance(over, str)
     given: list[Any] = varied if over is None else list(over) if several else [over]  # type: ignore[call-overload]
     keys = [str(key) for key in given]
     for key in keys:
-        if key not in sweep.parameters:
-            raise InputError(f"`over` names {key!r}; the keys that are varied are {', '.join(sweep.parameters)}")
+        if key not in parameters:
+            raise InputError(f"`over` names {key!r}; the keys that are varied are {', '.join(parameters)}")
     if len(keys) not in (1, 2) or len(set(keys)) < len(keys):
         raise InputError(f"`over` names {len(keys)} keys, {', '.join(keys)}; give one or two different ones, and values of the others by `where`")
     return keys
 
 
-def _chosen(sweep: Sweep, where: object) -> NDArray[np.bool_]:
+def _chosen(column: Column, parameters: Sequence[str], where: object) -> NDArray[np.bool_]:
     """Tell which cases have the values of ``where``."""
-    chosen = np.ones(len(sweep), bool)
+    chosen = np.ones(len(column("case")), bool)
     if where is None:
         return chosen
     if not isinstance(where, Mapping):
         raise wrong("where", where, "a dict with a value for each key")
     for key, value in where.items():
-        if key not in sweep.parameters:
-            raise InputError(f"`where` names {key!r}; the keys that are varied are {', '.join(sweep.parameters)}")
-        chosen &= sweep[key] == value
+        if key not in parameters:
+            raise InputError(f"`where` names {key!r}; the keys that are varied are {', '.join(parameters)}")
+        chosen &= column(key) == value
     if not chosen.any():
         raise InputError(f"no case has the values in `where`: {dict(where)}")
     return chosen

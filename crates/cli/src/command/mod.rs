@@ -19,7 +19,7 @@ mod simulate;
 mod sweep;
 mod verify;
 
-use crate::args::{Arguments, Command, NEEDS_PYTHON, PLOT_NEEDS_PYTHON, lacks_steps};
+use crate::args::{Arguments, Command, PLOT_NEEDS_PYTHON, STUDIES, lacks_steps};
 use crate::exit::{BAD_INPUT, DONE, FAILED, INTERRUPTED, code};
 use crate::progress::Watch;
 use crate::stop::Stop;
@@ -83,9 +83,9 @@ where
             Command::Info(arguments) => info::command(&arguments, console),
             Command::Export(arguments) => export::command(&arguments, console),
             Command::Recover(arguments) => recover::command(&arguments, console),
-            // The command of the Python package does these.
+            // The command of the Python package does this.
             Command::Plot(_) => Ok(console.refuse(PLOT_NEEDS_PYTHON)),
-            Command::Reproduce(_) => Ok(console.refuse(NEEDS_PYTHON)),
+            Command::Reproduce(_) => Err(Failure::Argument(STUDIES.to_string())),
         },
         Err(error) => return clap_says(&error, console),
     };

@@ -263,18 +263,20 @@ fn a_device_is_no_case() {
 }
 
 #[test]
-fn the_help_of_commands_in_python_names_the_package() {
+fn the_help_of_commands_in_python_names_their_place() {
     let bench = Bench::new(BLOCK);
-    for arguments in [["reproduce", "table1", "--small"], ["plot", "case.toml", "--kind"]] {
+    let plot = (["plot", "case.toml", "--kind"], "`percute plot` needs the Python package", 1);
+    let reproduce = (["reproduce", "table1", "--small"], "the studies of the evidence are not installed", 2);
+    for (arguments, why, code) in [plot, reproduce] {
         let command = arguments[0];
         for flag in ["--help", "-h"] {
             let help = bench.percute(&[command, flag]);
             assert!(help.status.success() && help.stderr.is_empty(), "{command} {flag}: {}", stderr(&help));
-            assert!(stdout(&help).contains("needs the Python package"), "{command} {flag}: {}", stdout(&help));
+            assert!(stdout(&help).contains(why), "{command} {flag}: {}", stdout(&help));
         }
         let refused = bench.percute(&arguments);
-        assert_eq!(refused.status.code(), Some(1));
-        assert!(stderr(&refused).starts_with(&format!("error: `percute {command}` needs the Python package")));
+        assert_eq!(refused.status.code(), Some(code));
+        assert!(stderr(&refused).starts_with(&format!("error: {why}")), "{}", stderr(&refused));
     }
 }
 

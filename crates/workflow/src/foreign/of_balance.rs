@@ -16,7 +16,7 @@ use percute_core::history::{SinkError, Step};
 const FEW: usize = 8;
 const FEW_OF_ALL: f64 = 0.1;
 /// Contact forces of another step must make a residual within its limit so many times smaller. Those of correct
-/// histories, also in single precision, make it larger (python/percute/verification/consistency.py).
+/// histories, also in single precision, make it larger (studies/consistency.py).
 const SHIFTED: f64 = 3.0;
 /// The residual from which on the displacements have nothing to do with the mesh.
 const ALL_WRONG: f64 = 0.3;

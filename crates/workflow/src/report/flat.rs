@@ -1,7 +1,7 @@
 //! Elements that are nearly flat, where they make most of an estimate.
 //!
 //! Next to an angle near 180° admissible stress costs far more than the error of the simulation. The table of
-//! `docs/verdict.md`, by python/percute/verification/flat_elements.py, has circles and ellipses mapped from squares,
+//! `docs/verdict.md`, by studies/flat_elements.py, has circles and ellipses mapped from squares,
 //! and blocks with a node that was moved almost onto the opposite edge: where elements with an angle above 150° and
 //! those around them have less than 0.35 of the squared mean error, the estimate is up to 4.6 times the true error;
 //! where they have more, it is up to 5.6 times that. Random bodies have 0.97 to 1.25.

@@ -1,6 +1,6 @@
 //! What small strains, small rotations and the linear law suppose, and what a run does.
 //!
-//! python/percute/verification/finite.py compares with the motion of finite strains: see docs/verdict.md.
+//! studies/finite.py compares with the motion of finite strains: see docs/verdict.md.
 
 use crate::deformation::{BodyDeformation, Deformation, Extreme, MaterialStress};
 use crate::message::{percent, short, trimmed};

@@ -2,7 +2,7 @@
 
 /// Nature of the error, for all reconstructions, and the source of the evidence on it.
 const MEASURE: &str = "An estimate, not a strict bound: it contains the errors of space, time, mass and contact \
-                       (`percute reproduce`, docs/verification.md).";
+                       (docs/verification.md).";
 
 /// Meaning of the error. The [`Verdict`](super::Verdict) has its effectivity index in cases like the one at hand.
 #[must_use]

@@ -6,7 +6,7 @@ use percute_core::mesh::AnyMesh;
 use serde::Serialize;
 
 /// Elements whose longest edge is more than so many times as long as the shortest one are long. The evidence has up to
-/// 2.9, a trapezoid; python/percute/verification/beyond.py has indices of 1.2 at 3.0, 1.3 at 4.1 and 4.2 at 13.
+/// 2.9, a trapezoid; studies/beyond.py has indices of 1.2 at 3.0, 1.3 at 4.1 and 4.2 at 13.
 pub(super) const LONG: f64 = 3.0;
 /// So many are named.
 const NAMED: usize = 3;

@@ -11,7 +11,7 @@ use percute_core::problem::AnyProblem;
 
 /// A traction that would reach its largest value within so many critical steps of the largest element is a jump for the
 /// mesh, on bars and in plane bodies: with shorter rises, the index of the mean is below that of bodies that vibrate.
-/// python/percute/verification/beyond.py: 0.83 to 0.94 for up to 16 steps on a bar, 0.95 and less for 3 in a block.
+/// studies/beyond.py: 0.83 to 0.94 for up to 16 steps on a bar, 0.95 and less for 3 in a block.
 const STEEP: [f64; 2] = [24.0, 8.0];
 /// Tractions below this part of the stress of the impact, ρ c V, may jump: they have 1 % of its energy.
 const LITTLE: f64 = 0.1;

@@ -1,5 +1,5 @@
 //! Effectivity indices of the evidence, situation by situation. Each range has its source beside it: a table that
-//! `percute reproduce` writes. The tests of the evidence compare the ranges with its page.
+//! `python -m studies` writes. The tests of the evidence compare the ranges with its page.
 
 use super::facts::Facts;
 use super::touches::Touches;
@@ -28,7 +28,7 @@ pub(super) const LONG: f64 = 5.0;
 /// 1.25.
 const SHORT: (f64, f64, usize) = (1.1, 0.45, 8);
 
-/// The most elements of surfaces that slide in contact for an index above 1.6, python/percute/verification/struck.py.
+/// The most elements of surfaces that slide in contact for an index above 1.6, studies/struck.py.
 const FEW: usize = 2;
 
 /// Corners of two planes that open by less (degrees) have an index of their own.
@@ -50,7 +50,7 @@ pub(super) const RULES: [Rule; 28] = [
         situation: "impacts with `published`",
         doubt: Some("`published` drops forces; estimate with `corrected`"),
     },
-    // See `report/flat.rs`; python/percute/verification/flat_elements.py.
+    // See `report/flat.rs`; studies/flat_elements.py.
     Rule { applies: |f| f.flat, range: [0.95, 10.0], situation: "meshes with nearly flat elements", doubt: None },
     // effectivity-turning.csv, closest.
     Rule {
@@ -60,7 +60,7 @@ pub(super) const RULES: [Rule; 28] = [
         doubt: None,
     },
     // effectivity-turning.csv, time-steps-mass.csv: bodies that vibrate freely. 90 random bodies over 1 to 30 periods
-    // have 0.81 to 1.39 (python/percute/verification/random_bodies, vibration).
+    // have 0.81 to 1.39 (studies/random_bodies, vibration).
     Rule {
         applies: |f| f.contact.touches == Touches::None,
         range: [0.8, 1.4],
@@ -74,7 +74,7 @@ pub(super) const RULES: [Rule; 28] = [
         situation: "impacts just after the first touch",
         doubt: None,
     },
-    // python/percute/verification/corners.py: triangles with an obtuse angle have up to 2.4 at 45 degrees, 4.4 at 30
+    // studies/corners.py: triangles with an obtuse angle have up to 2.4 at 45 degrees, 4.4 at 30
     // and 8.5 at 20.
     Rule {
         applies: |f| f.is_cornered() && f.corner.is_some_and(|opening| opening < ACUTE),
@@ -111,7 +111,7 @@ pub(super) const RULES: [Rule; 28] = [
         situation: "several contact phases",
         doubt: Some("after several contacts, small errors of timing dominate"),
     },
-    // python/percute/verification/struck.py has 0.90 to 1.66, random_strikes.py 1.01 to 1.85.
+    // studies/struck.py has 0.90 to 1.66, random_strikes.py 1.01 to 1.85.
     Rule {
         applies: Facts::slides_on_little,
         range: [0.83, 2.2],
@@ -119,7 +119,7 @@ pub(super) const RULES: [Rule; 28] = [
         doubt: None,
     },
     // crates/estimator/tests/sliding_blocks.rs has 1.08 to 1.37 for surfaces that slide, two_blocks.rs 1.07 to 1.15 for
-    // blocks of metals. python/percute/verification/two_bodies.py has 0.86 to 1.66 for soft and skewed bodies, with
+    // blocks of metals. studies/two_bodies.py has 0.86 to 1.66 for soft and skewed bodies, with
     // edges beside inclined sides, at 0.4 m/s as well.
     Rule {
         applies: |f| f.bodies && f.dimension == 2,
@@ -157,7 +157,7 @@ pub(super) const RULES: [Rule; 28] = [
         situation: "bodies that touch at several places",
         doubt: Some("at a second contact zone, a small error of timing is a large error of the motion"),
     },
-    // python/percute/verification/durations.py: the index falls in the first passage, and grows slowly after it.
+    // studies/durations.py: the index falls in the first passage, and grows slowly after it.
     Rule {
         applies: Facts::has_just_begun,
         range: [0.7, 3.5],
@@ -255,7 +255,7 @@ impl Facts {
     }
 
     /// Whether a flat impact ends soon after its first contact and is resolved well in space, with ordinary steps.
-    /// Plates that fall flat have up to 1.5, python/percute/verification/beyond.py.
+    /// Plates that fall flat have up to 1.5, studies/beyond.py.
     fn is_short(&self) -> bool {
         let (passages, steps, edges) = SHORT;
         !self.is_thin() && self.passages <= passages && self.courant >= steps && self.elements_in_contact >= edges
@@ -266,7 +266,7 @@ impl Facts {
 pub(super) fn outside(facts: &Facts) -> Option<&'static str> {
     let touches_at_a_point = matches!(facts.contact.touches, Touches::Corner | Touches::Curve);
     match () {
-        // python/percute/verification/penalties.py: 1.02 to 2.97 in flat and tilted impacts.
+        // studies/penalties.py: 1.02 to 2.97 in flat and tilted impacts.
         () if facts.by_a_penalty => Some(PENALTY),
         () if facts.acts_late() => Some(LATE),
         () if facts.at_end && touches_at_a_point => Some(AT_END),

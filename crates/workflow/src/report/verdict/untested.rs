@@ -17,7 +17,7 @@ pub(super) const FRICTION: f64 = 0.5;
 /// indices up to 1.94 after 12 and 13.
 const LONGEST: f64 = 10.0;
 /// The fewest wave passages after the first touch that the evidence has: runs of 0.1 passages and whole steps in
-/// python/percute/verification/durations.py, of 0.084 at least.
+/// studies/durations.py, of 0.084 at least.
 const SHORTEST: f64 = 0.08;
 
 /// Residuals of the balance in a history of another program above this share of the largest term may double the
@@ -26,7 +26,7 @@ const SHORTEST: f64 = 0.08;
 const UNBALANCED: f64 = 5e-4;
 
 /// Impedances of neighbours in a plane body, and critical steps of the elements of a bar, that differ by more make an
-/// index outside the ranges. The evidence has 2.9 and 2. python/percute/verification/beyond.py has 1.23 for 30 and 2.3
+/// index outside the ranges. The evidence has 2.9 and 2. studies/beyond.py has 1.23 for 30 and 2.3
 /// for 100, and on bars 0.88 for 5, 0.79 for 10 and 2.4 for 51.
 const IMPEDANCES: f64 = 30.0;
 /// See there.
