@@ -83,7 +83,7 @@ def compute(section: Section, resolution: Resolution) -> None:
         attempts.add(name, description)
     section.add(
         "The default `corrected` is made of several parts (see the page on reconstructions). Each is left out in turn here, and the other "
-        "reconstructions stand beside it: e/e_Ex on a part of the grid of bars, and e/e_ref on plane bodies.",
+        "reconstructions are given with it: e/e_Ex on a part of the grid of bars, and e/e_ref on plane bodies.",
         Figure(
             "ablation",
             "Effectivity index of the largest error [15] over refinement (both axes logarithmic), a panel for each body, a curve for each "

@@ -168,7 +168,7 @@ def runs() -> Iterator[Run]:
 
 def main() -> None:
     """Print the table."""
-    print("| | run | index of sup | of mean | not tested |\n|---|---|---|---|---|")
+    print("| | run | index of sup | of mean | outside the tested range |\n|---|---|---|---|---|")
     for run in runs():
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

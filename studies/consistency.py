@@ -19,7 +19,7 @@ import percute as pc
 FIGURES = ("balance", "initial_velocity", "cone", "slip", "gap_under_force", "penetration", "opposite", "plane", "touching")
 KINDS = ("float64", "float32")
 ARRAYS = tuple(product(KINDS, ("with forces", "forces derived")))
-SLIDING = tuple(product(KINDS, ("surfaces that slide",)))
+SLIDING = tuple(product(KINDS, ("non-matching interfaces",)))
 END, GAP, FASTEST = 13e-6, 2e-4, 400.0
 """Time (s) and gap (m) at the largest speed (m/s); slower bodies start nearer."""
 

@@ -23,7 +23,7 @@ TITLE = "Accuracy of the estimate"
 INTRODUCTION = (
     "percute estimates the error of impact simulations by the constitutive relation error of Louf, Gallimard and Pelle. "
     "This page shows how close the estimate is to the true error, and where it is not. All numbers and figures come from the "
-    "program that wrote the page; published values stand beside them and are marked. Numbers in brackets, like [15], are "
+    "program that wrote the page; published values are given with them and are marked. Numbers in brackets, like [15], are "
     "equations of the paper. Units are SI. Energies of plane bodies are those of 1 m of thickness, so that errors are "
     "in J^½. Long tables are in CSV files, which `python -m studies` writes beside the page."
 )

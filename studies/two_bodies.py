@@ -40,8 +40,8 @@ class Pair:
     @property
     def name(self) -> str:
         """Say what strikes what."""
-        diagonal = f", leaning by {abs(self.skew):g}°, cut along the {'longer' if self.skew > 0 else 'shorter'} diagonal" if self.skew else ""
-        return f"{self.upper} on {self.lower}{diagonal}{'' if self.facing else ', surfaces that slide'}"
+        diagonal = f", inclined by {abs(self.skew):g}°, cut along the {'longer' if self.skew > 0 else 'shorter'} diagonal" if self.skew else ""
+        return f"{self.upper} on {self.lower}{diagonal}{'' if self.facing else ', non-matching interface'}"
 
     def problem(self, refinements: int = 0) -> pc.Problem:
         """Give the problem."""

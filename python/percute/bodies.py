@@ -100,7 +100,7 @@ class Interface:
 
     def __post_init__(self) -> None:
         if self.groups is not None and self.bodies is not None:
-            raise InputError("`groups` stands beside `bodies`, which has the edges looked for; leave one of the two out")
+            raise InputError("`groups` cannot be given together with `bodies`, for which the edges are found; give one of the two")
         if self.groups is not None:
             object.__setattr__(self, "groups", _two("groups", self.groups, "groups of edges, as in ('anvil.top', 'hammer.bottom')"))
         if self.bodies is not None:

@@ -175,7 +175,7 @@ class ErrorResults(Immutable):
 
     @cached_property
     def sliding(self) -> tuple[SlidingEstimate, ...]:
-        """The estimate at surfaces that slide along each other, in the order of ``problem.contacts``; empty without any."""
+        """The estimate at non-matching interfaces, in the order of ``problem.contacts``; empty without any."""
         return records(SlidingEstimate, ({"couple": None, **each} for each in self._verdict.get("sliding", ())))
 
     @property

@@ -78,7 +78,7 @@ class Impacts:
 
 @dataclass(frozen=True, kw_only=True)
 class SlidingEstimate:
-    """The estimate at two surfaces that slide along each other."""
+    """The estimate at a non-matching interface."""
 
     groups: tuple[str, str]
     """The groups of edges of both bodies."""

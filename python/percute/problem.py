@@ -123,7 +123,7 @@ class Problem(Immutable):
         if several:
             for name, given, instead in (("mesh", mesh, "mesh"), ("material", material, "material"), ("initial_velocity", initial_velocity, "velocity")):
                 if given is not None:
-                    raise InputError(f"`{name}` stands beside `bodies`; each Body has its own `{instead}`")
+                    raise InputError(f"`{name}` cannot be given together with `bodies`; each Body has its own `{instead}`")
             mesh, material, initial_velocity = join(several)
         mesh = instance("mesh", mesh, Mesh)
         self._mesh = mesh

@@ -93,7 +93,7 @@ def test_ctrl_c_keeps_the_runs() -> None:
 def test_a_polygon_in_the_place_of_a_curve_is_warned_of() -> None:
     disc = pc.Mesh.disc(0.025, rings=6)
     problem = pc.Problem(disc, material=MATERIAL, initial_velocity=(0.0, -4.0), obstacles=[pc.Plane(point=(0, -0.025001), normal=(0, 1), friction=0.2)])
-    with pytest.warns(pc.InputWarning, match="turns by up to 10° at nodes that touch"):
+    with pytest.warns(pc.InputWarning, match="turns by up to 10° at contact nodes"):
         found = pc.adapt(problem, target=0.49, end=30e-6, courant=0.9, runs=2)
     assert len(found.warnings) == 1
 

@@ -1,4 +1,4 @@
-"""Runs beyond the evidence: the verdict names what is not tested, and the page has the indices of its command."""
+"""Runs beyond the evidence: the verdict names what is outside the tested range, and the page has the indices of its command."""
 
 import re
 from pathlib import Path

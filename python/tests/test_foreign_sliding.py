@@ -174,7 +174,7 @@ def test_samples_are_refused(slid: Case) -> None:
     problem, ours = slid
     held = {name: np.asarray(getattr(ours, name))[::3] for name in ("time", "displacement", "reaction", "velocity", "acceleration")}
     for lacks in ((), ("velocity", "acceleration")):
-        with pytest.raises(pc.InputError, match="give all steps, at most .* contact forces of surfaces that slide are not derived between samples"):
+        with pytest.raises(pc.InputError, match="give all steps, at most .* contact forces of non-matching interfaces are not derived between samples"):
             pc.estimate(given(problem, {name: value for name, value in held.items() if name not in lacks}))
 
 

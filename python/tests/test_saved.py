@@ -122,7 +122,7 @@ def test_other_commands_read_it(tmp_path: Path, block_history: pc.History) -> No
     with h5py.File(tmp_path / "a.vtkhdf", "r+") as file:
         assert "checkpoints" not in file["percute"]
         file["percute/complete"][()] = 0
-    with pytest.raises(pc.FileFormatError, match="its run cannot go on: another program has simulated it"):
+    with pytest.raises(pc.FileFormatError, match="its run cannot be resumed: another program has simulated it"):
         pc.resume(tmp_path / "a.vtkhdf")
     # Its name and its start are under the checksums.
     with h5py.File(tmp_path / "a.vtkhdf", "r+") as file:

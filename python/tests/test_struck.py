@@ -32,7 +32,7 @@ def test_how_bodies_that_slide_touch(problem: Problem, touches: str) -> None:
     estimate, found = verdict(problem(20.0, 0), 6e-6)
     assert found["touches"] == touches
     assert found["effectivity"] == STRUCK and estimate.trust == "limited"
-    assert "corners, curves and parts of an edge on surfaces that slide" in found["text"][0]
+    assert "corners, curves and parts of an edge on non-matching interfaces" in found["text"][0]
     assert found["untested"] == []
 
 
@@ -213,7 +213,7 @@ def test_a_run_without_contact_of_surfaces_that_slide_is_limited() -> None:
     problem = pc.Problem(struck.mesh, material=struck.material, contacts=struck.contacts, initial_velocity=velocity)
     estimate, found = verdict(problem, 8e-7)
     assert found["touches"] == "none" and estimate.trust == "limited"
-    assert found["untested"] == ["surfaces that slide without contact"]
+    assert found["untested"] == ["non-matching interfaces without contact"]
     assert found["text"][-1].startswith("Refine the mesh where the error is")
 
 
