@@ -7,7 +7,8 @@ use crate::mesh::Mesh;
 use crate::on_problem;
 use crate::problem::{Problem, ProblemRef};
 
-/// The state of a P1 element at an instant: strain and stress are constant in it. Components beyond the dimension are 0.
+/// The state of a P1 element at an instant: strain and stress are constant in it. Components beyond the dimension are
+/// 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElementState {
     dimension: usize,

@@ -12,8 +12,9 @@ use pyo3::prelude::*;
 /// Numbers of one element, from the rows of all nodes at an instant.
 type Numbers = fn(&AnyProblem, ElementId, &[f64], &mut Vec<f64>);
 
-/// A quantity of each element at instants: (instants, elements), of a tensor (instants, elements, dimension, dimension). `nodal` are
-/// velocities (m/s) for `kinetic_energy` and displacements (m) for the others, (instants, nodes, dimension).
+/// A quantity of each element at instants: (instants, elements), of a tensor (instants, elements, dimension,
+/// dimension). `nodal` are velocities (m/s) for `kinetic_energy` and displacements (m) for the others, (instants,
+/// nodes, dimension).
 #[pyfunction]
 pub(crate) fn element_field<'py>(
     py: Python<'py>,

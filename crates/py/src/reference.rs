@@ -48,7 +48,8 @@ pub(crate) fn errors_against_simulation<'py>(
     compared(py, &histories, (problem.problem.clone(), times), None, meshes, progress)
 }
 
-/// Compares histories with the steps of `kept`; without it, with a simulation of the reference, which may give a warning.
+/// Compares histories with the steps of `kept`; without it, with a simulation of the reference, which may give a
+/// warning.
 fn compared<'py>(
     py: Python<'py>,
     histories: &[PyRef<'_, HistoryData>],

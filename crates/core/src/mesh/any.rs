@@ -514,8 +514,8 @@ impl AnyMesh {
         on_mesh!(self, mesh => mesh.local_numbering())
     }
 
-    /// The part of this mesh that each part of another mesh of the same bodies is: [`Locator::matching`]. None for a mesh
-    /// of another dimension.
+    /// The part of this mesh that each part of another mesh of the same bodies is: [`Locator::matching`]. None for a
+    /// mesh of another dimension.
     #[must_use]
     pub fn matching_parts(&self, other: &Self) -> Option<Vec<usize>> {
         match (self, other) {

@@ -353,13 +353,13 @@ impl AnyProblem {
         on!(self, problem => problem.surface().sliding().iter().any(|sliding| sliding.slave().node_at(at).is_some()))
     }
 
-    /// Whether the contact condition of a node is its own: [`ContactSurface::leads`](crate::contact::ContactSurface::leads).
+    /// Whether the contact condition of a node is its own: [`crate::contact::ContactSurface::leads`].
     #[must_use]
     pub fn leads(&self, at: usize) -> bool {
         on!(self, problem => problem.surface().leads(at))
     }
 
-    /// The mass that a contact force moves (kg): [`ContactSurface::moved_mass`](crate::contact::ContactSurface::moved_mass).
+    /// The mass that a contact force moves (kg): [`crate::contact::ContactSurface::moved_mass`].
     #[must_use]
     pub fn moved_mass(&self, at: usize) -> f64 {
         on!(self, problem => problem.surface().moved_mass(at, problem.mass()))

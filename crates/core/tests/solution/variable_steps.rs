@@ -96,11 +96,11 @@ fn a_bar_stays_on_the_plane_and_rebounds() {
     let mut impulse = 0.0;
     for n in 0..=run.last() {
         let step = run.history.step(n).unwrap();
-        let gap = step.displacement::<2>()[0][0] + exact.gap;
+        let gap = step.displacement[0] + exact.gap;
         assert!(gap >= -2.0 * problem.contact_tolerance(), "step {n}: {gap}");
         assert!(!step.touching[0] || gap.abs() <= 2.0 * problem.contact_tolerance(), "step {n}: touching at {gap}");
         if n > 0 && n < run.last() {
-            impulse += step.reaction::<2>()[0][0] * 0.5 * (run.step(n - 1) + run.step(n));
+            impulse += step.reaction[0] * 0.5 * (run.step(n - 1) + run.step(n));
         }
     }
     let mass = exact.density * exact.section * exact.length;

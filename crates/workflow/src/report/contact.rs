@@ -92,44 +92,44 @@ impl ContactReport {
                 node: results.nodes[at].node.index(),
             }),
             time: results.instants.clone(),
-            total: ContactResultants::new(&results.total),
-            obstacles: results.obstacles.iter().map(|over_time| ContactResultants::new(over_time)).collect(),
+            total: ContactResultants::new(&results.total, results.dimension),
+            obstacles: results.obstacles.iter().map(|all| ContactResultants::new(all, results.dimension)).collect(),
             nodes: ContactNodes::new(results),
         })
     }
 }
 
 impl ContactResultants {
-    fn new(over_time: &[Resultant]) -> Self {
+    fn new(over_time: &[Resultant], dimension: usize) -> Self {
         let column = |of: fn(&Resultant) -> f64| over_time.iter().map(of).collect();
         Self {
-            force: over_time.iter().map(|r| r.force.to_vec()).collect(),
+            force: over_time.iter().map(|r| r.force[..dimension].to_vec()).collect(),
             normal_force: column(|r| r.normal_force),
-            impulse: over_time.iter().map(|r| r.impulse.to_vec()).collect(),
+            impulse: over_time.iter().map(|r| r.impulse[..dimension].to_vec()).collect(),
             area: column(|r| r.area),
             in_contact: over_time.iter().map(|r| r.in_contact).collect(),
             slipping: over_time.iter().map(|r| r.slipping).collect(),
             friction_energy: column(|r| r.friction_energy),
-            centre: over_time.iter().map(|r| r.centre.map(|x| x.to_vec())).collect(),
+            centre: over_time.iter().map(|r| r.centre.map(|x| x[..dimension].to_vec())).collect(),
         }
     }
 }
 
 impl ContactNodes {
     fn new(results: &ContactResults) -> Self {
-        let ContactResults { nodes, summary, .. } = results;
+        let &ContactResults { dimension, ref nodes, ref summary, .. } = results;
         let column = |of: fn(&NodeSummary) -> f64| summary.iter().map(of).collect();
         Self {
             node: nodes.iter().map(|place| place.node.index()).collect(),
             obstacle: nodes.iter().map(|place| place.obstacle).collect(),
-            point: nodes.iter().map(|place| place.point.to_vec()).collect(),
+            point: nodes.iter().map(|place| place.point[..dimension].to_vec()).collect(),
             area: nodes.iter().map(|place| place.area).collect(),
             first_touch: summary.iter().map(|s| s.first_touch).collect(),
             time_in_contact: column(|s| s.time_in_contact),
             peak_normal_force: column(|s| s.peak_normal_force),
             time_of_peak: summary.iter().map(|s| s.time_of_peak).collect(),
             peak_pressure: column(|s| s.peak_pressure),
-            impulse: summary.iter().map(|s| s.impulse.to_vec()).collect(),
+            impulse: summary.iter().map(|s| s.impulse[..dimension].to_vec()).collect(),
             friction_energy: column(|s| s.friction_energy),
         }
     }
