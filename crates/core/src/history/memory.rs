@@ -25,8 +25,8 @@ pub struct History {
 pub enum MemoryError {
     /// No room for all steps.
     #[error(
-        "{bytes} bytes for {steps} steps of {numbers} displacements cannot be allocated in memory; store the history in \
-         a file, whole or in part (`every`)"
+        "{bytes} bytes for {steps} steps of {numbers} displacements cannot be allocated in memory; store the history \
+         in a file, whole or in part (`every`)"
     )]
     Full {
         /// Bytes wanted.
