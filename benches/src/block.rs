@@ -4,7 +4,7 @@ use crate::{Failure, Order};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::material::{Elastic, MaterialError};
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, TriangleProblem};
 
 /// Cells along x and y: 640, 40 960 and 655 360 elements.
@@ -72,12 +72,12 @@ impl Block {
 ///
 /// # Errors
 /// A mesh of another body.
-pub fn problem(mesh: TriangleMesh, motion: Motion, gap: f64) -> Result<TriangleProblem, Failure> {
+pub fn problem(mesh: Mesh, motion: Motion, gap: f64) -> Result<TriangleProblem, Failure> {
     // ±SPEED at the sides, so that strain starts at once.
     let spread = |p: &[f64; 2]| [SPEED * (p[0] / 0.025 - 1.0), SPEED * (1.0 - p[1] / 0.02)];
     let velocity = match motion {
         Motion::Impact => Initial::Uniform([SPEED, -SPEED]),
-        Motion::Free => Initial::Nodal(mesh.points().iter().map(spread).collect()),
+        Motion::Free => Initial::Nodal(mesh.points_in::<2>().iter().map(spread).collect()),
     };
     let mut builder = TriangleProblem::builder(mesh).material(material()?).initial_velocity(velocity);
     if motion == Motion::Impact {

@@ -17,7 +17,7 @@ impl Csr {
     #[must_use]
     pub fn assemble(problem: &TriangleProblem) -> Self {
         let mut rows: Vec<Vec<(u32, f64)>> = vec![Vec::new(); 2 * problem.mesh().node_count()];
-        for (e, cell) in problem.mesh().cells().iter().enumerate() {
+        for (e, cell) in problem.mesh().nodes_of::<3>().iter().enumerate() {
             let matrix = element_matrix(problem, ElementId::new(e));
             for (i, row) in cell.iter().enumerate() {
                 for (j, column) in cell.iter().enumerate() {
@@ -54,7 +54,7 @@ impl Csr {
 
 /// The stiffness matrix of an element (N/m): its columns are the forces of unit displacements.
 fn element_matrix(problem: &TriangleProblem, element: ElementId) -> [[f64; 6]; 6] {
-    let (volume, gradients) = (problem.volume(element), problem.mesh().cell_geometry(element).gradients);
+    let (volume, gradients) = (problem.volume(element), problem.mesh().geometry::<2, 3>(element).gradients);
     let mut matrix = [[0.0; 6]; 6];
     for j in 0..3 {
         for c in 0..2 {

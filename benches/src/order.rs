@@ -1,7 +1,7 @@
 //! The meshes of the block: structured, shuffled, unstructured.
 
 use crate::Failure;
-use percute_core::mesh::{ElementGroups, FacetGroups, TriangleMesh};
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
 use percute_testkit::{Random, random_rectangle};
 use std::str::FromStr;
 
@@ -40,11 +40,11 @@ impl Order {
     ///
     /// # Errors
     /// No cells, or no triangulation without small angles.
-    pub fn mesh(self, [nx, ny]: [usize; 2]) -> Result<TriangleMesh, Failure> {
+    pub fn mesh(self, [nx, ny]: [usize; 2]) -> Result<Mesh, Failure> {
         let [width, height] = SIDES;
         match self {
-            Self::Structured => Ok(TriangleMesh::rectangle(width, height, nx, ny)?),
-            Self::Shuffled => shuffled(&TriangleMesh::rectangle(width, height, nx, ny)?),
+            Self::Structured => Ok(Mesh::rectangle(width, height, nx, ny)?),
+            Self::Shuffled => shuffled(&Mesh::rectangle(width, height, nx, ny)?),
             Self::Delaunay => Ok(random_rectangle(width, height, nx, SEED)?),
         }
     }
@@ -60,16 +60,16 @@ impl FromStr for Order {
 }
 
 /// The mesh with nodes and elements in random order.
-fn shuffled(mesh: &TriangleMesh) -> Result<TriangleMesh, Failure> {
+fn shuffled(mesh: &Mesh) -> Result<Mesh, Failure> {
     let mut random = Random::new(SEED);
     let new_node = random.permutation(mesh.node_count());
     let mut points = vec![[0.0; 2]; mesh.node_count()];
-    for (point, &new) in mesh.points().iter().zip(&new_node) {
+    for (point, &new) in mesh.points_in::<2>().iter().zip(&new_node) {
         points[new] = *point;
     }
     let elements = random.permutation(mesh.element_count());
-    let cells: Vec<_> = elements.iter().map(|&e| mesh.cells()[e].map(|node| new_node[node.index()])).collect();
-    Ok(TriangleMesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new())?)
+    let cells: Vec<_> = elements.iter().map(|&e| mesh.nodes_of::<3>()[e].map(|node| new_node[node.index()])).collect();
+    Ok(Mesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new())?)
 }
 
 #[cfg(test)]
@@ -89,8 +89,8 @@ mod tests {
     fn shuffling_keeps_the_triangles() {
         let centroids = |order: Order| {
             let mesh = order.mesh([5, 4]).unwrap();
-            let places = mesh.cells().iter().map(|cell| {
-                let sum = |c: usize| cell.iter().map(|n| mesh.points()[n.index()][c]).sum::<f64>();
+            let places = mesh.nodes_of::<3>().iter().map(|cell| {
+                let sum = |c: usize| cell.iter().map(|n| mesh.points_in::<2>()[n.index()][c]).sum::<f64>();
                 // Micrometres: neighbouring centroids are 3 mm apart.
                 [0, 1].map(|c| (sum(c) / 3.0 * 1e6).round() as i64)
             });

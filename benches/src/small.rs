@@ -4,7 +4,7 @@ use crate::block::{COURANT, material};
 use crate::{Block, Failure};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, TriangleProblem};
 
 /// Cells along x and y of a block of 50 × 40 mm.
@@ -34,10 +34,11 @@ impl Small {
         if self == Self::Flat { [0.0, 400.0, 1e-4] } else { [10.0, 4.0, 1e-6] }
     }
 
-    fn mesh(self) -> Result<TriangleMesh, Failure> {
-        let mut mesh = TriangleMesh::rectangle(0.05, 0.04, CELLS[0], CELLS[1])?;
+    fn mesh(self) -> Result<Mesh, Failure> {
+        let mut mesh = Mesh::rectangle(0.05, 0.04, CELLS[0], CELLS[1])?;
         for _ in 0..if self == Self::Graded { GRADINGS } else { 0 } {
-            let at_corner = |e: usize| mesh.cells()[e].iter().any(|n| mesh.points()[n.index()] == [0.0; 2]);
+            let at_corner =
+                |e: usize| mesh.nodes_of::<3>()[e].iter().any(|n| mesh.points_in::<2>()[n.index()] == [0.0; 2]);
             mesh = mesh.refined_where(|e| at_corner(e.index()))?;
         }
         Ok(mesh)
@@ -76,7 +77,7 @@ mod tests {
             let [angle, speed, gap] = kind.impact();
             let (sin, cos) = angle.to_radians().sin_cos();
             let (_, displacement) = simulated(&block, steps, Some(1), wall).unwrap();
-            let points = block.problem.mesh().points().iter().zip(displacement.chunks_exact(2));
+            let points = block.problem.mesh().points_in::<2>().iter().zip(displacement.chunks_exact(2));
             let lowest = points.map(|(p, u)| sin * (p[0] + u[0]) + cos * (p[1] + u[1])).fold(f64::INFINITY, f64::min);
             assert!(speed * block.step * steps as f64 > 2.0 * gap, "{name}");
             // Rounding of places.

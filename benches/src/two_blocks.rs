@@ -4,7 +4,7 @@ use crate::block::{COURANT, material};
 use crate::{Block, Failure};
 use percute_core::contact::Interface;
 use percute_core::dynamics::critical_time_step;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_testkit::translated;
 
@@ -40,12 +40,12 @@ impl Contact {
 /// None with these numbers.
 pub fn two_blocks(contact: Contact) -> Result<Block, Failure> {
     let [width, height] = SIDES;
-    let lower = TriangleMesh::rectangle(width, height, CELLS[0], CELLS[1])?;
+    let lower = Mesh::rectangle(width, height, CELLS[0], CELLS[1])?;
     let cells = if contact == Contact::Sliding { OTHER_CELLS } else { CELLS };
-    let upper = TriangleMesh::rectangle(width, height, cells[0], cells[1])?;
+    let upper = Mesh::rectangle(width, height, cells[0], cells[1])?;
     let at = |gap: f64| -> Result<TriangleProblem, Failure> {
         let upper = translated(&upper, [0.0, height + gap])?;
-        let mesh = TriangleMesh::joined(&[("upper", &upper), ("lower", &lower)])?;
+        let mesh = Mesh::joined(&[("upper", &upper), ("lower", &lower)])?;
         let count = upper.node_count();
         let velocity = |i: usize| if i < count { [VELOCITY[0], -VELOCITY[1]] } else { [0.0, VELOCITY[1]] };
         let velocity = Initial::Nodal((0..mesh.node_count()).map(velocity).collect());

@@ -5,7 +5,7 @@
 
 use percute_benches::{Block, Failure, Motion, Order, estimated, problem, simulated, steps, wall};
 use percute_core::dynamics::critical_time_step;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_estimator::{Estimator, Options, Reconstruction, Sampling};
 use std::hint::black_box;
 
@@ -39,7 +39,7 @@ fn main() -> Result<(), Failure> {
 
 /// From a mesh to an estimator that waits for the first step; the critical step apart.
 fn setup(block: &Block) -> Result<(), Failure> {
-    let mesh = TriangleMesh::rectangle(0.05, 0.04, CELLS[0], CELLS[1])?;
+    let mesh = Mesh::rectangle(0.05, 0.04, CELLS[0], CELLS[1])?;
     let problem = problem(mesh, Motion::Impact, block.gap)?;
     let times = steps(block.step, 100)?;
     let options = Options { threads: Some(1), ..Options::default() };

@@ -128,8 +128,8 @@ fn write(block: &Block, request: &Request, words: &[&str], file: &str) -> Result
         }
         ["mesh", _] => {
             let mesh = block.problem.mesh();
-            let nodes = mesh.cells().as_flattened().iter().map(|node| node.index() as f64);
-            (mesh.points().as_flattened().iter().copied().chain(nodes).collect(), mesh.node_count().to_string())
+            let nodes = mesh.cell_rows().iter().map(|node| node.index() as f64);
+            (mesh.points().iter().copied().chain(nodes).collect(), mesh.node_count().to_string())
         }
         _ => return Err(format!("unknown line: {}", words.join(" ")).into()),
     };

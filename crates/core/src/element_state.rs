@@ -35,7 +35,7 @@ impl ElementState {
         displacement: &[[f64; D]],
     ) -> Self {
         let law = problem.material(element);
-        let gradient = displacement_gradient(problem.mesh(), element, displacement);
+        let gradient = displacement_gradient::<D, N>(problem.mesh(), element, displacement);
         let strain = std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * (gradient[a][b] + gradient[b][a])));
         Self {
             dimension: D,
@@ -87,11 +87,11 @@ fn in_space<const D: usize>(tensor: &Tensor<D>) -> Tensor<3> {
 /// ∂u_a/∂x_b of an element for these displacements of all nodes (m).
 #[must_use]
 pub fn displacement_gradient<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
+    mesh: &Mesh,
     element: ElementId,
     displacement: &[[f64; D]],
 ) -> Tensor<D> {
-    let (nodes, geometry) = (mesh.cells()[element.index()], mesh.cell_geometry(element));
+    let (nodes, geometry) = (mesh.nodes_of::<N>()[element.index()], mesh.geometry::<D, N>(element));
     let mut gradient = [[0.0; D]; D];
     // Against the first node: a translation of the body leaves no rounding.
     for k in 1..N {
@@ -109,7 +109,7 @@ pub fn displacement_gradient<const D: usize, const N: usize>(
 pub fn kinetic_energy<'p>(problem: impl Into<ProblemRef<'p>>, element: ElementId, velocity: &[f64]) -> f64 {
     fn of<const D: usize, const N: usize>(problem: &Problem<D, N>, element: ElementId, velocity: &[[f64; D]]) -> f64 {
         let mass = problem.material(element).density() * problem.volume(element) / N as f64;
-        let nodes = &problem.mesh().cells()[element.index()];
+        let nodes = &problem.mesh().nodes_of::<N>()[element.index()];
         0.5 * mass * nodes.iter().flat_map(|node| velocity[node.index()]).map(|v| v * v).sum::<f64>()
     }
     on_problem!(problem.into(), problem => of(problem, element, vectors(velocity)))

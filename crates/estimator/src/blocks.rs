@@ -55,7 +55,7 @@ const PART: usize = 8192;
 const STRIPS: usize = 4;
 
 /// The parts of a mesh with these strips, in order.
-pub(crate) fn parts<const D: usize, const N: usize>(mesh: &Mesh<D, N>, strips: &Strips) -> Vec<MeshPart> {
+pub(crate) fn parts(mesh: &Mesh, strips: &Strips) -> Vec<MeshPart> {
     let all = [mesh.node_count().div_ceil(BLOCK), mesh.element_count().div_ceil(BLOCK)];
     let ends = |strip: usize| match strip {
         0 => [0, 0],
@@ -127,10 +127,10 @@ impl Lists {
 }
 
 impl<const N: usize> ElementBlocks<N> {
-    pub(crate) fn new<const D: usize>(mesh: &Mesh<D, N>) -> Self {
+    pub(crate) fn new(mesh: &Mesh) -> Self {
         let mut places = vec![ABSENT; mesh.node_count()];
         let (mut nodes, mut local) = (Lists::new(), Vec::with_capacity(mesh.element_count()));
-        for cells in mesh.cells().chunks(BLOCK) {
+        for cells in mesh.nodes_of::<N>().chunks(BLOCK) {
             local.extend(cells.iter().map(|cell| cell.map(|node| nodes.place(node.index(), &mut places))));
             nodes.close(&mut places);
         }
@@ -148,7 +148,7 @@ impl<const N: usize> ElementBlocks<N> {
 }
 
 impl<const N: usize> StarBlocks<N> {
-    pub(crate) fn new<const D: usize>(mesh: &Mesh<D, N>) -> Self {
+    pub(crate) fn new(mesh: &Mesh) -> Self {
         let (mut node_places, mut element_places) =
             (vec![ABSENT; mesh.node_count()], vec![ABSENT; mesh.element_count()]);
         let mut blocks = Self {
@@ -168,7 +168,7 @@ impl<const N: usize> StarBlocks<N> {
             }
             blocks.elements.close(&mut element_places);
             for &element in blocks.elements.of(start / BLOCK) {
-                let cell = &mesh.cells()[element as usize];
+                let cell = &mesh.nodes_of::<N>()[element as usize];
                 blocks.local.push(cell.map(|node| blocks.nodes.place(node.index(), &mut node_places)));
             }
             blocks.nodes.close(&mut node_places);
@@ -204,13 +204,13 @@ impl<const N: usize> StarBlock<'_, N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::mesh::TriangleMesh;
+    use percute_core::mesh::Mesh;
     use percute_testkit::random_rectangle;
 
     /// Parts hold all blocks and strips once, in order, and the stars that their elements need come with them or
     /// before.
-    fn check(mesh: &TriangleMesh, fewest: usize) -> usize {
-        let strips = Strips::with_fewest(mesh.cells(), fewest);
+    fn check(mesh: &Mesh, fewest: usize) -> usize {
+        let strips = Strips::with_fewest(mesh.nodes_of::<3>(), fewest);
         let parts = parts(mesh, &strips);
         let (mut stars, mut elements, mut strip) = (0, 0, 0);
         for part in &parts {
@@ -219,7 +219,7 @@ mod tests {
             let of_blocks = part.elements.start * BLOCK..(part.elements.end * BLOCK).min(mesh.element_count());
             let of_strips = part.strips.clone().flat_map(|strip| strips.elements(strip));
             for e in of_blocks.chain(of_strips) {
-                assert!(mesh.cells()[e].iter().all(|node| node.index() < stars * BLOCK), "element {e}");
+                assert!(mesh.nodes_of::<3>()[e].iter().all(|node| node.index() < stars * BLOCK), "element {e}");
             }
         }
         let all = [mesh.node_count().div_ceil(BLOCK), mesh.element_count().div_ceil(BLOCK), strips.count()];
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn parts_have_the_stars_of_their_elements() {
-        let mesh = TriangleMesh::rectangle(1.0, 80.0, 12, 1200).unwrap();
+        let mesh = Mesh::rectangle(1.0, 80.0, 12, 1200).unwrap();
         assert_eq!((check(&mesh, 64), check(&mesh, 2100), check(&mesh, 20_000)), (4, 4, 1));
         // Without locality there is one strip.
         assert_eq!(check(&random_rectangle(1.0, 1.0, 12, 3).unwrap(), 16), 1);

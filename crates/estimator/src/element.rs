@@ -34,10 +34,10 @@ pub(crate) fn elements<const D: usize, const N: usize>(problem: &Problem<D, N>) 
     }
     let element = |(e, links): (usize, [u32; N])| {
         let id = ElementId::new(e);
-        let geometry = mesh.cell_geometry(id);
+        let geometry = mesh.geometry::<D, N>(id);
         let volume = problem.volume(id);
         Element {
-            nodes: mesh.cells()[e],
+            nodes: mesh.nodes_of::<N>()[e],
             gradients: geometry.gradients.map(|g| g.map(|x| volume * x)),
             volume,
             nodal_mass: problem.material(id).density() * volume / N as f64,

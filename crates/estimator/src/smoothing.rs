@@ -70,7 +70,7 @@ impl Smoothing {
         };
         let mut made =
             Self { bodies: Vec::new(), body_of_node, starts: Vec::new(), materials: Vec::new(), weights: Vec::new() };
-        match mesh.simplex().shape() {
+        match mesh.shape() {
             Shape::Bar => made.bodies = vec![Coefficients::BAR; mesh.parts()],
             Shape::Triangle => {
                 let asymmetry = made.asymmetry(problem);
@@ -89,7 +89,7 @@ impl Smoothing {
         for facet in mesh.facets() {
             if let Some(other) = facet.neighbour.filter(|other| laws[other.index()] == laws[facet.owner.index()]) {
                 let sum = &mut sums[self.body(facet.nodes[0])];
-                sum[0] += asymmetry_of_pair(mesh, [facet.owner, other], &facet.nodes).min(1.0);
+                sum[0] += asymmetry_of_pair::<D, N>(mesh, [facet.owner, other], facet.nodes).min(1.0);
                 sum[1] += 1.0;
             }
         }
@@ -173,7 +173,7 @@ impl Smoothing {
         element: ElementId,
         facet: FacetId,
     ) -> ElementId {
-        let (known, laws) = (&problem.mesh().facets()[facet.index()], problem.element_material());
+        let (known, laws) = (&problem.mesh().facet(facet), problem.element_material());
         let other = known.across(element);
         other.filter(|other| laws[other.index()] == laws[element.index()]).unwrap_or(element)
     }
@@ -187,18 +187,14 @@ impl Smoothing {
 
 /// By how much two triangles at an edge are not images of each other in its midpoint: ½|λ − (1, 1, −1)|² with the
 /// barycentric coordinates λ, in one of them, of the node that only the other one has; the mean of both ways.
-fn asymmetry_of_pair<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
-    pair: [ElementId; 2],
-    common: &[NodeId; D],
-) -> f64 {
+fn asymmetry_of_pair<const D: usize, const N: usize>(mesh: &Mesh, pair: [ElementId; 2], common: &[NodeId]) -> f64 {
     let apart = pair.map(|element| {
-        let cell = &mesh.cells()[element.index()];
+        let cell = &mesh.nodes_of::<N>()[element.index()];
         cell.iter().find(|node| !common.contains(node)).copied().unwrap_or(cell[0])
     });
     let one_way = |element: ElementId, own: NodeId, other: NodeId| {
-        let (cell, geometry) = (&mesh.cells()[element.index()], mesh.cell_geometry(element));
-        let [from, to] = [own, other].map(|node| mesh.points()[node.index()]);
+        let (cell, geometry) = (&mesh.nodes_of::<N>()[element.index()], mesh.geometry::<D, N>(element));
+        let [from, to] = [own, other].map(|node| mesh.points_in::<D>()[node.index()]);
         let square = |(node, gradient): (&NodeId, &[f64; D])| {
             // λ at the node of its own triangle plus its change from there.
             let (start, wanted) = if *node == own { (1.0, -1.0) } else { (0.0, 1.0) };
@@ -214,17 +210,17 @@ fn asymmetry_of_pair<const D: usize, const N: usize>(
 mod tests {
     use super::*;
     use percute_core::material::Elastic;
-    use percute_core::mesh::TriangleMesh;
+    use percute_core::mesh::Mesh;
 
-    fn of(mesh: TriangleMesh) -> Smoothing {
+    fn of(mesh: Mesh) -> Smoothing {
         let law = Elastic::plane_strain(70e9, 0.3, 2700.0, 1.0).unwrap();
-        Smoothing::new(&Problem::builder(mesh).material(law).build().unwrap())
+        Smoothing::new(&Problem::<2, 3>::builder(mesh).material(law).build().unwrap())
     }
 
     /// Parallelograms cut in two have no asymmetry.
     #[test]
     fn parallelograms_are_symmetric() {
-        let mesh = TriangleMesh::rectangle(3.0, 1.0, 5, 4).unwrap().mapped(|p| [p[0] + 0.4 * p[1], p[1]]).unwrap();
+        let mesh = Mesh::rectangle(3.0, 1.0, 5, 4).unwrap().mapped(|p| [p[0] + 0.4 * p[1], p[1]]).unwrap();
         let found = of(mesh).bodies[0];
         let even = Coefficients::of_triangles(0.0);
         assert!((found.nodes - even.nodes).abs() < 1e-14, "{found:?}");
@@ -249,7 +245,7 @@ mod tests {
                 (0..4).for_each(|k| cells.push([corners[k], corners[(k + 1) % 4], centre]));
             }
         }
-        let mesh = TriangleMesh::new(points, &cells, &Default::default(), &Default::default()).unwrap();
+        let mesh = Mesh::new(points, &cells, &Default::default(), &Default::default()).unwrap();
         let (halves, sides) = ((4 * n * n) as f64, (2 * n * (n - 1)) as f64);
         let q = halves / (halves + sides);
         assert!((of(mesh).bodies[0].nodes - (0.05 + 0.5 * q)).abs() < 1e-14);

@@ -25,6 +25,7 @@ use percute_core::material::Law;
 use percute_core::mesh::{Star, Strips};
 use percute_core::observer::StopFlag;
 use percute_core::problem::Problem;
+use percute_core::simplex::simplex;
 pub(crate) use solve::Smoothed;
 use solve::StarFields;
 use star_solver::{Compatibility, Ends};
@@ -77,9 +78,9 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
             contact_links.push(contact_links[contact_links.len() - 1] + links);
         }
         let (elements, loaded) = (crate::element::elements(problem), loaded.facets().len());
-        let crossing = problem.mesh().simplex().facets_around();
+        let crossing = simplex::<D, N>().facets_around();
         let (blocks, star_blocks) = (ElementBlocks::new(problem.mesh()), StarBlocks::new(problem.mesh()));
-        let strips = Strips::with_fewest(problem.mesh().cells(), STRIP);
+        let strips = Strips::with_fewest(problem.mesh().nodes_of::<N>(), STRIP);
         let parts = parts(problem.mesh(), &strips);
         let star_fields = Pool::new();
         Self {
@@ -111,7 +112,7 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
             return [0.0; D];
         }
         let slot = slot as usize;
-        let position = self.problem.mesh().facets()[facet.index()].position(node);
+        let position = self.problem.mesh().facet(facet).position(node);
         if slot < self.loaded {
             return level.load_moments[slot][position];
         }

@@ -2,7 +2,7 @@
 
 use crate::common::finer::indices;
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Between, Contact, Initial, TriangleProblem};
 use percute_testkit::translated;
 
@@ -72,20 +72,20 @@ impl Row {
     fn problem(&self, [lower, upper]: Cells) -> TriangleProblem {
         let width = 0.02 - 0.5 * SLIT;
         let block = |width: f64, cells: [usize; 2], at: [f64; 2]| {
-            translated(&TriangleMesh::rectangle(width, HEIGHT, cells[0], cells[1]).unwrap(), at).unwrap()
+            translated(&Mesh::rectangle(width, HEIGHT, cells[0], cells[1]).unwrap(), at).unwrap()
         };
         let blocks = [
             block(0.04, upper, [0.0, HEIGHT + GAP]),
             block(width + self.aside, lower, [0.0, 0.0]),
             block(width - self.aside, lower, [width + self.aside + SLIT, 0.0]),
         ];
-        let named: Vec<(&str, &TriangleMesh)> = ["upper", "left", "right"].into_iter().zip(&blocks).collect();
+        let named: Vec<(&str, &Mesh)> = ["upper", "left", "right"].into_iter().zip(&blocks).collect();
         let velocity = (0..3).flat_map(|k| vec![self.velocities[k.min(1)]; blocks[k].node_count()]).collect();
         let contact = |below: &str| {
             let groups = Between::Groups(["upper.bottom", below].map(str::to_string));
             Contact::new(2, groups, self.friction, None).unwrap()
         };
-        TriangleProblem::builder(TriangleMesh::joined(&named).unwrap())
+        TriangleProblem::builder(Mesh::joined(&named).unwrap())
             .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
             .initial_velocity(Initial::Nodal(velocity))
             .contact(contact("left.top"))

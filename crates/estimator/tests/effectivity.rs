@@ -4,7 +4,7 @@ use crate::common::{MESHES, assert_close, block};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::TriangleProblem;
 use percute_core::problem::{Initial, Problem};
@@ -116,15 +116,16 @@ struct Impact {
 impl Impact {
     fn problem(&self, level: usize) -> TriangleProblem {
         let mesh = if self.disc {
-            (0..level).fold(TriangleMesh::disc(0.02, 5).unwrap(), |mesh, _| mesh.refined().unwrap())
+            (0..level).fold(Mesh::disc(0.02, 5).unwrap(), |mesh, _| mesh.refined().unwrap())
         } else {
-            TriangleMesh::rectangle(0.05, 0.04, 5 << level, 4 << level).unwrap()
+            Mesh::rectangle(0.05, 0.04, 5 << level, 4 << level).unwrap()
         };
         let (sin, cos) = self.tilt.to_radians().sin_cos();
-        let lowest = mesh.points().iter().map(|p| p[0] * sin + p[1] * cos).fold(f64::INFINITY, f64::min) - self.gap;
+        let lowest =
+            mesh.points_in::<2>().iter().map(|p| p[0] * sin + p[1] * cos).fold(f64::INFINITY, f64::min) - self.gap;
         let plane = Obstacle::plane([sin * lowest, cos * lowest], [sin, cos], self.friction, None).unwrap();
         let law = if self.plane_strain { Elastic::plane_strain } else { Elastic::plane_stress };
-        Problem::builder(mesh)
+        Problem::<2, 3>::builder(mesh)
             .material(law(70e9, 0.3, 2700.0, 1.0).unwrap())
             .initial_velocity(Initial::Uniform(self.velocity))
             .obstacle(plane)

@@ -3,7 +3,7 @@
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -11,15 +11,15 @@ use percute_estimator::{Estimate, Estimator, Options};
 
 /// A bar of 60 × 12 mm that strikes with a corner at 12° and 4 m/s, the elements there bisected so many times.
 fn corner(times: usize) -> TriangleProblem {
-    let mut mesh = TriangleMesh::rectangle(0.06, 0.012, 20, 4).unwrap();
+    let mut mesh = Mesh::rectangle(0.06, 0.012, 20, 4).unwrap();
     for _ in 0..times {
-        let (cells, points) = (mesh.cells().to_vec(), mesh.points().to_vec());
+        let (cells, points) = (mesh.nodes_of::<3>().to_vec(), mesh.points_in::<2>().to_vec());
         let at_corner = |e: usize| cells[e].iter().any(|node| points[node.index()] == [0.0, 0.0]);
         mesh = mesh.refined_where(|e| at_corner(e.index())).unwrap();
     }
     let angle = 12.0_f64.to_radians();
     let normal = [angle.sin(), angle.cos()];
-    Problem::builder(mesh)
+    Problem::<2, 3>::builder(mesh)
         .material(Elastic::plane_strain(70e9, 0.33, 2700.0, 1.0).unwrap())
         .obstacle(Obstacle::plane(normal.map(|n| -1e-5 * n), normal, 0.0, None).unwrap())
         .initial_velocity(Initial::Uniform(normal.map(|n| -4.0 * n)))

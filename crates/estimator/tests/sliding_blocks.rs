@@ -3,7 +3,7 @@
 use crate::common::finer::indices;
 use percute_core::contact::Interface;
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_testkit::{rotated, translated};
 
@@ -117,13 +117,13 @@ const ROWS: [Row; 8] = [
 
 impl Row {
     fn problem(&self, [lower, upper]: Cells) -> TriangleProblem {
-        let block = |width: f64, cells: [usize; 2]| TriangleMesh::rectangle(width, HEIGHT, cells[0], cells[1]).unwrap();
+        let block = |width: f64, cells: [usize; 2]| Mesh::rectangle(width, HEIGHT, cells[0], cells[1]).unwrap();
         let upper = rotated(&block(self.width, upper), self.tilt.to_radians()).unwrap();
-        let low = upper.points().iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
+        let low = upper.points_in::<2>().iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
         let upper = translated(&upper, [self.aside, HEIGHT + self.gap - low]).unwrap();
-        let mesh = TriangleMesh::joined(&[("upper", &upper), ("lower", &block(0.04, lower))]).unwrap();
+        let mesh = Mesh::joined(&[("upper", &upper), ("lower", &block(0.04, lower))]).unwrap();
         let velocity = |i: usize| {
-            let far = (mesh.points()[i][1] - HEIGHT).abs() / HEIGHT;
+            let far = (mesh.points_in::<2>()[i][1] - HEIGHT).abs() / HEIGHT;
             self.velocities[usize::from(i >= upper.node_count())].map(|v| if self.smooth { far * v } else { v })
         };
         let aluminium = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();

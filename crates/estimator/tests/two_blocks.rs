@@ -3,7 +3,7 @@
 use crate::common::finer::indices;
 use percute_core::contact::Interface;
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, TriangleProblem};
 
 /// Blocks of 40 × 25 mm one above the other, plane stress, gaps of 50 µm; steps of 0.9 Δt_c.
@@ -67,14 +67,14 @@ const ROWS: [Row; 5] = [
 
 impl Row {
     fn problem(&self, cells: [usize; 2]) -> TriangleProblem {
-        let block = TriangleMesh::rectangle(0.04, HEIGHT, cells[0], cells[1]).unwrap();
+        let block = Mesh::rectangle(0.04, HEIGHT, cells[0], cells[1]).unwrap();
         let name = |k: usize| format!("block {k}");
         let count = self.blocks.len();
         let up = |k: usize| (count - 1 - k) as f64 * (HEIGHT + GAP);
         let blocks: Vec<_> =
             (0..count).map(|k| (name(k), block.clone().mapped(|p| [p[0], p[1] + up(k)]).unwrap())).collect();
         let named: Vec<_> = blocks.iter().map(|(name, block)| (name.as_str(), block)).collect();
-        let mesh = TriangleMesh::joined(&named).unwrap();
+        let mesh = Mesh::joined(&named).unwrap();
         let velocity = (0..mesh.node_count()).map(|i| self.blocks[i / block.node_count()].1).collect();
         let mut builder = TriangleProblem::builder(mesh).initial_velocity(Initial::Nodal(velocity));
         for (k, (steel, _)) in self.blocks.iter().enumerate() {

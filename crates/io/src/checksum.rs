@@ -1,6 +1,6 @@
 //! Checksums of stored numbers and texts.
 
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 
 /// A checksum of what was added to it. Each step maps its 64 bits one to one, so that a change of one number always
 /// changes it. A step spreads the change of any bit over many, so that the change of another number undoes it by chance
@@ -43,7 +43,7 @@ impl Checksum {
     }
 
     /// Adds a mesh: its points, elements and groups.
-    pub(crate) fn mesh(self, mesh: &AnyMesh) -> Self {
+    pub(crate) fn mesh(self, mesh: &Mesh) -> Self {
         let cells = mesh.cells().flatten().map(|node| node.index());
         let mut all = self.numbers(mesh.points()).indices(cells);
         for (name, members) in mesh.facet_groups() {

@@ -6,7 +6,7 @@ use crate::read::{Data, Opened, Part};
 use crate::write::{attribute, group, numbers, unit};
 use hdf5::Group;
 use hdf5::types::FixedAscii;
-use percute_core::mesh::{AnyMesh, ElementGroups, FacetRows};
+use percute_core::mesh::{ElementGroups, FacetRows, Mesh};
 
 /// Numbers and names of the elements in VTK, by dimension from 1.
 pub(crate) const VTK_TYPES: [(u8, &str); 2] = [(3, "VTK_LINE"), (5, "VTK_TRIANGLE")];
@@ -17,17 +17,17 @@ pub(crate) const BODY: &str = "body";
 const OF_BODIES: u64 = 4_000;
 
 /// The number of the body of each element, from 0, in the order of their first nodes; none of a single body.
-pub(crate) fn bodies(mesh: &AnyMesh) -> Option<Vec<i64>> {
+pub(crate) fn bodies(mesh: &Mesh) -> Option<Vec<i64>> {
     (mesh.parts() > 1).then(|| mesh.part_of_elements().into_iter().map(|body| body as i64).collect())
 }
 
 /// Bytes of these numbers in a file with so many instants.
-pub(crate) fn bytes_of_bodies(mesh: &AnyMesh, instants: usize) -> u64 {
+pub(crate) fn bytes_of_bodies(mesh: &Mesh, instants: usize) -> u64 {
     if mesh.parts() > 1 { 8 * (mesh.element_count() + instants) as u64 + OF_BODIES } else { 0 }
 }
 
 /// Writes these numbers into the group of the fields of elements; gives their name with their rows in each step, none.
-pub(crate) fn write_bodies(cell_data: &Group, mesh: &AnyMesh) -> Result<Option<(&'static str, usize)>, FileCause> {
+pub(crate) fn write_bodies(cell_data: &Group, mesh: &Mesh) -> Result<Option<(&'static str, usize)>, FileCause> {
     let Some(bodies) = bodies(mesh) else { return Ok(None) };
     numbers(cell_data, BODY, &[bodies.len()], &bodies)?;
     Ok(Some((BODY, 0)))
@@ -44,7 +44,7 @@ pub fn in_space(values: &[f64], dimension: usize) -> Vec<f64> {
 }
 
 /// Creates the group `VTKHDF` with the grid, without its `Steps`.
-pub(crate) fn write_grid(file: &Group, mesh: &AnyMesh) -> Result<Group, FileCause> {
+pub(crate) fn write_grid(file: &Group, mesh: &Mesh) -> Result<Group, FileCause> {
     let vtk = group(file, "VTKHDF")?;
     let version = vtk.new_attr::<i64>().shape(2).create("Version").and_then(|a| a.write_raw(&[2_i64, 2]));
     version.map_err(|error| crate::library::refused(&error))?;
@@ -64,7 +64,7 @@ pub(crate) fn write_grid(file: &Group, mesh: &AnyMesh) -> Result<Group, FileCaus
 }
 
 /// Creates the groups of facets and elements in the group `percute`.
-pub(crate) fn write_groups(ours: &Group, mesh: &AnyMesh) -> Result<(), FileCause> {
+pub(crate) fn write_groups(ours: &Group, mesh: &Mesh) -> Result<(), FileCause> {
     let facets = group(ours, "facet_groups")?;
     for (name, members) in mesh.facet_groups() {
         let nodes = members.iter().flat_map(|&facet| mesh.facet(facet).nodes);
@@ -80,7 +80,7 @@ pub(crate) fn write_groups(ours: &Group, mesh: &AnyMesh) -> Result<(), FileCause
 }
 
 /// Reads the mesh: points, elements and groups, with their order and orientation.
-pub(crate) fn read(opened: &Opened, dimension: usize) -> Result<AnyMesh, FileCause> {
+pub(crate) fn read(opened: &Opened, dimension: usize) -> Result<Mesh, FileCause> {
     let root = opened.root();
     let (vtk, ours) = (root.group("VTKHDF")?, root.group("percute")?);
     let points = vtk.data("Points")?;
@@ -108,7 +108,7 @@ pub(crate) fn read(opened: &Opened, dimension: usize) -> Result<AnyMesh, FileCau
         elements.insert(name, members.indices(count_of_cells, "elements")?);
         Ok(())
     })?;
-    Ok(AnyMesh::of_bodies(dimension, &points, &cells, (&facets, &elements))?)
+    Ok(Mesh::bodies_from_rows(dimension, &points, &cells, (&facets, &elements))?)
 }
 
 fn for_each_group(

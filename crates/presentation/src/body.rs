@@ -1,7 +1,7 @@
 //! A mesh to draw.
 
 use percute_core::ids::NodeId;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use std::collections::{BTreeMap, HashSet};
 
 /// A mesh in the plane; a bar lies on the axis x.
@@ -22,7 +22,7 @@ pub struct Body {
 impl Body {
     /// That of a mesh.
     #[must_use]
-    pub fn new(mesh: &AnyMesh) -> Self {
+    pub fn new(mesh: &Mesh) -> Self {
         let facets = mesh.facet_groups().iter().map(|(name, members)| (name.clone(), members.len()));
         let elements = mesh.element_groups().iter().map(|(name, members)| (name.clone(), members.len()));
         Self {
@@ -100,7 +100,7 @@ impl Body {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::mesh::TriangleMesh;
+    use percute_core::mesh::Mesh;
 
     #[test]
     fn the_outline_goes_around_the_body_and_its_hole() {
@@ -109,8 +109,8 @@ mod tests {
         let inner = [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0], [1.0, 2.0]];
         let cells: Vec<[usize; 3]> =
             (0..4).flat_map(|k| [[k, (k + 1) % 4, 4 + k], [(k + 1) % 4, 4 + (k + 1) % 4, 4 + k]]).collect();
-        let mesh = TriangleMesh::new([outer, inner].concat(), &cells, &Default::default(), &Default::default());
-        assert_eq!(Body::new(&mesh.unwrap().into()).outline(), [vec![0, 1, 2, 3, 0], vec![4, 7, 6, 5, 4]]);
-        assert!(Body::new(&AnyMesh::uniform_bar(1.0, 3).unwrap()).outline().is_empty());
+        let mesh = Mesh::new([outer, inner].concat(), &cells, &Default::default(), &Default::default());
+        assert_eq!(Body::new(&mesh.unwrap()).outline(), [vec![0, 1, 2, 3, 0], vec![4, 7, 6, 5, 4]]);
+        assert!(Body::new(&Mesh::uniform_bar(1.0, 3).unwrap()).outline().is_empty());
     }
 }

@@ -135,13 +135,13 @@ fn factor(part: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::mesh::TriangleMesh;
+    use percute_core::mesh::Mesh;
 
     /// A square of four triangles around a centre.
     fn square() -> Body {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]];
         let cells = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
-        Body::new(&TriangleMesh::new(points, &cells, &Default::default(), &Default::default()).unwrap().into())
+        Body::new(&Mesh::new(points, &cells, &Default::default(), &Default::default()).unwrap())
     }
 
     /// The outline where the corners have moved by a map.
@@ -206,9 +206,9 @@ mod tests {
     /// Two squares of a mesh, of which each turns by itself about its centre: no part of it is deformation.
     #[test]
     fn each_body_has_a_rigid_motion_of_its_own() {
-        let square = TriangleMesh::rectangle(1.0, 1.0, 1, 1).unwrap();
+        let square = Mesh::rectangle(1.0, 1.0, 1, 1).unwrap();
         let beside = square.mapped(|[x, y]| [x + 1.5, *y]).unwrap();
-        let body = Body::new(&TriangleMesh::joined(&[("a", &square), ("b", &beside)]).unwrap().into());
+        let body = Body::new(&Mesh::joined(&[("a", &square), ("b", &beside)]).unwrap());
         let turned = |node: usize| {
             let [x, y] = body.points[node];
             let centre = if node < 4 { [0.5, 0.5] } else { [2.0, 0.5] };

@@ -2,7 +2,7 @@
 
 use crate::{bridge, errors, view};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
-use percute_core::mesh::{AnyMesh, Diagonals, ElementGroups, FacetRows, MeshError};
+use percute_core::mesh::{Diagonals, ElementGroups, FacetRows, Mesh, MeshError};
 use percute_io::Overwrite;
 use percute_io::gmsh::{self, Format, Version};
 use percute_presentation::Body;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// A checked mesh of either dimension.
 #[pyclass(frozen, module = "percute._percute")]
 pub(crate) struct MeshData {
-    pub(crate) mesh: AnyMesh,
+    pub(crate) mesh: Arc<Mesh>,
 }
 
 type EdgeGroups<'py> = BTreeMap<String, PyReadonlyArray2<'py, i64>>;
@@ -28,23 +28,23 @@ impl MeshData {
     fn rectangle(py: Python<'_>, width: f64, height: f64, nx: usize, ny: usize, diagonals: &str) -> PyResult<Self> {
         let cut = Diagonals::named(diagonals);
         let cut = cut.ok_or_else(|| errors::input(py, "`diagonals` has a name that is not known"))?;
-        made(py, move || AnyMesh::rectangle_cut([width, height], [nx, ny], cut))
+        made(py, move || Mesh::rectangle_cut(width, height, nx, ny, cut))
     }
 
     #[staticmethod]
     fn disc(py: Python<'_>, radius: f64, rings: usize) -> PyResult<Self> {
-        made(py, move || AnyMesh::disc(radius, rings))
+        made(py, move || Mesh::disc(radius, rings))
     }
 
     #[staticmethod]
     fn bar(py: Python<'_>, length: f64, elements: usize) -> PyResult<Self> {
-        made(py, move || AnyMesh::uniform_bar(length, elements))
+        made(py, move || Mesh::uniform_bar(length, elements))
     }
 
     /// The mesh with each element cut into halves (a bar) or quarters, so many times.
     fn refined(&self, py: Python<'_>, times: usize) -> PyResult<Self> {
         let mesh = self.mesh.clone();
-        made(py, move || (0..times).try_fold(mesh, |mesh, _| mesh.refined()))
+        made(py, move || (0..times).try_fold(Mesh::clone(&mesh), |mesh, _| mesh.refined()))
     }
 
     /// The mesh with the chosen elements cut into halves (a bar) or quarters, and the neighbours that must be cut too.
@@ -74,7 +74,7 @@ impl MeshData {
             let told = format!("element_groups[{name:?}]");
             elements.insert(name, indices(py, &told, members.as_slice()?, 1)?);
         }
-        made(py, move || AnyMesh::new(dimension, &points, &cells, (&edges, &elements)))
+        made(py, move || Mesh::from_rows(dimension, &points, &cells, (&edges, &elements)))
     }
 
     /// The meshes of several bodies as one, each with its name.
@@ -82,14 +82,14 @@ impl MeshData {
     fn joined(py: Python<'_>, bodies: Vec<(String, PyRef<'_, Self>)>) -> PyResult<Self> {
         let bodies: Vec<_> = bodies.into_iter().map(|(name, body)| (name, body.mesh.clone())).collect();
         let joined = move |_| {
-            let bodies: Vec<_> = bodies.iter().map(|(name, mesh)| (name.as_str(), mesh)).collect();
-            AnyMesh::joined(&bodies).map_err(|error| match AnyMesh::overlapping(&bodies, &error) {
+            let bodies: Vec<_> = bodies.iter().map(|(name, mesh)| (name.as_str(), &**mesh)).collect();
+            Mesh::joined(&bodies).map_err(|error| match Mesh::overlapping(&bodies, &error) {
                 Some((second, told)) => format!("`bodies[{second}]`: \"{}\" {told}", bodies[second].0),
                 None => format!("`bodies`: {error}"),
             })
         };
         let mesh = bridge::blocking(py, None, joined)?.map_err(|told| errors::input(py, told))?;
-        Ok(Self { mesh })
+        Ok(Self { mesh: mesh.into() })
     }
 
     /// The mesh with its origin in another place, turned about it by an angle (degrees).
@@ -98,13 +98,13 @@ impl MeshData {
         let far = || far_origin(&self.mesh, &origin).map(|far| format!("`origin` {far}"));
         let told = |error: MeshError| far().unwrap_or_else(|| error.to_string());
         let mesh = self.mesh.placed(&origin, degrees).map_err(|error| errors::input(py, told(error)))?;
-        Ok(Self { mesh })
+        Ok(Self { mesh: mesh.into() })
     }
 
     /// The elements of a group as a mesh of their own; None if there is no such group.
     fn part_of_group(&self, py: Python<'_>, group: &str) -> PyResult<Option<Self>> {
         let part = self.mesh.part_of_group(group).transpose().map_err(|error| errors::input(py, error))?;
-        Ok(part.map(|mesh| Self { mesh }))
+        Ok(part.map(|mesh| Self { mesh: mesh.into() }))
     }
 
     /// A mesh in a file of Gmsh.
@@ -112,7 +112,7 @@ impl MeshData {
     fn read(py: Python<'_>, path: PathBuf, scale: f64) -> PyResult<Self> {
         let read = bridge::blocking(py, None, move |_| gmsh::read(&path, scale))?;
         let read = read.map_err(|error| errors::gmsh(py, &error))?;
-        Ok(Self { mesh: read.mesh })
+        Ok(Self { mesh: read.mesh.into() })
     }
 
     /// Writes a file of Gmsh, of version 2.2 if it is `old` and of 4.1 otherwise.
@@ -150,13 +150,13 @@ impl MeshData {
     #[getter]
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let shape = [self.mesh.node_count(), self.dimension()];
-        view::view(py, &Arc::new(self.mesh.clone()), AnyMesh::points, &shape)
+        view::view(py, &self.mesh, Mesh::points, &shape)
     }
 
     #[getter]
     fn cells<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<u32>>> {
         let shape = [self.mesh.element_count(), self.dimension() + 1];
-        view::view(py, &Arc::new(self.mesh.clone()), |mesh| view::numbers(mesh.cell_rows()), &shape)
+        view::view(py, &self.mesh, |mesh| view::numbers(mesh.cell_rows()), &shape)
     }
 
     /// Name of each group of facets, with the nodes of each of its facets.
@@ -205,9 +205,9 @@ fn rows<'py>(py: Python<'py>, numbers: Vec<i64>, columns: usize) -> PyResult<Bou
     Ok(array)
 }
 
-fn made(py: Python<'_>, work: impl FnOnce() -> Result<AnyMesh, MeshError> + Send + 'static) -> PyResult<MeshData> {
+fn made(py: Python<'_>, work: impl FnOnce() -> Result<Mesh, MeshError> + Send + 'static) -> PyResult<MeshData> {
     let mesh = bridge::blocking(py, None, move |_| work())?.map_err(|error| errors::input(py, error))?;
-    Ok(MeshData { mesh })
+    Ok(MeshData { mesh: mesh.into() })
 }
 
 /// Indices, none of them negative, with so many in a row.

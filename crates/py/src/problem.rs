@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2};
 use percute_core::contact::AnyObstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::material::{Elastic, Hypothesis, Law};
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{AnyProblem, Statement};
 use percute_workflow::case::ONE_BODY;
 use percute_workflow::restated::Restated;
@@ -223,7 +223,7 @@ fn across(material: &Elastic) -> f64 {
 
 fn build(
     py: Python<'_>,
-    mesh: &AnyMesh,
+    mesh: &Arc<Mesh>,
     materials: &[(Option<String>, Bound<'_, PyAny>)],
     lists: [&Objects<'_>; 5],
     fields: [&Field<'_>; 2],

@@ -3,7 +3,7 @@
 use crate::mesh::MeshData;
 use crate::{bridge, contact, errors, view};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods};
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_estimator::Sample;
 use percute_io::estimate_file::{self, Field};
 use percute_io::{Kind, kind};
@@ -17,7 +17,7 @@ use std::sync::Arc;
 #[pyclass(frozen, module = "percute._percute")]
 pub(crate) struct EstimateFileData {
     path: PathBuf,
-    mesh: AnyMesh,
+    mesh: Arc<Mesh>,
     over_time: Vec<Sample>,
     by_element: Arc<Vec<f64>>,
     report: String,
@@ -30,7 +30,7 @@ impl EstimateFileData {
         let name = path.clone();
         let file = bridge::blocking(py, None, move |_| estimate_file::open(&name))?;
         let file = file.map_err(|error| errors::file(py, &error))?;
-        let mesh = file.mesh;
+        let mesh = file.mesh.into();
         let (over_time, by_element) = (file.over_time, Arc::new(file.by_element));
         Ok(Self { path, mesh, over_time, by_element, report: file.report })
     }

@@ -1,7 +1,7 @@
 //! Delaunay triangulations of a rectangle and a disc.
 
 use crate::{Random, TestkitError, smallest_angle};
-use percute_core::mesh::{ElementGroups, FacetGroups, TriangleMesh};
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 use std::f64::consts::{PI, TAU};
 
@@ -17,7 +17,7 @@ const MOST_SEEDS: u64 = 20;
 ///
 /// # Errors
 /// Sides that are not positive, no elements, or no suitable seed.
-pub fn random_rectangle(width: f64, height: f64, n: usize, seed: u64) -> Result<TriangleMesh, TestkitError> {
+pub fn random_rectangle(width: f64, height: f64, n: usize, seed: u64) -> Result<Mesh, TestkitError> {
     if !(width > 0.0 && height > 0.0 && n > 0) {
         return Err(TestkitError::Argument("width, height and n must be positive"));
     }
@@ -62,7 +62,7 @@ fn jittered_grid(width: f64, height: f64, n: usize, rows: usize, seed: u64) -> V
 ///
 /// # Errors
 /// Lengths that are not positive, or a size above the radius.
-pub fn disc(radius: f64, target_size: f64) -> Result<TriangleMesh, TestkitError> {
+pub fn disc(radius: f64, target_size: f64) -> Result<Mesh, TestkitError> {
     if !(target_size > 0.0 && radius >= target_size) {
         return Err(TestkitError::Argument("target_size must be positive, and at most the radius"));
     }
@@ -92,7 +92,7 @@ pub fn disc(radius: f64, target_size: f64) -> Result<TriangleMesh, TestkitError>
 fn triangulated(
     points: Vec<[f64; 2]>,
     side: impl Fn(&[f64; 2], &[f64; 2]) -> Option<&'static str>,
-) -> Result<TriangleMesh, TestkitError> {
+) -> Result<Mesh, TestkitError> {
     let sites = points.iter().map(|p| Point2::new(p[0], p[1])).collect();
     // Stable: the vertices keep the order of the points.
     let triangulation: DelaunayTriangulation<Point2<f64>> = DelaunayTriangulation::bulk_load_stable(sites)?;
@@ -105,7 +105,7 @@ fn triangulated(
             groups.entry(name.to_string()).or_default().push(nodes);
         }
     }
-    Ok(TriangleMesh::new(points, &cells, &groups, &ElementGroups::new())?)
+    Ok(Mesh::new(points, &cells, &groups, &ElementGroups::new())?)
 }
 
 #[cfg(test)]
@@ -113,12 +113,12 @@ mod tests {
     use super::*;
     use percute_core::ids::ElementId;
 
-    fn area(mesh: &TriangleMesh) -> f64 {
-        (0..mesh.element_count()).map(|e| mesh.cell_geometry(ElementId::new(e)).volume).sum()
+    fn area(mesh: &Mesh) -> f64 {
+        (0..mesh.element_count()).map(|e| mesh.geometry::<2, 3>(ElementId::new(e)).volume).sum()
     }
 
-    fn group_length(mesh: &TriangleMesh, group: &str) -> f64 {
-        mesh.facet_groups()[group].iter().map(|&f| mesh.facet_normal(f).1).sum()
+    fn group_length(mesh: &Mesh, group: &str) -> f64 {
+        mesh.facet_groups()[group].iter().map(|&f| mesh.normal_in::<2>(f).1).sum()
     }
 
     /// Fills the rectangle, groups all of the boundary, and has no small angle, for many seeds.

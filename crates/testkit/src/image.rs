@@ -1,8 +1,7 @@
 //! Images of meshes under motions, and the same mesh under other numbers.
 
 use crate::Random;
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh, MeshError, TriangleMesh};
-use percute_core::simplex::{Element, Simplex};
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh, MeshError};
 
 /// Arguments of [`Mesh::new`].
 struct Parts<const D: usize, const N: usize> {
@@ -13,26 +12,23 @@ struct Parts<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Parts<D, N> {
-    fn of(mesh: &Mesh<D, N>) -> Self {
+    fn of(mesh: &Mesh) -> Self {
         let facet_groups = mesh.facet_groups().iter().map(|(name, facets)| {
-            (name.clone(), facets.iter().map(|f| mesh.facets()[f.index()].nodes.map(|n| n.index())).collect())
+            (name.clone(), facets.iter().map(|f| mesh.facet_nodes::<D>(*f).map(|n| n.index())).collect())
         });
         let element_groups = mesh
             .element_groups()
             .iter()
             .map(|(name, elements)| (name.clone(), elements.iter().map(|e| e.index()).collect()));
         Self {
-            points: mesh.points().to_vec(),
-            cells: mesh.cells().iter().map(|cell| cell.map(|n| n.index())).collect(),
+            points: mesh.points_in().to_vec(),
+            cells: mesh.nodes_of::<N>().iter().map(|cell| cell.map(|n| n.index())).collect(),
             facet_groups: facet_groups.collect(),
             element_groups: element_groups.collect(),
         }
     }
 
-    fn mesh(self) -> Result<Mesh<D, N>, MeshError>
-    where
-        Element<D, N>: Simplex<D, N>,
-    {
+    fn mesh(self) -> Result<Mesh, MeshError> {
         Mesh::new(self.points, &self.cells, &self.facet_groups, &self.element_groups)
     }
 }
@@ -41,16 +37,16 @@ impl<const D: usize, const N: usize> Parts<D, N> {
 ///
 /// # Errors
 /// None beyond those of the mesh.
-pub fn rotated(mesh: &TriangleMesh, angle: f64) -> Result<TriangleMesh, MeshError> {
+pub fn rotated(mesh: &Mesh, angle: f64) -> Result<Mesh, MeshError> {
     let (sin, cos) = angle.sin_cos();
-    mesh.mapped(|p| [cos * p[0] - sin * p[1], sin * p[0] + cos * p[1]])
+    mesh.mapped(|p: &[f64; 2]| [cos * p[0] - sin * p[1], sin * p[0] + cos * p[1]])
 }
 
 /// The mesh seen in a mirror, x → −x; numbers and groups are kept.
 ///
 /// # Errors
 /// None beyond those of the mesh.
-pub fn mirrored(mesh: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
+pub fn mirrored(mesh: &Mesh) -> Result<Mesh, MeshError> {
     mirror(mesh, 0)
 }
 
@@ -58,12 +54,12 @@ pub fn mirrored(mesh: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
 ///
 /// # Errors
 /// None beyond those of the mesh.
-pub fn upside_down(mesh: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
+pub fn upside_down(mesh: &Mesh) -> Result<Mesh, MeshError> {
     mirror(mesh, 1)
 }
 
-fn mirror(mesh: &TriangleMesh, axis: usize) -> Result<TriangleMesh, MeshError> {
-    let mut parts = Parts::of(mesh);
+fn mirror(mesh: &Mesh, axis: usize) -> Result<Mesh, MeshError> {
+    let mut parts = Parts::<2, 3>::of(mesh);
     parts.points.iter_mut().for_each(|p| p[axis] = -p[axis]);
     // The mirror reverses the orientation; the core would reorient the elements and count them.
     parts.cells.iter_mut().for_each(|cell| cell.swap(1, 2));
@@ -75,11 +71,11 @@ fn mirror(mesh: &TriangleMesh, axis: usize) -> Result<TriangleMesh, MeshError> {
 ///
 /// # Errors
 /// None beyond those of the mesh.
-pub(crate) fn doubled(half: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
-    let mut parts = Parts::of(half);
+pub(crate) fn doubled(half: &Mesh) -> Result<Mesh, MeshError> {
+    let mut parts = Parts::<2, 3>::of(half);
     let image: Vec<usize> = (0..half.node_count())
         .map(|node| {
-            let [x, y] = half.points()[node];
+            let [x, y] = half.points_in()[node];
             if x == 0.0 {
                 return node;
             }
@@ -114,11 +110,8 @@ pub(crate) fn doubled(half: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
 ///
 /// # Errors
 /// None beyond those of the mesh, unless `by` is not finite.
-pub fn translated<const D: usize, const N: usize>(mesh: &Mesh<D, N>, by: [f64; D]) -> Result<Mesh<D, N>, MeshError>
-where
-    Element<D, N>: Simplex<D, N>,
-{
-    mesh.mapped(|p| std::array::from_fn(|c| p[c] + by[c]))
+pub fn translated<const D: usize>(mesh: &Mesh, by: [f64; D]) -> Result<Mesh, MeshError> {
+    mesh.mapped(|p: &[f64; D]| std::array::from_fn(|c| p[c] + by[c]))
 }
 
 /// New numbers of nodes and elements.
@@ -156,17 +149,18 @@ fn permuted<T: Copy>(new: &[usize], values: &[T]) -> Vec<T> {
 ///
 /// # Errors
 /// None beyond those of the mesh.
-pub fn renumbered<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
-    seed: u64,
-) -> Result<(Mesh<D, N>, Renumbering), MeshError>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+pub fn renumbered(mesh: &Mesh, seed: u64) -> Result<(Mesh, Renumbering), MeshError> {
+    match mesh.dimension() {
+        1 => renumbered_in::<1, 2>(mesh, seed),
+        _ => renumbered_in::<2, 3>(mesh, seed),
+    }
+}
+
+fn renumbered_in<const D: usize, const N: usize>(mesh: &Mesh, seed: u64) -> Result<(Mesh, Renumbering), MeshError> {
     let mut random = Random::new(seed);
     let node = random.permutation(mesh.node_count());
     let element = random.permutation(mesh.element_count());
-    let mut parts = Parts::of(mesh);
+    let mut parts = Parts::<D, N>::of(mesh);
     for cell in &mut parts.cells {
         *cell = cell.map(|n| node[n]);
         if N % 2 == 1 {
@@ -186,20 +180,19 @@ mod tests {
     use super::*;
     use crate::{disc, random_rectangle};
     use percute_core::ids::{ElementId, NodeId};
-    use percute_core::mesh::BarMesh;
 
     /// A mesh with both kinds of groups.
-    fn grouped() -> TriangleMesh {
-        let mut parts = Parts::of(&random_rectangle(2.0, 1.0, 5, 9).unwrap());
+    fn grouped() -> Mesh {
+        let mut parts = Parts::<2, 3>::of(&random_rectangle(2.0, 1.0, 5, 9).unwrap());
         parts.element_groups.insert("some".to_string(), vec![0, 3, 7]);
         parts.mesh().unwrap()
     }
 
     /// Total of a function of the outward normals over a group, weighted with lengths.
-    fn normals(mesh: &TriangleMesh, group: &str) -> [f64; 2] {
+    fn normals(mesh: &Mesh, group: &str) -> [f64; 2] {
         mesh.facet_groups()[group]
             .iter()
-            .map(|&f| mesh.facet_normal(f))
+            .map(|&f| mesh.normal_in::<2>(f))
             .fold([0.0; 2], |sum, (n, length)| [sum[0] + n[0] * length, sum[1] + n[1] * length])
     }
 
@@ -213,12 +206,12 @@ mod tests {
     fn a_quarter_turn() {
         let mesh = grouped();
         let image = rotated(&mesh, std::f64::consts::FRAC_PI_2).unwrap();
-        for (p, q) in mesh.points().iter().zip(image.points()) {
+        for (p, q) in mesh.points_in::<2>().iter().zip(image.points_in()) {
             assert!(close(*q, [-p[1], p[0]]));
         }
         assert!(close(normals(&mesh, "bottom"), [0.0, -2.0]));
         assert!(close(normals(&image, "bottom"), [2.0, 0.0]));
-        assert_eq!((image.reoriented_elements(), image.cells()), (0, mesh.cells()));
+        assert_eq!((image.reoriented_elements(), image.cell_rows()), (0, mesh.cell_rows()));
         assert_eq!(image.element_groups(), mesh.element_groups());
     }
 
@@ -236,7 +229,7 @@ mod tests {
     fn a_translation() {
         let mesh = disc(1.0, 0.4).unwrap();
         let image = translated(&mesh, [3.0, -2.0]).unwrap();
-        for (p, q) in mesh.points().iter().zip(image.points()) {
+        for (p, q) in mesh.points_in::<2>().iter().zip(image.points_in()) {
             assert!(close(*q, [p[0] + 3.0, p[1] - 2.0]));
         }
         assert_eq!(image.facet_groups(), mesh.facet_groups());
@@ -249,11 +242,11 @@ mod tests {
         let mesh = grouped();
         let (image, new) = renumbered(&mesh, 4).unwrap();
         assert_ne!(new.node, (0..mesh.node_count()).collect::<Vec<_>>());
-        assert_eq!(new.nodal(mesh.points()), image.points());
+        assert_eq!(new.nodal(mesh.points_in::<2>()), image.points_in());
         assert_eq!(image.reoriented_elements(), 0);
         for old in 0..mesh.element_count() {
-            let mut expected: Vec<usize> = mesh.cells()[old].iter().map(|n| new.node[n.index()]).collect();
-            let mut found: Vec<usize> = image.cells()[new.element[old]].iter().map(|n| n.index()).collect();
+            let mut expected: Vec<usize> = mesh.nodes_of::<3>()[old].iter().map(|n| new.node[n.index()]).collect();
+            let mut found: Vec<usize> = image.nodes_of::<3>()[new.element[old]].iter().map(|n| n.index()).collect();
             expected.sort_unstable();
             found.sort_unstable();
             assert_eq!(expected, found);
@@ -262,18 +255,18 @@ mod tests {
             assert!(close(normals(&mesh, group), normals(&image, group)), "{group}");
         }
         let centre =
-            |mesh: &TriangleMesh, e: &ElementId| mesh.cell_points(*e).iter().map(|p| p[0] + 10.0 * p[1]).sum::<f64>();
-        let total = |mesh: &TriangleMesh| mesh.element_groups()["some"].iter().map(|e| centre(mesh, e)).sum::<f64>();
+            |mesh: &Mesh, e: &ElementId| mesh.corners::<2, 3>(*e).iter().map(|p| p[0] + 10.0 * p[1]).sum::<f64>();
+        let total = |mesh: &Mesh| mesh.element_groups()["some"].iter().map(|e| centre(mesh, e)).sum::<f64>();
         // Sums of nine coordinates of order 10, in another order.
         assert!((total(&mesh) - total(&image)).abs() < 1e-12);
     }
 
     #[test]
     fn bars_can_be_renumbered() {
-        let mesh = BarMesh::uniform_bar(1.0, 7).unwrap();
+        let mesh = Mesh::uniform_bar(1.0, 7).unwrap();
         let (image, new) = renumbered(&mesh, 1).unwrap();
         assert_eq!(image.reoriented_elements(), 0);
-        let end = image.facets()[image.facet_groups()["end"][0].index()].nodes[0];
-        assert_eq!((end, image.points()[end.index()]), (NodeId::new(new.node[7]), [1.0]));
+        let end = image.facet(image.facet_groups()["end"][0]).nodes[0];
+        assert_eq!((end, image.points()[end.index()]), (NodeId::new(new.node[7]), 1.0));
     }
 }

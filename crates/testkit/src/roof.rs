@@ -4,7 +4,7 @@ use crate::image::{doubled, rotated, translated};
 use percute_core::contact::{Interface, Obstacle};
 use percute_core::load::{Support, Table};
 use percute_core::material::Elastic;
-use percute_core::mesh::{MeshError, TriangleMesh};
+use percute_core::mesh::{Mesh, MeshError};
 use percute_core::problem::{Builder, Initial, TriangleProblem};
 use std::error::Error;
 use std::f64::consts::FRAC_PI_2;
@@ -19,8 +19,8 @@ const WAY: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct Roof {
     /// The right halves of `roof` and `plate`, and both as a whole.
-    halves: [TriangleMesh; 2],
-    whole: [TriangleMesh; 2],
+    halves: [Mesh; 2],
+    whole: [Mesh; 2],
     speed: f64,
     along: f64,
     quarters: u8,
@@ -34,10 +34,10 @@ impl Roof {
     /// None beyond those of the meshes.
     pub fn new(angle: f64, speed: f64, plate: f64, cells: [usize; 2]) -> Result<Self, MeshError> {
         let slope = angle.to_radians().tan();
-        let roof = TriangleMesh::rectangle(0.02, HEIGHT, cells[0], 4)?.mapped(|p| [p[0], p[1] + slope * p[0]])?;
+        let roof = Mesh::rectangle(0.02, HEIGHT, cells[0], 4)?.mapped(|p: &[f64; 2]| [p[0], p[1] + slope * p[0]])?;
         let halves = [
             translated(&roof, [0.0, HEIGHT + WAY * speed - (0.02 * slope).min(0.0)])?,
-            TriangleMesh::rectangle(plate, HEIGHT, cells[1], 4)?,
+            Mesh::rectangle(plate, HEIGHT, cells[1], 4)?,
         ];
         let whole = [doubled(&halves[0])?, doubled(&halves[1])?];
         Ok(Self { halves, whole, speed, along: 0.0, quarters: 0 })
@@ -78,7 +78,7 @@ impl Roof {
     /// # Errors
     /// As [`Roof::whole`].
     pub fn alone(&self) -> Result<[Builder<2, 3>; 2], Box<dyn Error>> {
-        let builder = |roof: &TriangleMesh| -> Result<Builder<2, 3>, Box<dyn Error>> {
+        let builder = |roof: &Mesh| -> Result<Builder<2, 3>, Box<dyn Error>> {
             let [point, normal] = [[0.0, HEIGHT], [0.0, 1.0]].map(|vector| self.turn(vector));
             Ok(TriangleProblem::builder(self.mesh(roof)?)
                 .material(aluminium()?)
@@ -95,8 +95,8 @@ impl Roof {
         if node < half { node } else { node - half + whole }
     }
 
-    fn builder(&self, [roof, plate]: &[TriangleMesh; 2]) -> Result<Builder<2, 3>, Box<dyn Error>> {
-        let mesh = TriangleMesh::joined(&[("roof", roof), ("plate", plate)])?;
+    fn builder(&self, [roof, plate]: &[Mesh; 2]) -> Result<Builder<2, 3>, Box<dyn Error>> {
+        let mesh = Mesh::joined(&[("roof", roof), ("plate", plate)])?;
         let velocity = |node: usize| self.turn([self.along, if node < roof.node_count() { -self.speed } else { 0.0 }]);
         let velocity = Initial::Nodal((0..mesh.node_count()).map(velocity).collect());
         Ok(TriangleProblem::builder(self.mesh(&mesh)?)
@@ -105,7 +105,7 @@ impl Roof {
             .interface(Interface::sliding(2, "roof.bottom", "plate.top", FRICTION)?))
     }
 
-    fn mesh(&self, mesh: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
+    fn mesh(&self, mesh: &Mesh) -> Result<Mesh, MeshError> {
         let angle = f64::from(self.quarters) * FRAC_PI_2;
         if self.quarters == 0 { Ok(mesh.clone()) } else { rotated(mesh, angle) }
     }

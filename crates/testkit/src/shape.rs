@@ -1,13 +1,13 @@
 //! Quality of the triangles.
 
 use percute_core::ids::ElementId;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 
 /// Smallest angle of any triangle (degrees).
 #[must_use]
-pub fn smallest_angle(mesh: &TriangleMesh) -> f64 {
+pub fn smallest_angle(mesh: &Mesh) -> f64 {
     let elements = (0..mesh.element_count()).map(ElementId::new);
-    elements.map(|e| smallest_of(&mesh.cell_points(e))).fold(f64::INFINITY, f64::min)
+    elements.map(|e| smallest_of(&mesh.corners::<2, 3>(e))).fold(f64::INFINITY, f64::min)
 }
 
 /// Smallest angle of one triangle (degrees).

@@ -1,12 +1,12 @@
 //! Proptest strategies.
 
 use crate::random_rectangle;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use proptest::prelude::*;
 
 /// Unstructured rectangles with sides between 0.5 m and 2 m and 2 to `most` elements along the
 /// width. Shrinking leads to few elements and the seed 0.
-pub fn rectangle(most: usize) -> impl Strategy<Value = TriangleMesh> {
+pub fn rectangle(most: usize) -> impl Strategy<Value = Mesh> {
     (2..=most.max(2), 0..1_000_u64, 0.5..2.0, 0.5..2.0)
         .prop_filter_map("no mesh without small angles", |(n, seed, width, height)| {
             random_rectangle(width, height, n, seed).ok()

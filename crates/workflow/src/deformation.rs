@@ -6,7 +6,7 @@ use percute_core::element_state::ElementState;
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::ids::ElementId;
 use percute_core::material::Elastic;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{AnyProblem, RigidMotion};
 use serde::Serialize;
 
@@ -145,7 +145,7 @@ impl<'p> DeformationRecorder<'p> {
     }
 
     /// What was found, with elements as `number` calls them, those of `mesh`.
-    pub(crate) fn finish(mut self, mesh: &AnyMesh, number: impl Fn(usize) -> usize) -> Deformation {
+    pub(crate) fn finish(mut self, mesh: &Mesh, number: impl Fn(usize) -> usize) -> Deformation {
         let materials = self.problem.element_material();
         let mut volumes = vec![[0.0; 2]; self.found.materials.len()];
         for (element, yielded) in self.yielded.iter().enumerate() {
@@ -165,7 +165,7 @@ impl<'p> DeformationRecorder<'p> {
     }
 
     /// The bodies in the order of a mesh, with its names.
-    fn bodies_of(&self, mesh: &AnyMesh, number: impl Fn(usize) -> usize) -> Vec<BodyDeformation> {
+    fn bodies_of(&self, mesh: &Mesh, number: impl Fn(usize) -> usize) -> Vec<BodyDeformation> {
         let (of_node, mut bodies) = (mesh.part_numbers(), self.found.bodies.clone());
         for (own, found) in self.found.bodies.iter().enumerate() {
             // Each body has an element: nodes without one are refused.

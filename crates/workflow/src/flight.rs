@@ -84,14 +84,14 @@ mod tests {
     use super::*;
     use percute_core::contact::Obstacle;
     use percute_core::material::Elastic;
-    use percute_core::mesh::TriangleMesh;
+    use percute_core::mesh::Mesh;
     use percute_core::problem::{AnyProblem, TriangleProblem};
 
     /// A square of 1 m, 0.3 m above a plane, turns about its middle: its corner is at ½ − √½·sin(π/4 + ωt).
     #[test]
     fn a_corner_reaches_the_plane_by_turning() {
         let build = |gap: f64| {
-            TriangleProblem::builder(TriangleMesh::rectangle(1.0, 1.0, 2, 2).unwrap())
+            TriangleProblem::builder(Mesh::rectangle(1.0, 1.0, 2, 2).unwrap())
                 .material(Elastic::plane_strain(1.0, 0.2, 2.0, 1.0).unwrap())
                 .obstacle(Obstacle::plane([0.0, -gap], [0.0, 1.0], 0.0, None).unwrap())
                 .build()

@@ -1,7 +1,7 @@
 //! The outline of a plane body at the last step, from which pictures draw its deformed shape.
 
 use percute_core::history::{SinkError, State, StateSink};
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use serde::Serialize;
 
 /// Displacements of the boundary of a plane body at an instant.
@@ -26,7 +26,7 @@ pub(crate) struct LastOutline {
 
 impl LastOutline {
     /// That of a mesh; a bar has no outline.
-    pub(crate) fn new(mesh: &AnyMesh) -> Self {
+    pub(crate) fn new(mesh: &Mesh) -> Self {
         let facets = mesh.boundary();
         let nodes = facets.into_iter().flat_map(|facet| mesh.facet(facet).nodes);
         let mut nodes: Vec<usize> = nodes.map(|node| node.index()).collect();

@@ -79,7 +79,7 @@ mod tests {
     use super::*;
     use percute_core::contact::Obstacle;
     use percute_core::material::Elastic;
-    use percute_core::mesh::TriangleMesh;
+    use percute_core::mesh::Mesh;
     use percute_core::problem::{Initial, TriangleProblem};
 
     struct Block {
@@ -92,7 +92,7 @@ mod tests {
     const BLOCK: Block = Block { young: 70e9, velocity: [0.0, -10.0], gap: 1e-5, cells: 4 };
 
     fn problem(block: &Block) -> AnyProblem {
-        let mesh = TriangleMesh::rectangle(0.05, 0.04, block.cells, block.cells).unwrap();
+        let mesh = Mesh::rectangle(0.05, 0.04, block.cells, block.cells).unwrap();
         let built = TriangleProblem::builder(mesh)
             .material(Elastic::plane_stress(block.young, 0.3, 2700.0, 1.0).unwrap())
             .initial_velocity(Initial::Uniform(block.velocity))
@@ -129,8 +129,8 @@ mod tests {
     #[test]
     fn fields_that_vary_depend_on_the_mesh() {
         let varying = |cells: usize, factor: f64| {
-            let mesh = TriangleMesh::rectangle(0.05, 0.04, cells, cells).unwrap();
-            let velocity = mesh.points().iter().map(|point| [factor * point[0], -10.0]).collect();
+            let mesh = Mesh::rectangle(0.05, 0.04, cells, cells).unwrap();
+            let velocity = mesh.points_in::<2>().iter().map(|point| [factor * point[0], -10.0]).collect();
             let law = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
             let built = TriangleProblem::builder(mesh).material(law).initial_velocity(Initial::Nodal(velocity)).build();
             AnyProblem::from(built.unwrap())

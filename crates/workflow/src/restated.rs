@@ -2,8 +2,9 @@
 
 use crate::case::{Source, problem_from, statement};
 use crate::failure::Failure;
-use percute_core::mesh::{AnyLocator, AnyMesh};
+use percute_core::mesh::{Locator, Mesh};
 use percute_core::problem::AnyProblem;
+use std::sync::Arc;
 
 /// A problem as a statement beside its mesh, to be read again on other meshes.
 #[derive(Clone, Debug)]
@@ -34,7 +35,7 @@ impl Restated {
     ///
     /// # Errors
     /// A mesh that lacks a group of the problem, or on which it is not consistent.
-    pub fn on(&self, mesh: &AnyMesh) -> Result<AnyProblem, Failure> {
+    pub fn on(&self, mesh: &Arc<Mesh>) -> Result<AnyProblem, Failure> {
         let fields = [self.problem.initial_displacement(), self.problem.initial_velocity()];
         let d = mesh.dimension();
         let [displacement, velocity] = fields.map(|field| match field.split_at(d.min(field.len())) {
@@ -46,9 +47,9 @@ impl Restated {
     }
 
     /// A nodal field at the nodes of a mesh, each in its own body: nodes of two bodies may be at one place.
-    fn values_at_nodes(&self, field: &[f64], mesh: &AnyMesh) -> Vec<f64> {
+    fn values_at_nodes(&self, field: &[f64], mesh: &Mesh) -> Vec<f64> {
         let own = self.problem.mesh();
-        let bodies = AnyLocator::of_bodies(own);
+        let bodies = Locator::of_bodies(own);
         let body = own.matching_parts(mesh).unwrap_or_default();
         let nodes = mesh.points().chunks_exact(mesh.dimension()).zip(mesh.part_numbers());
         nodes.flat_map(|(point, part)| bodies[body[part]].values_at(field, point)).collect()
@@ -58,7 +59,7 @@ impl Restated {
     ///
     /// # Errors
     /// As [`Restated::on`].
-    pub fn with(&self, mesh: &AnyMesh, displacement: Vec<f64>, velocity: Vec<f64>) -> Result<AnyProblem, Failure> {
+    pub fn with(&self, mesh: &Arc<Mesh>, displacement: Vec<f64>, velocity: Vec<f64>) -> Result<AnyProblem, Failure> {
         let (problem, _) = problem_from(&self.statement, mesh, displacement, velocity)?;
         Ok(problem)
     }

@@ -7,7 +7,7 @@ use percute_core::border::Vector;
 use percute_core::contact::{ContactResults, Resultant};
 use percute_core::dynamics::Balance;
 use percute_core::ids::ElementId;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_core::units::Units;
 use percute_estimator::Sample;
 use percute_io::{Overwrite, write_bytes};
@@ -67,7 +67,7 @@ impl Table {
 #[derive(Clone, Copy, Debug)]
 pub struct Results<'a> {
     /// The mesh.
-    pub mesh: &'a AnyMesh,
+    pub mesh: &'a Mesh,
     /// Contact results.
     pub contact: Option<&'a ContactResults>,
     /// Units of forces and energies.

@@ -1,8 +1,7 @@
 //! Adaptations: runs on meshes that follow from the estimate before.
 
-use percute_core::border::cut;
 use percute_core::ids::ElementId;
-use percute_core::mesh::{AnyMesh, Locator};
+use percute_core::mesh::{Locator, Mesh};
 use percute_core::observer::{Observer, Progress, Unobserved};
 use percute_core::problem::AnyProblem;
 use percute_workflow::adapt::{Adaptation, Adapting, Measure, Mesher, Reason, Wish, adapt, table};
@@ -58,7 +57,7 @@ fn corners_get_graded_meshes() {
         let mesh = adaptation.best.as_ref().unwrap().problem.mesh();
         let sizes: Vec<f64> = (0..mesh.element_count()).map(|e| mesh.volume(ElementId::new(e))).collect();
         let smallest = (0..sizes.len()).min_by(|&a, &b| sizes[a].total_cmp(&sizes[b])).unwrap();
-        let near = mesh.cell_points(ElementId::new(smallest)).iter().map(|p| p[0].hypot(p[1])).fold(0.0, f64::max);
+        let near = mesh.corners::<2, 3>(ElementId::new(smallest)).iter().map(|p| p[0].hypot(p[1])).fold(0.0, f64::max);
         assert!(near < 2e-3, "{near}");
         assert!(last.sizes[1] > 4.0 * last.sizes[0]);
     }
@@ -71,17 +70,14 @@ fn graded_meshes_are_bisections() {
     let wish = Wish { measure: Measure::Sup, ..Wish::new(0.45) };
     let (found, first) = (adapted(&case, wish.clone()), case.problem.mesh());
     let best = found.best.as_ref().unwrap().problem.mesh();
-    let AnyMesh::D2(first_mesh) = first else { panic!("a bar") };
-    let locator = Locator::new(first_mesh);
+    let locator = Locator::new(first);
     for e in (0..best.element_count()).map(ElementId::new) {
-        let points = best.cell_points(e);
-        let middle = std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / 3.0);
-        let parent = locator.element_at(&middle).unwrap();
+        let parent = locator.element_at(&best.centroid(e)).unwrap();
         // Rounding of barycentric coordinates.
-        assert!(points.iter().all(|p| locator.weights(parent, &cut(p)).iter().all(|w| *w > -1e-12)));
+        assert!(best.cell_points(e).iter().all(|p| locator.weights(parent, p).iter().all(|w| *w > -1e-12)));
     }
-    let length = |mesh: &AnyMesh, name: &str| -> f64 {
-        mesh.facet_groups()[name].iter().map(|facet| mesh.facet_normal(*facet).1).sum()
+    let length = |mesh: &Mesh, name: &str| -> f64 {
+        mesh.facet_groups()[name].iter().map(|facet| mesh.normal_in::<2>(*facet).1).sum()
     };
     for name in ["left", "right", "bottom", "top"] {
         assert!((length(best, name) - length(first, name)).abs() < 1e-15, "{name}");

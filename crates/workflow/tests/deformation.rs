@@ -4,7 +4,7 @@ use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::History;
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{AnyProblem, BarProblem, Initial, TriangleProblem, plausibility_warnings};
 use percute_core::time::TimeGrid;
@@ -37,7 +37,7 @@ fn named(report: &Report, name: &str) -> Option<String> {
 
 /// A bar that strikes a wall at once; its strain is −v/c until the wave comes back.
 fn bar(speed: f64, law: Elastic) -> AnyProblem {
-    let mesh = BarMesh::uniform_bar(0.1, 50).unwrap();
+    let mesh = Mesh::uniform_bar(0.1, 50).unwrap();
     let wall = Obstacle::plane([-1e-7 * speed], [1.0], 0.0, None).unwrap();
     let builder = BarProblem::builder(mesh).material(law).initial_velocity(Initial::Uniform([-speed]));
     builder.obstacle(wall).build().unwrap().into()
@@ -49,9 +49,9 @@ fn of_bar() -> Elastic {
 
 /// A rectangle that spins (rad/s) about its centre and flies, over a plane that it does not reach.
 fn spinning(spin: f64, velocity: [f64; 2]) -> AnyProblem {
-    let mesh = TriangleMesh::rectangle(0.05, 0.04, 5, 4).unwrap();
+    let mesh = Mesh::rectangle(0.05, 0.04, 5, 4).unwrap();
     let motion = |x: &[f64; 2]| [velocity[0] - spin * (x[1] - 0.02), velocity[1] + spin * (x[0] - 0.025)];
-    let velocity = mesh.points().iter().map(motion).collect();
+    let velocity = mesh.points_in::<2>().iter().map(motion).collect();
     let plane = Obstacle::plane([0.0, -1.0], [0.0, 1.0], 0.0, None).unwrap();
     let builder = TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity));
     builder.obstacle(plane).build().unwrap().into()
@@ -105,11 +105,11 @@ proptest! {
 /// Of two bodies the one that turns is named, in the order of the user although the solver has another one.
 #[test]
 fn one_of_two_bodies_turns() {
-    let (left, right) = (TriangleMesh::rectangle(0.03, 0.02, 6, 4).unwrap(), TriangleMesh::rectangle(0.02, 0.02, 4, 4));
+    let (left, right) = (Mesh::rectangle(0.03, 0.02, 6, 4).unwrap(), Mesh::rectangle(0.02, 0.02, 4, 4));
     let right = right.unwrap().placed(&[0.1, 0.0], 0.0).unwrap();
-    let mesh = TriangleMesh::joined(&[("left", &left), ("right", &right)]).unwrap();
+    let mesh = Mesh::joined(&[("left", &left), ("right", &right)]).unwrap();
     let motion = |x: &[f64; 2]| if x[0] < 0.05 { [0.0; 2] } else { [-3000.0 * (x[1] - 0.01), 3000.0 * (x[0] - 0.11)] };
-    let velocity = mesh.points().iter().map(motion).collect();
+    let velocity = mesh.points_in::<2>().iter().map(motion).collect();
     let builder = TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity));
     let found = report(&builder.build().unwrap().into(), 100);
     let [left, right] = &found.deformation.bodies[..] else { panic!("two bodies") };
@@ -153,7 +153,7 @@ fn the_yield_stress_changes_no_number() {
 #[test]
 fn nothing_touched_comes_first() {
     let speed = 5.0;
-    let mesh = TriangleMesh::rectangle(0.05, 0.04, 5, 4).unwrap();
+    let mesh = Mesh::rectangle(0.05, 0.04, 5, 4).unwrap();
     let plane = Obstacle::plane([0.0, -1e-3], [0.0, 1.0], 0.2, None).unwrap();
     let builder = TriangleProblem::builder(mesh).material(aluminium()).obstacle(plane);
     let found = report(&builder.clone().initial_velocity(Initial::Uniform([0.0, -speed])).build().unwrap().into(), 100);
@@ -170,7 +170,7 @@ fn nothing_touched_comes_first() {
     let away = report(&builder.clone().initial_velocity(Initial::Uniform([0.0, speed])).build().unwrap().into(), 100);
     assert!(away.verdict.text[0].contains("no node approaches"), "{:?}", away.verdict.text);
     // Without planes nothing can touch, and after a touch nothing is left.
-    let free = TriangleProblem::builder(TriangleMesh::rectangle(0.05, 0.04, 5, 4).unwrap()).material(aluminium());
+    let free = TriangleProblem::builder(Mesh::rectangle(0.05, 0.04, 5, 4).unwrap()).material(aluminium());
     let free = report(&free.initial_velocity(Initial::Uniform([0.0, -speed])).build().unwrap().into(), 20);
     let touched = report(&bar(10.0, of_bar()), 60);
     for found in [free, touched] {
@@ -182,11 +182,11 @@ fn nothing_touched_comes_first() {
 /// The blunt wedge whose error is that of a few needles beside its tip: they are named, with their shares.
 #[test]
 fn needles_are_named() {
-    let square = TriangleMesh::rectangle(1.0, 1.0, 8, 8).unwrap();
+    let square = Mesh::rectangle(1.0, 1.0, 8, 8).unwrap();
     let place = |p: &[f64; 2]| [(p[0] - 0.5) * (4.0 + 50.0 * p[1]) * 1e-3, 0.04 * p[1]];
-    let points = square.points().iter().map(place).collect();
-    let cells: Vec<_> = square.cells().iter().map(|cell| cell.map(|node| node.index())).collect();
-    let mesh = TriangleMesh::new(points, &cells, &Default::default(), &Default::default()).unwrap();
+    let points = square.points_in().iter().map(place).collect();
+    let cells: Vec<_> = square.nodes_of::<3>().iter().map(|cell| cell.map(|node| node.index())).collect();
+    let mesh = Mesh::new(points, &cells, &Default::default(), &Default::default()).unwrap();
     let plane = Obstacle::plane([0.0, -1e-6], [0.0, 1.0], 0.2, None).unwrap();
     let builder = TriangleProblem::builder(mesh.clone()).material(aluminium()).obstacle(plane);
     let found = report(&builder.initial_velocity(Initial::Uniform([0.0, -25.0])).build().unwrap().into(), 200);

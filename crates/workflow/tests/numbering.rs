@@ -6,7 +6,7 @@ use percute_core::history::{History, SinkError, Step, StepSource};
 use percute_core::ids::{FacetId, NodeId};
 use percute_core::load::{Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
-use percute_core::mesh::{ElementGroups, TriangleMesh};
+use percute_core::mesh::{ElementGroups, Mesh};
 use percute_core::observer::Unobserved;
 use percute_core::problem::{AnyProblem, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -22,22 +22,22 @@ use percute_workflow::run::{
 };
 
 /// 1353 nodes: with up to 256, a shuffled mesh is solved in its own order.
-fn block() -> TriangleMesh {
-    TriangleMesh::rectangle(0.05, 0.04, 40, 32).unwrap()
+fn block() -> Mesh {
+    Mesh::rectangle(0.05, 0.04, 40, 32).unwrap()
 }
 
-fn shuffled() -> (TriangleMesh, Renumbering) {
+fn shuffled() -> (Mesh, Renumbering) {
     let (mesh, new) = renumbered(&block(), 6).unwrap();
     assert!(!mesh.is_local());
     (mesh, new)
 }
 
 /// A block that strikes a rough plane, held at the left and pulled at the right.
-fn problem(mesh: TriangleMesh, gap: f64) -> AnyProblem {
+fn problem(mesh: Mesh, gap: f64) -> AnyProblem {
     let support = Support { group: "left".to_string(), components: [true, false, false], velocity: None };
     let value = Table::new(vec![0.0, 1e-5], vec![[1e6, 2e6], [3e6, -1e6]]).unwrap();
     let pull = Traction { group: "right".to_string(), value, profile: Profile::UNIFORM };
-    let velocity = mesh.points().iter().map(|p| [200.0 * p[0], -100.0]).collect();
+    let velocity = mesh.points_in::<2>().iter().map(|p| [200.0 * p[0], -100.0]).collect();
     TriangleProblem::builder(mesh)
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Nodal(velocity))
@@ -235,10 +235,10 @@ fn a_refused_start_names_the_node_of_the_mesh() {
 /// Both the histories and the reference may be shuffled.
 #[test]
 fn true_errors_do_not_depend_on_numbers() {
-    let fine = TriangleMesh::rectangle(0.05, 0.04, 80, 64).unwrap();
+    let fine = Mesh::rectangle(0.05, 0.04, 80, 64).unwrap();
     let step = 0.85 * critical_time_step(&problem(fine.clone(), 1.0));
     let reference = TimeGrid::uniform(times().end(), (times().end() / step).ceil() as usize).unwrap();
-    let error = |coarse: TriangleMesh, fine: TriangleMesh, meshes: Meshes| {
+    let error = |coarse: Mesh, fine: Mesh, meshes: Meshes| {
         let (coarse, fine) = (problem(coarse, gap()), problem(fine, gap()));
         let (_, history) = ran(&coarse);
         true_errors(&[(&coarse, &history)], (&fine, &reference), None, meshes, &mut Unobserved)
@@ -253,18 +253,17 @@ fn true_errors_do_not_depend_on_numbers() {
 
     // A node in the middle of a coarse edge is moved off it: of the elements around it some are not nested.
     let moved = 81 * 20 + 31;
-    let cells: Vec<_> = fine.cells().iter().map(|cell| cell.map(NodeId::index)).collect();
-    let facet = |f: &FacetId| fine.facets()[f.index()].nodes.map(NodeId::index);
+    let cells: Vec<_> = fine.nodes_of::<3>().iter().map(|cell| cell.map(NodeId::index)).collect();
+    let facet = |f: &FacetId| fine.facet_nodes::<2>(*f).map(NodeId::index);
     let groups = fine.facet_groups().iter().map(|(name, f)| (name.clone(), f.iter().map(facet).collect())).collect();
-    let mut points = fine.points().to_vec();
+    let mut points = fine.points_in::<2>().to_vec();
     points[moved][1] += 1e-4;
-    let (strange, new) =
-        renumbered(&TriangleMesh::new(points, &cells, &groups, &ElementGroups::new()).unwrap(), 3).unwrap();
+    let (strange, new) = renumbered(&Mesh::new(points, &cells, &groups, &ElementGroups::new()).unwrap(), 3).unwrap();
     let Err(Failure::Reference(ReferenceError::NotNested { fine })) = error(block(), strange.clone(), Meshes::Nested)
     else {
         panic!("nested")
     };
-    assert!(strange.cells()[fine].contains(&NodeId::new(new.node[moved])), "{fine}");
+    assert!(strange.nodes_of::<3>()[fine].contains(&NodeId::new(new.node[moved])), "{fine}");
     // One of 5184 nodes by a sixth of an element.
     let located = error(block(), strange, Meshes::Any).unwrap();
     assert!((located - of_nested).abs() <= 1e-3 * of_nested, "{located:e} against {of_nested:e}");

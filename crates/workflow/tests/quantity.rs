@@ -3,7 +3,7 @@
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{AnyProblem, BarProblem, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -31,7 +31,7 @@ fn largest(problem: &AnyProblem, (courant, steps): (f64, usize), texts: &[&str])
 /// steps.
 #[test]
 fn the_stress_of_a_bar_is_that_of_the_exact_impact() {
-    let mesh = BarMesh::uniform_bar(BAR.length, 50).unwrap();
+    let mesh = Mesh::uniform_bar(BAR.length, 50).unwrap();
     let law = Elastic::bar(BAR.young, BAR.density, BAR.section).unwrap();
     // A node comes to rest on the wall at the end of a step.
     let step = BAR.length / 50.0 / BAR.wave_speed();
@@ -54,9 +54,9 @@ fn the_stress_of_a_bar_is_that_of_the_exact_impact() {
 #[test]
 fn the_stress_of_a_block_is_hookes() {
     let (young, poisson, [xx, yy, xy]) = (70e9, 0.3, [1e-4, -3e-4, 2e-4]);
-    let mesh = TriangleMesh::rectangle(0.05, 0.04, 10, 8).unwrap();
+    let mesh = Mesh::rectangle(0.05, 0.04, 10, 8).unwrap();
     let linear = |x: &[f64; 2]| [xx * x[0] + 2.0 * xy * x[1], yy * x[1]];
-    let displacement = mesh.points().iter().map(linear).collect();
+    let displacement = mesh.points_in::<2>().iter().map(linear).collect();
     let law = Elastic::plane_stress(young, poisson, 2700.0, 1.0).unwrap();
     let problem = TriangleProblem::builder(mesh)
         .material(law)
@@ -89,10 +89,10 @@ fn the_stress_of_a_block_is_hookes() {
 }
 
 /// A body with this outline that falls on a plane (m/s), verified with probes.
-fn verified(mesh: &TriangleMesh, (speed, degrees): (f64, f64), texts: &[&str], levels: usize) -> Verification {
+fn verified(mesh: &Mesh, (speed, degrees): (f64, f64), texts: &[&str], levels: usize) -> Verification {
     let mesh = mesh.placed(&[0.0, 0.0], degrees).unwrap();
     let law = Elastic::plane_strain(70e9, 0.3, 2700.0, 1.0).unwrap();
-    let low = mesh.points().iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
+    let low = mesh.points_in::<2>().iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
     let build = |gap: f64| {
         let plane = Obstacle::plane([0.0, low - gap], [0.0, 1.0], 0.0, None).unwrap();
         let builder = TriangleProblem::builder(mesh.clone()).material(law);
@@ -116,7 +116,7 @@ fn warning(verification: &Verification, quantity: &str) -> Option<String> {
 /// A slow block on its corner: one node carries the force. Flat, it has the whole edge.
 #[test]
 fn the_force_of_a_sharp_corner_is_named() {
-    let block = TriangleMesh::rectangle(0.02, 0.01, 8, 4).unwrap();
+    let block = Mesh::rectangle(0.02, 0.01, 8, 4).unwrap();
     let told = warning(&verified(&block, (4.0, 10.0), &[], 2), "averaged_peak_force").unwrap();
     for words in ["The averaged peak force falls by", "one node carries the force", "round the corner"] {
         assert!(told.contains(words), "{told}");
@@ -129,22 +129,23 @@ fn the_force_of_a_sharp_corner_is_named() {
 #[test]
 fn the_stress_at_a_re_entrant_corner_is_named() {
     let cells = 8;
-    let ell = TriangleMesh::rectangle(0.02, 0.02, cells, cells).unwrap();
+    let ell = Mesh::rectangle(0.02, 0.02, cells, cells).unwrap();
     let inside = |cell: &&[percute_core::ids::NodeId; 3]| {
-        let middle = |c: usize| cell.iter().map(|node| ell.points()[node.index()][c]).sum::<f64>() / 3.0;
+        let middle = |c: usize| cell.iter().map(|node| ell.points_in::<2>()[node.index()][c]).sum::<f64>() / 3.0;
         middle(0) < 0.01 || middle(1) < 0.01
     };
-    let cells: Vec<[usize; 3]> = ell.cells().iter().filter(inside).map(|cell| cell.map(|node| node.index())).collect();
+    let cells: Vec<[usize; 3]> =
+        ell.nodes_of::<3>().iter().filter(inside).map(|cell| cell.map(|node| node.index())).collect();
     let mut numbers = vec![None; ell.node_count()];
     let mut points = Vec::new();
     let mut number = |node: usize| {
         *numbers[node].get_or_insert_with(|| {
-            points.push(ell.points()[node]);
+            points.push(ell.points_in::<2>()[node]);
             points.len() - 1
         })
     };
     let cells: Vec<[usize; 3]> = cells.into_iter().map(|cell| cell.map(&mut number)).collect();
-    let ell = TriangleMesh::new(points, &cells, &[].into(), &[].into()).unwrap();
+    let ell = Mesh::new(points, &cells, &[].into(), &[].into()).unwrap();
     let texts = ["0.01,0.01:von_mises", "0.0099,0.0099:von_mises", "0.01,0.01:displacement"];
     let found = verified(&ell, (10.0, 0.0), &texts, 2);
     let at = warning(&found, texts[0]).unwrap();
@@ -165,7 +166,7 @@ fn the_stress_at_a_re_entrant_corner_is_named() {
 fn contact_quantities_are_those_of_the_report() {
     let law = Elastic::bar(BAR.young, BAR.density, BAR.section).unwrap();
     let wall = Obstacle::plane([-BAR.gap], [1.0], 0.0, None).unwrap();
-    let builder = BarProblem::builder(BarMesh::uniform_bar(BAR.length, 20).unwrap()).material(law);
+    let builder = BarProblem::builder(Mesh::uniform_bar(BAR.length, 20).unwrap()).material(law);
     let problem = builder.initial_velocity(Initial::Uniform([-BAR.speed])).obstacle(wall).build().unwrap().into();
     let critical_step = critical_time_step(&problem);
     let times = TimeGrid::with_step(1.1 * BAR.release_time(), 0.9 * critical_step).unwrap();

@@ -5,10 +5,9 @@ use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
-use percute_core::mesh::{AnyMesh, BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh};
+use percute_core::mesh::{ElementGroups, FacetRows, Mesh};
 use percute_core::observer::Unobserved;
 use percute_core::problem::{AnyProblem, Initial, Problem};
-use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Acceleration, Options, Reconstruction, Sampling};
 use percute_testkit::{Random, strategy::rectangle};
@@ -39,20 +38,17 @@ fn same(problem: &AnyProblem, options: &Options) {
 }
 
 /// A mesh whose groups of facets have other names, and a first half and a second half of elements.
-fn named<const D: usize, const N: usize>(mesh: &Mesh<D, N>, sides: &[&str], names: &[String]) -> Mesh<D, N>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+fn named(mesh: &Mesh, sides: &[&str], names: &[String]) -> Mesh {
     let nodes = |side: &str| {
         let facets = &mesh.facet_groups()[side];
-        facets.iter().map(|f| mesh.facets()[f.index()].nodes.map(|n| n.index())).collect::<Vec<_>>()
+        facets.iter().flat_map(|&f| mesh.facet(f).nodes).map(|node| node.index()).collect::<Vec<_>>()
     };
-    let facets: FacetGroups<D> = sides.iter().zip(names).map(|(side, name)| (name.clone(), nodes(side))).collect();
+    let facets: FacetRows = sides.iter().zip(names).map(|(side, name)| (name.clone(), nodes(side))).collect();
     let (half, all) = (mesh.element_count() / 2, mesh.element_count());
     let elements =
         ElementGroups::from([(names[0].clone(), (0..half).collect()), (names[1].clone(), (half..all).collect())]);
-    let cells: Vec<_> = mesh.cells().iter().map(|cell| cell.map(|n| n.index())).collect();
-    Mesh::new(mesh.points().to_vec(), &cells, &facets, &elements).unwrap()
+    let cells: Vec<_> = mesh.cell_rows().iter().map(|node| node.index()).collect();
+    Mesh::from_rows(mesh.dimension(), mesh.points(), &cells, (&facets, &elements)).unwrap()
 }
 
 fn flip(random: &mut Random) -> bool {
@@ -106,16 +102,12 @@ fn support<const D: usize>(group: &str, random: &mut Random) -> Support {
 }
 
 /// Initial velocities that agree with a support.
-fn start<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
-    support: Option<&Support>,
-    random: &mut Random,
-) -> Vec<[f64; D]> {
-    let mut velocity: Vec<[f64; D]> = mesh.points().iter().map(|_| vector(random)).collect();
+fn start<const D: usize>(mesh: &Mesh, support: Option<&Support>, random: &mut Random) -> Vec<[f64; D]> {
+    let mut velocity: Vec<[f64; D]> = mesh.points_in::<D>().iter().map(|_| vector(random)).collect();
     let Some(Support { group, components, velocity: motion }) = support else { return velocity };
     let at_start = motion.as_ref().map_or([0.0; 3], |table| table.at(0.0));
     for facet in &mesh.facet_groups()[group] {
-        for node in mesh.facets()[facet.index()].nodes {
+        for node in mesh.facet_nodes::<D>(*facet) {
             (0..D).filter(|&c| components[c]).for_each(|c| velocity[node.index()][c] = at_start[c]);
         }
     }
@@ -125,7 +117,7 @@ fn start<const D: usize, const N: usize>(
 /// Anything that can be stated on a mesh whose groups are, in this order: may touch, supported or
 /// loaded, loaded, loaded.
 fn anything<const D: usize, const N: usize>(
-    mesh: Mesh<D, N>,
+    mesh: Mesh,
     names: &[String],
     down: [f64; D],
     random: &mut Random,
@@ -136,10 +128,10 @@ fn anything<const D: usize, const N: usize>(
     let (length, friction) = (size(random), if D == 1 { 0.0 } else { random.between(0.0, 2.0) });
     // So far away that no displacement of half a metre matters.
     let plane = Obstacle::plane(down.map(|x| 10.0 * x), down.map(|x| -length * x), friction, Some(names[0].clone()));
-    let mut builder = Problem::builder(mesh.clone())
+    let mut builder = Problem::<D, N>::builder(mesh.clone())
         .obstacle(plane.unwrap())
         .initial_velocity(Initial::Nodal(velocity))
-        .initial_displacement(Initial::Nodal(mesh.points().iter().map(|p| p.map(|x| 0.1 * x)).collect()));
+        .initial_displacement(Initial::Nodal(mesh.points_in::<D>().iter().map(|p| p.map(|x| 0.1 * x)).collect()));
     builder = support.into_iter().fold(builder, |builder, support| builder.support(support));
     builder = if flip(random) {
         builder.material_of(&names[1], law::<D>(random)).material_of(&names[0], law::<D>(random))
@@ -181,7 +173,7 @@ proptest! {
         let random = &mut Random::new(seed);
         let mesh = named(&mesh, &["bottom", "left", "right", "top"], &names);
         let angle = random.between(-0.7, 0.7);
-        let problem = anything(mesh, &names, [angle.sin(), -angle.cos()], random).into();
+        let problem = anything::<2, 3>(mesh, &names, [angle.sin(), -angle.cos()], random).into();
         same(&problem, &options(random));
     }
 
@@ -190,8 +182,8 @@ proptest! {
         length in 0.1..3.0_f64, elements in 2..9_usize, names in names(), seed in any::<u64>(),
     ) {
         let random = &mut Random::new(seed);
-        let mesh = named(&BarMesh::uniform_bar(length, elements).unwrap(), &["start", "end"], &names);
-        let problem = anything(mesh, &names, [-1.0], random).into();
+        let mesh = named(&Mesh::uniform_bar(length, elements).unwrap(), &["start", "end"], &names);
+        let problem = anything::<1, 2>(mesh, &names, [-1.0], random).into();
         same(&problem, &options(random));
     }
 }
@@ -229,7 +221,7 @@ fn examples_come_back_with_their_estimates() {
 fn zeros_keep_their_sign() {
     let velocity = Table::new(vec![-0.0, 1.0], vec![[-0.0, 0.0], [2.0, -0.0]]).unwrap();
     let support = Support { group: "left".into(), components: [true, true, false], velocity: Some(velocity) };
-    let problem = Problem::builder(TriangleMesh::rectangle(1.0, 1.0, 2, 1).unwrap())
+    let problem = Problem::<2, 3>::builder(Mesh::rectangle(1.0, 1.0, 2, 1).unwrap())
         .material(Elastic::plane_stress(1.0, -0.0, 1.0, 1.0).unwrap())
         .support(support)
         .obstacle(Obstacle::plane([-0.0, -1.0], [-0.0, 3.0], -0.0, None).unwrap());
@@ -246,12 +238,12 @@ fn without_options_there_is_no_estimate() {
 #[test]
 fn a_law_of_another_dimension_is_refused() {
     let plane = Elastic::plane_strain(1.0, 0.3, 1.0, 1.0).unwrap();
-    let bar = Problem::builder(BarMesh::uniform_bar(1.0, 2).unwrap()).material(plane).build().unwrap().into();
+    let bar = Problem::<1, 2>::builder(Mesh::uniform_bar(1.0, 2).unwrap()).material(plane).build().unwrap().into();
     let error = statement(&bar, None).unwrap_err();
     assert!(matches!(error, NotRepresentable::Law { index: 1, dimension: 1, .. }), "{error}");
     let law = Elastic::bar(1.0, 1.0, 1.0).unwrap();
     let plane =
-        Problem::builder(TriangleMesh::rectangle(1.0, 1.0, 1, 1).unwrap()).material(law).build().unwrap().into();
+        Problem::<2, 3>::builder(Mesh::rectangle(1.0, 1.0, 1, 1).unwrap()).material(law).build().unwrap().into();
     assert!(statement(&plane, None).unwrap_err().to_string().contains("material 1 is a law for a bar"));
 }
 
@@ -266,13 +258,13 @@ fn what_is_beside_a_statement_is_refused_with_its_line() {
         ("[obstacles]\n", 5, "did you mean `obstacle`?"),
         ("[[support]]\ngroup = \"nowhere\"\ncomponents = [\"x\"]\n", 6, "there is no group of ends \"nowhere\""),
     ] {
-        let mesh = AnyMesh::uniform_bar(1.0, 2).unwrap();
+        let mesh = Mesh::uniform_bar(1.0, 2).unwrap().into();
         let source = Source::new("a.vtkhdf", format!("{material}{more}"));
         let error = problem_from(&source, &mesh, vec![0.0; 3], vec![0.0; 3]).unwrap_err();
         assert_eq!(error.line, line, "{error}");
         assert!(error.to_string().contains(phrase), "{error}");
     }
-    let mesh = AnyMesh::uniform_bar(1.0, 2).unwrap();
+    let mesh = Mesh::uniform_bar(1.0, 2).unwrap().into();
     let error = problem_from(&Source::new("a", material), &mesh, vec![0.0; 3], vec![0.0; 2]).unwrap_err();
     assert!(error.to_string().contains("has 2 values, but the mesh has 3 nodes"), "{error}");
 }

@@ -116,7 +116,7 @@ fn true_error(case: &Case, motion: &Motion) -> f64 {
     let of_body = |first: &NodeId| start[dimension * first.index()..][..dimension].to_vec();
     let velocity = mesh.part_of_nodes().iter().flat_map(of_body).collect();
     let rest = vec![0.0; dimension * mesh.node_count()];
-    let (fine, _) = problem_from(&stated, &mesh, rest, velocity).unwrap();
+    let (fine, _) = problem_from(&stated, &mesh.into(), rest, velocity).unwrap();
     let end = case.times.end();
     let times = TimeGrid::uniform(end, (end / (0.9 * critical_time_step(&fine))).ceil() as usize).unwrap();
     let mut comparison = Comparison::new(&fine);

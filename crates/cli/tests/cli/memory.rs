@@ -1,7 +1,7 @@
 //! Memory that cannot be had is an error with a figure, not the end of the process.
 
 use crate::common::{BAR, BLOCK, Bench, stderr};
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_io::Overwrite;
 use percute_io::gmsh::{self, Format, Version};
 use std::process::{Command, Output};
@@ -65,9 +65,9 @@ fn no_command_is_aborted_for_want_of_memory() {
     let case = BLOCK.replace("nx = 5, ny = 4", "nx = 300, ny = 300");
     let bench = Bench::new(&case);
     never_aborts(&bench, "info case.toml", (60_000..=220_000).step_by(40_000), "180000 elements needs about 0.07");
-    let mesh = TriangleMesh::rectangle(1.0, 1.0, 250, 250).unwrap();
+    let mesh = Mesh::rectangle(1.0, 1.0, 250, 250).unwrap();
     let format = Format { version: Version::V41, binary: false };
-    gmsh::write(&bench.path("block.msh"), Overwrite::Refuse, &mesh.into(), format).unwrap();
+    gmsh::write(&bench.path("block.msh"), Overwrite::Refuse, &mesh, format).unwrap();
     never_aborts(&bench, "info block.msh", (50_000..=200_000).step_by(30_000), "which is not available");
     let small = Bench::new(&BLOCK.replace("nx = 5, ny = 4", "nx = 40, ny = 40").replace("end = 5e-6", "end = 1e-7"));
     let verify = "verify case.toml --levels 2 --quiet --threads 1 --long";

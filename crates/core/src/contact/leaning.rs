@@ -32,7 +32,7 @@ const LEVEL: f64 = 1e-9;
 impl<'s, const D: usize> Leaning<'s, D> {
     /// Of all contacts between bodies. Nodes `inside` a surface, by their positions, are no corners.
     #[must_use]
-    pub fn new<const N: usize>(surface: &'s ContactSurface<D>, mesh: &Mesh<D, N>, inside: Vec<bool>) -> Self {
+    pub fn new(surface: &'s ContactSurface<D>, mesh: &Mesh, inside: Vec<bool>) -> Self {
         // Bars are in a row.
         let (pairs, sliding) = if D == 1 {
             (Vec::new(), Vec::new())
@@ -111,7 +111,7 @@ fn common(one: f64, other: f64) -> f64 {
 }
 
 /// The edges of pairs of nodes that lean together, and by which angle (rad).
-fn pairs<const D: usize, const N: usize>(surface: &ContactSurface<D>, mesh: &Mesh<D, N>) -> Vec<([usize; D], f64)> {
+fn pairs<const D: usize>(surface: &ContactSurface<D>, mesh: &Mesh) -> Vec<([usize; D], f64)> {
     let opposite = |at: usize| surface.nodes()[at].opposite;
     let sorted = |mut nodes: [usize; D]| {
         nodes.sort_unstable();
@@ -125,7 +125,7 @@ fn pairs<const D: usize, const N: usize>(surface: &ContactSurface<D>, mesh: &Mes
         let frame = surface.obstacles()[facet.obstacle].flat_frame();
         let (normal, along) = (frame.normal(), tangent(frame.normal()));
         let slope = |facet| {
-            let outward = mesh.facet_normal(facet).0;
+            let outward = mesh.normal_in::<D>(facet).0;
             (dot(&outward, &along) / dot(&outward, normal)).atan()
         };
         let lean = common(slope(facet.facet), slope(other.facet));

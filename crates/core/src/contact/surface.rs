@@ -229,10 +229,10 @@ impl<const D: usize> ContactSurface<D> {
     }
 
     /// The surface of the renumbered mesh: nodes and facets in the same order.
-    pub(crate) fn renumbered<const N: usize>(&self, old: &Mesh<D, N>, new: &NewNumbers) -> Self {
+    pub(crate) fn renumbered(&self, old: &Mesh, new: &NewNumbers) -> Self {
         let node = |contact: &ContactNode| ContactNode { node: new.node(contact.node), ..*contact };
         let facet = |facet: &ContactFacet<D>| {
-            let nodes = &old.facets()[facet.facet.index()].nodes;
+            let nodes = &old.facet_nodes::<D>(facet.facet);
             ContactFacet { facet: new.facet(facet.facet), nodes: new.along(nodes, facet.nodes), ..*facet }
         };
         Self {

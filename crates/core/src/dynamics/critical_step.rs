@@ -41,10 +41,10 @@ fn element_bound<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64
 /// with the strains 1, diag(1, −1) and the shear over √2, they are those of a matrix of two rows and one more, which is
 /// not the largest: m = ½ tr Q and r, half the difference of the eigenvalues of Q, couple volume and shear.
 fn largest_of_element<const D: usize, const N: usize>(problem: &Problem<D, N>, element: ElementId) -> f64 {
-    let (material, gradients) = (problem.material(element), problem.mesh().cell_geometry(element).gradients);
+    let (material, gradients) = (problem.material(element), problem.mesh().geometry::<D, N>(element).gradients);
     let q = |a: usize, b: usize| gradients.iter().map(|g| g[a] * g[b]).sum::<f64>();
     let (lambda, shear) = material.moduli();
-    let largest = match problem.mesh().simplex().shape() {
+    let largest = match problem.mesh().shape() {
         Shape::Bar => (lambda + 2.0 * shear) * q(0, 0),
         Shape::Triangle => {
             let (m, r) = (0.5 * (q(0, 0) + q(1, 1)), (0.5 * (q(0, 0) - q(1, 1))).hypot(q(0, 1)));

@@ -108,18 +108,18 @@ impl ElementPairs {
         for two in pairs.chunks(2) {
             let (mut nodes, mut gradients) = ([[0; 4]; 2], Gradients::default());
             for (p, pair) in two.iter().enumerate() {
-                let cell = &mesh.cells()[pair.first.index()];
+                let cell = &mesh.nodes_of::<N>()[pair.first.index()];
                 // Node 1 of A is the one that B does not have.
                 let order: [usize; N] = std::array::from_fn(|i| (pair.apart + N - 1 + i) % N);
                 let mut of_pair = [cell[order[0]]; 4];
                 (1..N).for_each(|i| of_pair[i] = cell[order[i]]);
                 if let Some(second) = pair.second {
-                    let other = mesh.cells()[second.index()].iter().find(|node| !cell.contains(node));
+                    let other = mesh.nodes_of::<N>()[second.index()].iter().find(|node| !cell.contains(node));
                     of_pair[N] = *other.unwrap_or(&cell[order[0]]);
                 }
                 for (l, element) in [Some(pair.first), pair.second].into_iter().enumerate() {
                     let Some(element) = element else { continue };
-                    let (cell, geometry) = (&mesh.cells()[element.index()], mesh.cell_geometry(element));
+                    let (cell, geometry) = (&mesh.nodes_of::<N>()[element.index()], mesh.geometry::<D, N>(element));
                     let root = (problem.volume(element) * problem.material(element).moduli().1).sqrt();
                     for i in 0..D {
                         let at = cell.iter().position(|node| *node == of_pair[i + 1 + l]).unwrap_or(0);
@@ -205,7 +205,7 @@ fn pair<const D: usize, const N: usize>(
     law: impl Fn(usize) -> u32,
 ) -> Vec<Pair<N>> {
     let mesh = problem.mesh();
-    let highest = |e: usize| mesh.cells()[e].iter().map(|node| node.index()).fold(0, usize::max);
+    let highest = |e: usize| mesh.nodes_of::<N>()[e].iter().map(|node| node.index()).fold(0, usize::max);
     let (mut pairs, mut reached) = (Vec::with_capacity(strip.len() / 2 + strip.len() / 16 + 1), 0);
     for e in strip.clone() {
         reached = highest(e).max(reached);
@@ -214,8 +214,8 @@ fn pair<const D: usize, const N: usize>(
         }
         let first = ElementId::new(e);
         let mut partner: Option<(usize, usize)> = None;
-        for (apart, facet) in mesh.cell_facets()[e].iter().enumerate() {
-            let facet = &mesh.facets()[facet.index()];
+        for (apart, facet) in mesh.facets_of::<N>()[e].iter().enumerate() {
+            let facet = &mesh.facet(*facet);
             let other = facet.across(first);
             let Some(other) = other.map(ElementId::index) else { continue };
             let free = strip.contains(&other) && !taken[other] && law(other) == law(e);
@@ -236,7 +236,7 @@ fn pair<const D: usize, const N: usize>(
 mod tests {
     use super::*;
     use crate::material::Elastic;
-    use crate::mesh::TriangleMesh;
+    use crate::mesh::Mesh;
     use crate::problem::TriangleProblem;
     use percute_testkit::random_rectangle;
 
@@ -247,12 +247,12 @@ mod tests {
     fn pairs_keep_the_front_short() {
         let side = 120;
         let mesh = random_rectangle(1.0, 0.8, side, 5).unwrap();
-        let cells: Vec<_> = mesh.cells().iter().map(|cell| cell.map(|node| node.index())).collect();
-        let mesh = TriangleMesh::new(mesh.points().to_vec(), &cells, &Default::default(), &Default::default()).unwrap();
+        let cells: Vec<_> = mesh.nodes_of::<3>().iter().map(|cell| cell.map(|node| node.index())).collect();
+        let mesh = Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &Default::default(), &Default::default()).unwrap();
         let numbering = mesh.local_numbering().unwrap();
         let law = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
         let problem = TriangleProblem::builder(mesh).material(law).build().unwrap().renumbered(&numbering);
-        let strips = Strips::new(problem.mesh().cells());
+        let strips = Strips::new(problem.mesh().nodes_of::<3>());
         let pairs = ElementPairs::new(&problem, &strips);
         let longest = pairs.chunks.iter().map(|chunk| chunk.reached.saturating_sub(chunk.left)).max().unwrap();
         assert!((longest as usize) < 2 * side, "{longest}");

@@ -21,13 +21,13 @@ impl<const D: usize, const N: usize> Stiffness<D, N> {
     /// Prepares the elements of a problem.
     #[must_use]
     pub fn new(problem: &Problem<D, N>) -> Self {
-        Self::on_strips(problem, Strips::new(problem.mesh().cells()))
+        Self::on_strips(problem, Strips::new(problem.mesh().nodes_of::<N>()))
     }
 
     /// The same with a cut of its own.
     pub(super) fn on_strips(problem: &Problem<D, N>, strips: Strips) -> Self {
         let pairs = ElementPairs::new(problem, &strips);
-        Self { shape: problem.mesh().simplex().shape(), strips, pairs }
+        Self { shape: problem.mesh().shape(), strips, pairs }
     }
 
     /// Subtracts K u from `force` (N) and returns the strain energy ½ u·K u (J).
@@ -188,28 +188,28 @@ mod tests {
     use super::*;
     use crate::ids::ElementId;
     use crate::material::{Elastic, Law};
-    use crate::mesh::TriangleMesh;
+    use crate::mesh::Mesh;
     use crate::problem::{BarProblem, TriangleProblem};
     use crate::simd::Portable;
     use percute_testkit::{Random, random_rectangle};
 
     /// A random mesh of this crate's own types, with groups of elements.
-    fn random_mesh(n: usize, seed: u64) -> TriangleMesh {
+    fn random_mesh(n: usize, seed: u64) -> Mesh {
         let mesh = random_rectangle(1.0, 0.7, n, seed).unwrap();
         let groups = [(0, "soft"), (1, "hard")].map(|(k, name)| {
             (name.to_string(), (0..mesh.element_count()).filter(|e| (e / 7) % 2 == k).collect::<Vec<_>>())
         });
-        let cells: Vec<_> = mesh.cells().iter().map(|cell| cell.map(|node| node.index())).collect();
-        TriangleMesh::new(mesh.points().to_vec(), &cells, &Default::default(), &groups.into()).unwrap()
+        let cells: Vec<_> = mesh.nodes_of::<3>().iter().map(|cell| cell.map(|node| node.index())).collect();
+        Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &Default::default(), &groups.into()).unwrap()
     }
 
     /// The forces and the energy, element by element with the law and the gradients as they are stated.
     fn plain<const D: usize, const N: usize>(problem: &Problem<D, N>, u: &[[f64; D]]) -> (Vec<[f64; D]>, f64) {
         let (mut force, mut energy) = (vec![[0.0; D]; u.len()], 0.0);
-        for (e, cell) in problem.mesh().cells().iter().enumerate() {
+        for (e, cell) in problem.mesh().nodes_of::<3>().iter().enumerate() {
             let element = ElementId::new(e);
             let (material, volume) = (problem.material(element), problem.volume(element));
-            let gradients = problem.mesh().cell_geometry(element).gradients;
+            let gradients = problem.mesh().geometry::<2, 3>(element).gradients;
             let mut gradient = [[0.0; D]; D];
             for (node, slope) in cell.iter().zip(&gradients) {
                 (0..D * D).for_each(|k| gradient[k / D][k % D] += u[node.index()][k / D] * slope[k % D]);
@@ -226,8 +226,12 @@ mod tests {
     /// Forces within 1e-14 of the largest that elements exchange, which is far below one unit of displacement on an
     /// element; the energy, a sum of positive terms, relatively.
     fn check<const D: usize, const N: usize>(problem: &Problem<D, N>, strips: Strips, random: &mut Random) {
-        let u: Vec<[f64; D]> =
-            problem.mesh().points().iter().map(|_| std::array::from_fn(|_| random.between(-1.0, 1.0))).collect();
+        let u: Vec<[f64; D]> = problem
+            .mesh()
+            .points_in::<2>()
+            .iter()
+            .map(|_| std::array::from_fn(|_| random.between(-1.0, 1.0)))
+            .collect();
         let stiffness = Stiffness::on_strips(problem, strips);
         let (expected, energy) = plain(problem, &u);
         let mut force = vec![[0.0; D]; u.len()];
@@ -246,14 +250,14 @@ mod tests {
         let soft = Elastic::plane_strain(3.0, 0.4, 1.0, 0.5).unwrap();
         for seed in 0..20 {
             let mesh = random_mesh(5 + seed as usize, seed);
-            let strips = Strips::with_fewest(mesh.cells(), 8 + seed as usize);
+            let strips = Strips::with_fewest(mesh.nodes_of::<3>(), 8 + seed as usize);
             let hard = Elastic::plane_stress(7.0, 0.3, 2.0, 1.0).unwrap();
             let problem = TriangleProblem::builder(mesh).material_of("soft", soft).material_of("hard", hard);
             check(&problem.build().unwrap(), strips, &mut random);
         }
         for elements in [1, 2, 3, 8, 101] {
-            let mesh = crate::mesh::BarMesh::uniform_bar(2.0, elements).unwrap();
-            let strips = Strips::with_fewest(mesh.cells(), 10);
+            let mesh = crate::mesh::Mesh::uniform_bar(2.0, elements).unwrap();
+            let strips = Strips::with_fewest(mesh.nodes_of::<3>(), 10);
             let problem = BarProblem::builder(mesh).material(Elastic::bar(3.0, 1.0, 0.1).unwrap()).build().unwrap();
             check(&problem, strips, &mut random);
         }
@@ -266,8 +270,12 @@ mod tests {
         let law = Elastic::plane_stress(7.0, 0.3, 2.0, 1.0).unwrap();
         let problem = TriangleProblem::builder(mesh).material(law).build().unwrap();
         let (stiffness, mut random) = (Stiffness::new(&problem), Random::new(6));
-        let u: Vec<[f64; 2]> =
-            problem.mesh().points().iter().map(|_| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)]).collect();
+        let u: Vec<[f64; 2]> = problem
+            .mesh()
+            .points_in::<2>()
+            .iter()
+            .map(|_| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)])
+            .collect();
         let mut forces = [vec![[0.0; 2]; u.len()], vec![[0.0; 2]; u.len()]];
         let [a, b] =
             forces.each_mut().map(|force| StripSweep { stiffness: &stiffness, strip: 0, displacement: &u, force });

@@ -61,9 +61,9 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
         let node_lines = problem.node_lines();
         made.bodies = (0..mesh.parts()).map(|_| Body::default()).collect();
         for facet in mesh.boundary() {
-            let (nodes, owner) = (mesh.facets()[facet.index()].nodes, mesh.facets()[facet.index()].owner);
-            let (normal, area) = mesh.facet_normal(facet);
-            let height = D as f64 * mesh.cell_geometry(owner).volume / area;
+            let (nodes, owner) = (mesh.facet_nodes::<D>(facet), mesh.facet(facet).owner);
+            let (normal, area) = mesh.normal_in::<D>(facet);
+            let height = D as f64 * mesh.geometry::<D, N>(owner).volume / area;
             let line = symmetry::line_of(mesh, &problem.supported(facet), &node_lines, facet);
             let body = &mut made.bodies[of_node[nodes[0].index()]];
             body.facets.push(Side { facet, height, line });
@@ -76,7 +76,8 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
         let lines: Vec<Vec<SymmetryLine>> = lines.collect();
         for (a, own) in made.bodies.iter().enumerate() {
             for (b, other) in made.bodies.iter().enumerate().filter(|(b, _)| *b != a) {
-                let points = own.nodes.keys().chain(other.nodes.keys()).map(|node| &mesh.points()[node.index()]);
+                let points =
+                    own.nodes.keys().chain(other.nodes.keys()).map(|node| &mesh.points_in::<D>()[node.index()]);
                 made.halves.insert([a, b], common_lines([&lines[a], &lines[b]], points, mesh.size()));
             }
         }
@@ -93,13 +94,13 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
     }
 
     fn place(&self, displacement: &[[f64; D]], node: NodeId) -> Point {
-        let (x, u) = (&self.problem.mesh().points()[node.index()], &displacement[node.index()]);
+        let (x, u) = (&self.problem.mesh().points_in::<D>()[node.index()], &displacement[node.index()]);
         std::array::from_fn(|c| if c < D { x[c] + u[c] } else { 0.0 })
     }
 
     /// The ends of a facet; one of a bar stands across it.
     fn ends(&self, displacement: &[[f64; D]], facet: FacetId) -> [Point; 2] {
-        let nodes = self.problem.mesh().facets()[facet.index()].nodes;
+        let nodes = self.problem.mesh().facet_nodes::<D>(facet);
         let [mut a, mut b] = [nodes[0], nodes[D - 1]].map(|node| self.place(displacement, node));
         if D == 1 {
             (a[1], b[1]) = (-1.0, 1.0);
@@ -140,7 +141,7 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
 
     /// The first node that is in another body, the number of its own body and of that one, and how deep it is (m).
     fn found(&self, displacement: &[[f64; D]]) -> Option<(NodeId, [usize; 2], f64)> {
-        let (points, size) = (self.problem.mesh().points(), self.problem.mesh().size());
+        let (points, size) = (self.problem.mesh().points_in::<D>(), self.problem.mesh().size());
         let limits: Vec<_> = self.bodies.iter().map(|body| self.limits(displacement, body)).collect();
         let facing = self.problem.surface().facing(displacement);
         let is_solved = |node: NodeId, body: usize| match self.solved.get(&(node, body)) {

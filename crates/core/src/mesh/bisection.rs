@@ -11,29 +11,29 @@ pub(super) type Twins = BTreeMap<usize, usize>;
 /// A mesh that is cut again and again. Where nodes of two bodies face each other in pairs, an edge and the one that it
 /// faces are cut together, so that they go on facing each other.
 #[derive(Clone, Debug)]
-pub struct Bisection<const D: usize, const N: usize> {
-    mesh: Arc<Mesh<D, N>>,
+pub struct Bisection {
+    mesh: Arc<Mesh>,
     /// Of each interface.
     twins: Vec<Twins>,
 }
 
-impl<const D: usize, const N: usize> Bisection<D, N> {
+impl Bisection {
     /// From a mesh and the pairs of nodes that face each other at each interface.
     #[must_use]
-    pub fn new(mesh: Arc<Mesh<D, N>>, interfaces: &[Vec<[NodeId; 2]>]) -> Self {
+    pub fn new(mesh: Arc<Mesh>, interfaces: &[Vec<[NodeId; 2]>]) -> Self {
         let both = |[a, b]: &[NodeId; 2]| [(a.index(), b.index()), (b.index(), a.index())];
         Self { mesh, twins: interfaces.iter().map(|pairs| pairs.iter().flat_map(both).collect()).collect() }
     }
 
     /// The mesh as it is now.
     #[must_use]
-    pub fn mesh(&self) -> &Arc<Mesh<D, N>> {
+    pub fn mesh(&self) -> &Arc<Mesh> {
         &self.mesh
     }
 
     /// The mesh as it is now.
     #[must_use]
-    pub fn into_mesh(self) -> Arc<Mesh<D, N>> {
+    pub fn into_mesh(self) -> Arc<Mesh> {
         self.mesh
     }
 
@@ -59,22 +59,27 @@ impl<const D: usize, const N: usize> Bisection<D, N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{ElementGroups, FacetGroups, TriangleMesh};
+    use crate::mesh::{ElementGroups, FacetGroups, Mesh};
 
     /// Two squares, one above the other, whose nodes face each other across a gap.
-    fn pair() -> (TriangleMesh, Vec<[NodeId; 2]>) {
-        let lower = TriangleMesh::rectangle(1.0, 1.0, 3, 2).unwrap();
+    fn pair() -> (Mesh, Vec<[NodeId; 2]>) {
+        let lower = Mesh::rectangle(1.0, 1.0, 3, 2).unwrap();
         let count = lower.node_count();
-        let points = lower.points().iter().copied().chain(lower.points().iter().map(|p| [p[0], 1.01 + p[1]])).collect();
-        let cells: Vec<_> = lower.cells().iter().map(|cell| cell.map(|n| n.index())).collect();
+        let points = lower
+            .points_in::<2>()
+            .iter()
+            .copied()
+            .chain(lower.points_in::<2>().iter().map(|p| [p[0], 1.01 + p[1]]))
+            .collect();
+        let cells: Vec<_> = lower.nodes_of::<3>().iter().map(|cell| cell.map(|n| n.index())).collect();
         let cells: Vec<_> = cells.iter().copied().chain(cells.iter().map(|cell| cell.map(|n| count + n))).collect();
-        let mesh = TriangleMesh::of_bodies(points, &cells, &FacetGroups::new(), &ElementGroups::new()).unwrap();
+        let mesh = Mesh::of_bodies(points, &cells, &FacetGroups::new(), &ElementGroups::new()).unwrap();
         (mesh, (0..4).map(|k| [NodeId::new(8 + k), NodeId::new(count + k)]).collect())
     }
 
     /// The places along the line of nodes at this height, in order.
-    fn along(mesh: &TriangleMesh, height: f64) -> Vec<f64> {
-        let mut found: Vec<f64> = mesh.points().iter().filter(|p| p[1] == height).map(|p| p[0]).collect();
+    fn along(mesh: &Mesh, height: f64) -> Vec<f64> {
+        let mut found: Vec<f64> = mesh.points_in::<2>().iter().filter(|p| p[1] == height).map(|p| p[0]).collect();
         found.sort_unstable_by(f64::total_cmp);
         found
     }
@@ -87,7 +92,7 @@ mod tests {
             let mut bisection = Bisection::new(Arc::new(mesh.clone()), interfaces);
             for _ in 0..4 {
                 let touches = |e: ElementId| {
-                    let points = bisection.mesh().cell_points(e);
+                    let points = bisection.mesh().corners::<2, 3>(e);
                     points.iter().any(|p| p[0] == 0.0 && p[1] == 1.0)
                 };
                 bisection.clone().cut(touches).unwrap();

@@ -1,7 +1,8 @@
 //! Every check that a mesh must pass.
 
 use super::geometry::diameter;
-use super::{ElementGroups, Facet, FacetGroups};
+use super::topology::Facets;
+use super::{ElementGroups, FacetRows};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::memory::can_be_had;
 use crate::message::{facet, numbers, rounded, short};
@@ -208,24 +209,25 @@ pub(super) fn orient<const D: usize, const N: usize>(
     Ok(reoriented)
 }
 
-pub(super) fn facet_groups<const D: usize>(
-    facets: &[Facet<D>],
+pub(super) fn facet_groups(
+    facets: &Facets,
     node_count: usize,
-    groups: &FacetGroups<D>,
+    groups: &FacetRows,
 ) -> Result<BTreeMap<String, Vec<FacetId>>, MeshError> {
-    let find = |group: &String, nodes: &[usize; D]| {
+    let find = |group: &String, nodes: &[usize]| {
         let missing = || MeshError::NoSuchFacet { group: group.clone(), nodes: nodes.to_vec() };
         if nodes.iter().any(|&n| n >= node_count) {
             return Err(missing());
         }
-        let mut sorted = nodes.map(NodeId::new);
+        let mut sorted: Vec<NodeId> = nodes.iter().copied().map(NodeId::new).collect();
         sorted.sort_unstable();
-        let at = facets.binary_search_by(|facet| facet.nodes.cmp(&sorted)).map_err(|_| missing())?;
-        if facets[at].neighbour.is_some() { Err(missing()) } else { Ok(FacetId::new(at)) }
+        let at = facets.find(&sorted).ok_or_else(missing)?;
+        if facets.get(at).neighbour.is_some() { Err(missing()) } else { Ok(FacetId::new(at)) }
     };
     let mut named = BTreeMap::new();
     for (group, members) in groups {
-        let mut ids = members.iter().map(|nodes| find(group, nodes)).collect::<Result<Vec<_>, _>>()?;
+        let mut ids =
+            members.chunks_exact(facets.width).map(|nodes| find(group, nodes)).collect::<Result<Vec<_>, _>>()?;
         ids.sort_unstable();
         ids.dedup();
         named.insert(group.clone(), ids);

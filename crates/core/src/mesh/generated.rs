@@ -1,46 +1,45 @@
 //! Meshes of the generators, known by their nodes, with another number of elements.
 
-use super::{BarMesh, Diagonals, Mesh, TriangleMesh};
+use super::{Diagonals, Mesh};
+use crate::ids::NodeId;
+use crate::simplex::Shape;
 use std::f64::consts::TAU;
 
 /// Nodes agree to this part of the size of a mesh: rounding of a mesh that was turned and moved.
 const SAME: f64 = 1e-9;
 
-/// A mesh that may have come from a generator.
-pub trait Generated: Sized {
+impl Mesh {
     /// The mesh of the same generator with elements that are smaller by about this factor: the outline of a disc comes
     /// nearer to its circle. None if the mesh did not come from a generator, was refined or has other groups.
-    fn resized(&self, factor: f64) -> Option<Self>;
-}
-
-impl Generated for BarMesh {
-    fn resized(&self, factor: f64) -> Option<Self> {
-        let (elements, points) = (self.element_count(), self.points());
-        let [start, end] = [points.first()?[0], points.last()?[0]];
-        let bar = |elements| Self::uniform_bar(end - start, elements).ok();
-        let moved = |mesh: Self| mesh.placed(&[start], 0.0).ok();
-        same(self, &bar(elements).and_then(moved)?).then(|| bar(finer(elements, factor)).and_then(moved))?
+    #[must_use]
+    pub fn resized(&self, factor: f64) -> Option<Self> {
+        match self.kind {
+            Shape::Bar => bar(self, factor),
+            Shape::Triangle => rectangle(self, factor).or_else(|| disc(self, factor)),
+        }
     }
 }
 
-impl Generated for TriangleMesh {
-    fn resized(&self, factor: f64) -> Option<Self> {
-        rectangle(self, factor).or_else(|| disc(self, factor))
-    }
+/// The bar, which may be moved.
+fn bar(mesh: &Mesh, factor: f64) -> Option<Mesh> {
+    let (elements, points) = (mesh.element_count(), mesh.points());
+    let [start, end] = [*points.first()?, *points.last()?];
+    let make = |elements| Mesh::uniform_bar(end - start, elements).ok()?.placed(&[start, 0.0, 0.0], 0.0).ok();
+    same(mesh, &make(elements)?).then(|| make(finer(elements, factor)))?
 }
 
 /// The rectangle, which may be turned and moved.
-fn rectangle(mesh: &TriangleMesh, factor: f64) -> Option<TriangleMesh> {
+fn rectangle(mesh: &Mesh, factor: f64) -> Option<Mesh> {
     let [nx, ny] = ["bottom", "left"].map(|side| mesh.facet_groups().get(side).map_or(0, Vec::len));
     let count = (nx + 1) * (ny + 1);
     if nx == 0 || ny == 0 || mesh.node_count() < count {
         return None;
     }
-    let (origin, along, up) = (mesh.points()[0], mesh.points()[nx], mesh.points()[(nx + 1) * ny]);
+    let [origin, along, up] = [0, nx, (nx + 1) * ny].map(|node| mesh.point(NodeId::new(node)));
     let [width, height] = [along, up].map(|end| (end[0] - origin[0]).hypot(end[1] - origin[1]));
     let turned = (along[1] - origin[1]).atan2(along[0] - origin[0]).to_degrees();
     let make = |[nx, ny]: [usize; 2], diagonals| {
-        TriangleMesh::rectangle_cut(width, height, nx, ny, diagonals).ok()?.placed(&origin, turned).ok()
+        Mesh::rectangle_cut(width, height, nx, ny, diagonals).ok()?.placed(&origin, turned).ok()
     };
     let (_, diagonals) = Diagonals::NAMES
         .into_iter()
@@ -49,14 +48,15 @@ fn rectangle(mesh: &TriangleMesh, factor: f64) -> Option<TriangleMesh> {
 }
 
 /// The disc, which may be turned and moved.
-fn disc(mesh: &TriangleMesh, factor: f64) -> Option<TriangleMesh> {
+fn disc(mesh: &Mesh, factor: f64) -> Option<Mesh> {
     // 6 rings² elements.
     let rings = (mesh.element_count() as f64 / 6.0).sqrt().round() as usize;
-    let lowest = mesh.points().get((3 * rings * rings.checked_sub(1)?) + 1)?;
-    let centre = mesh.points()[0];
+    let [centre, lowest] = [0, (3 * rings * rings.checked_sub(1)?) + 1]
+        .map(|node| (node < mesh.node_count()).then(|| mesh.point(NodeId::new(node))));
+    let (centre, lowest) = (centre?, lowest?);
     let [x, y] = [lowest[0] - centre[0], lowest[1] - centre[1]];
     let turned = (x.atan2(-y).rem_euclid(TAU)).to_degrees();
-    let make = |rings| TriangleMesh::disc(x.hypot(y), rings).ok()?.placed(&centre, turned).ok();
+    let make = |rings| Mesh::disc(x.hypot(y), rings).ok()?.placed(&centre, turned).ok();
     same(mesh, &make(rings)?).then(|| make(finer(rings, factor)))?
 }
 
@@ -65,13 +65,12 @@ fn finer(count: usize, factor: f64) -> usize {
 }
 
 /// Whether two meshes have the same elements and groups, and nodes at the same places to rounding.
-fn same<const D: usize, const N: usize>(a: &Mesh<D, N>, b: &Mesh<D, N>) -> bool {
-    let near = |p: &[f64; D], q: &[f64; D]| (0..D).all(|c| (p[c] - q[c]).abs() <= SAME * a.size());
-    a.cells() == b.cells()
+fn same(a: &Mesh, b: &Mesh) -> bool {
+    a.cell_rows() == b.cell_rows()
         && a.facet_groups() == b.facet_groups()
         && a.element_groups() == b.element_groups()
-        && a.node_count() == b.node_count()
-        && a.points().iter().zip(b.points()).all(|(p, q)| near(p, q))
+        && a.points().len() == b.points().len()
+        && a.points().iter().zip(b.points()).all(|(p, q)| (p - q).abs() <= SAME * a.size())
 }
 
 #[cfg(test)]
@@ -88,13 +87,13 @@ mod tests {
             (nx, ny, rings, kind) in (2..7_usize, 2..7_usize, 1..6_usize, 0..3_usize),
             turned in -180.0..180.0_f64,
         ) {
-            let placed = |mesh: TriangleMesh| mesh.placed(&[x, y], turned).unwrap();
-            let cut = |n: usize| TriangleMesh::rectangle_cut(width, height, n * nx, n * ny, Diagonals::NAMES[kind].1);
+            let placed = |mesh: Mesh| mesh.placed(&[x, y, 0.0], turned).unwrap();
+            let cut = |n: usize| Mesh::rectangle_cut(width, height, n * nx, n * ny, Diagonals::NAMES[kind].1);
             let rectangle = placed(cut(1).unwrap());
             prop_assert!(same(&rectangle.resized(3.0).unwrap(), &placed(cut(3).unwrap())));
-            let disc = |rings| placed(TriangleMesh::disc(width, rings).unwrap());
+            let disc = |rings| placed(Mesh::disc(width, rings).unwrap());
             prop_assert!(same(&disc(rings).resized(2.0).unwrap(), &disc(2 * rings)));
-            let bar = |n| BarMesh::uniform_bar(width, n).unwrap().placed(&[x], 0.0).unwrap();
+            let bar = |n| Mesh::uniform_bar(width, n).unwrap().placed(&[x, 0.0, 0.0], 0.0).unwrap();
             prop_assert!(same(&bar(nx).resized(5.0).unwrap(), &bar(5 * nx)));
             prop_assert!(rectangle.refined().unwrap().resized(2.0).is_none());
             prop_assert!(disc(rings).refined_where(|e| e.index() == 0).unwrap().resized(2.0).is_none());

@@ -1,6 +1,6 @@
 //! Uniform bars, rectangles and discs.
 
-use super::{BarMesh, ElementGroups, FacetGroups, MeshError, TriangleMesh, room};
+use super::{ElementGroups, FacetGroups, Mesh, MeshError, room};
 
 /// A length that must be positive and finite.
 fn positive(name: &'static str, value: f64) -> Result<(), MeshError> {
@@ -21,7 +21,7 @@ fn count(name: &'static str, value: usize) -> Result<(), MeshError> {
     Err(MeshError::Generator { name, value: value as f64, allowed: "a number of elements from 1 to 20 000 000" })
 }
 
-impl BarMesh {
+impl Mesh {
     /// A bar from 0 to `length` (m) in `elements` equal elements; its end points are the groups
     /// `start` (at 0) and `end`.
     ///
@@ -68,7 +68,7 @@ impl Diagonals {
     }
 }
 
-impl TriangleMesh {
+impl Mesh {
     /// The rectangle [0, width] × [0, height] (m) in nx × ny cells, each cut from its lower left
     /// to its upper right corner; its sides are the groups `left`, `right`, `bottom`, `top`.
     ///
@@ -181,14 +181,15 @@ mod tests {
     use super::*;
     use crate::ids::ElementId;
 
-    fn area(mesh: &TriangleMesh) -> f64 {
-        (0..mesh.element_count()).map(|e| mesh.cell_geometry(ElementId::new(e)).volume).sum()
+    fn area(mesh: &Mesh) -> f64 {
+        (0..mesh.element_count()).map(|e| mesh.volume(ElementId::new(e))).sum()
     }
 
     /// The triangles by the places of their nodes, each in order, of the mesh or of its image x ↦ 3 − x.
-    fn triangles(mesh: &TriangleMesh, mirrored: bool) -> Vec<[[u64; 2]; 3]> {
+    fn triangles(mesh: &Mesh, mirrored: bool) -> Vec<[[u64; 2]; 3]> {
         let place = |p: [f64; 2]| [if mirrored { 3.0 - p[0] } else { p[0] }, p[1]].map(f64::to_bits);
-        let mut found: Vec<_> = mesh.cells().iter().map(|cell| cell.map(|k| place(mesh.points()[k.index()]))).collect();
+        let mut found: Vec<_> =
+            mesh.nodes_of::<3>().iter().map(|cell| cell.map(|k| place(mesh.points_in()[k.index()]))).collect();
         found.iter_mut().for_each(|triangle| triangle.sort_unstable());
         found.sort_unstable();
         found
@@ -197,7 +198,7 @@ mod tests {
     /// All coordinates are multiples of 3/8 and exact, so that mirror images have the same bits.
     #[test]
     fn rectangles_are_cut_by_each_diagonal() {
-        let cut = |diagonals| TriangleMesh::rectangle_cut(3.0, 2.0, 4, 2, diagonals).unwrap();
+        let cut = |diagonals| Mesh::rectangle_cut(3.0, 2.0, 4, 2, diagonals).unwrap();
         for (name, diagonals) in Diagonals::NAMES {
             let (mesh, count) = (cut(diagonals), if diagonals == Diagonals::Crossed { 32 } else { 16 });
             assert_eq!((mesh.element_count(), mesh.reoriented_elements()), (count, 0), "{name}");
@@ -205,9 +206,9 @@ mod tests {
             let symmetric = triangles(&mesh, false) == triangles(&mesh, true);
             assert_eq!(symmetric, diagonals != Diagonals::Right, "{name}");
             // The corners of the cells, and so the sides, have the same numbers with all diagonals.
-            assert_eq!(mesh.points()[..15], cut(Diagonals::Right).points()[..], "{name}");
+            assert_eq!(mesh.points()[..30], cut(Diagonals::Right).points()[..], "{name}");
         }
-        let many = TriangleMesh::rectangle_cut(1.0, 1.0, 6_000_000, 1, Diagonals::Crossed).unwrap_err();
+        let many = Mesh::rectangle_cut(1.0, 1.0, 6_000_000, 1, Diagonals::Crossed).unwrap_err();
         assert!(many.to_string().contains("4 * nx * ny"), "{many}");
     }
 
@@ -216,7 +217,7 @@ mod tests {
     #[test]
     fn a_disc_is_a_regular_polygon() {
         for rings in [1, 2, 7] {
-            let disc = TriangleMesh::disc(0.5, rings).unwrap();
+            let disc = Mesh::disc(0.5, rings).unwrap();
             assert_eq!((disc.element_count(), disc.node_count()), (6 * rings * rings, 3 * rings * (rings + 1) + 1));
             assert_eq!((disc.reoriented_elements(), disc.facet_groups()["boundary"].len()), (0, 6 * rings));
             let area = area(&disc);
@@ -224,10 +225,10 @@ mod tests {
             let exact = 0.5 * sides * 0.25 * (std::f64::consts::TAU / sides).sin();
             // Rounding of a sum of at most 300 terms.
             assert!((area - exact).abs() < 1e-13 * exact, "{area} {exact}");
-            assert_eq!(disc.points().iter().filter(|p| **p == [0.0, -0.5]).count(), 1);
-            for p in disc.points() {
+            assert_eq!(disc.points_in::<2>().iter().filter(|p| **p == [0.0, -0.5]).count(), 1);
+            for p in disc.points_in::<2>() {
                 let image = |q: &&[f64; 2]| (q[0] + p[0]).abs() + (q[1] - p[1]).abs() < 1e-15;
-                assert_eq!(disc.points().iter().filter(image).count(), 1, "{p:?}");
+                assert_eq!(disc.points_in::<2>().iter().filter(image).count(), 1, "{p:?}");
             }
         }
     }

@@ -1,8 +1,10 @@
 //! How far a body is inside another one.
 
-use super::Mesh;
 use super::place::foot;
-use crate::ids::{ElementId, FacetId, NodeId};
+use super::{Mesh, in_kind};
+use crate::border::{Vector, cut};
+use crate::ids::{FacetId, NodeId};
+use crate::simplex::simplex;
 
 /// The node of a body that is deepest inside another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,15 +16,15 @@ pub(super) struct Inside {
     pub(super) facets: [FacetId; 2],
 }
 
-impl<const D: usize, const N: usize> Mesh<D, N> {
+impl Mesh {
     /// The node of the boundary that is deepest inside another mesh, by more than a tolerance (m).
     pub(super) fn deepest_in(&self, other: &Self, tolerance: f64) -> Option<Inside> {
-        let mut nodes: Vec<NodeId> = self.boundary().flat_map(|facet| self.facets()[facet.index()].nodes).collect();
+        let mut nodes: Vec<NodeId> = self.boundary().flat_map(|facet| self.facet(facet).nodes).copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
-        let outline: Vec<(FacetId, [[f64; D]; D])> = other.boundary().map(|facet| (facet, other.ends(facet))).collect();
+        let outline: Vec<(FacetId, [Vector; 2])> = other.boundary().map(|facet| (facet, other.ends(facet))).collect();
         let depth = |node: NodeId| {
-            let point = &self.points()[node.index()];
+            let point = &self.point(node);
             if !other.encloses(point) {
                 return None;
             }
@@ -34,7 +36,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         let normal = other.facet_normal(nearest).0;
         let against =
             |facet: &FacetId| -> f64 { self.facet_normal(*facet).0.iter().zip(normal).map(|(a, b)| a * b).sum() };
-        let own = self.boundary().filter(|facet| self.facets()[facet.index()].nodes.contains(&node));
+        let own = self.boundary().filter(|&facet| self.facet(facet).nodes.contains(&node));
         let own = own.min_by(|a, b| against(a).total_cmp(&against(b)))?;
         Some(Inside { node, depth, facets: [own, nearest] })
     }
@@ -45,10 +47,9 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     }
 
     /// Whether a point is in an element, or on its boundary.
-    fn encloses(&self, point: &[f64; D]) -> bool {
-        (0..self.element_count()).map(ElementId::new).any(|element| {
-            !self.is_beside(element, point, 0.0) && self.simplex().encloses(&self.cell_points(element), point, 0.0)
-        })
+    fn encloses(&self, point: &Vector) -> bool {
+        let mut near = self.elements().filter(|&element| !self.is_beside(element, point, 0.0));
+        in_kind!(self, D, N => near.any(|e| simplex::<D, N>().encloses(&self.corners(e), &cut(point), 0.0)))
     }
 }
 
@@ -58,7 +59,7 @@ mod tests {
 
     #[test]
     fn the_deepest_node_is_found_with_its_surfaces() {
-        let block = |x: f64, y: f64| Mesh::<2, 3>::rectangle(4.0, 2.0, 8, 4).unwrap().placed(&[x, y], 0.0).unwrap();
+        let block = |x: f64, y: f64| Mesh::rectangle(4.0, 2.0, 8, 4).unwrap().placed(&[x, y, 0.0], 0.0).unwrap();
         let (lower, upper) = (block(0.0, 0.0), block(1.0, 1.9));
         let inside = upper.deepest_in(&lower, 1e-9).unwrap();
         // The lower side of the upper block is 0.1 m below the upper side of the lower one.
@@ -68,7 +69,7 @@ mod tests {
         // Blocks that touch, and such that are apart.
         assert_eq!(block(1.0, 2.0).deepest_in(&lower, 1e-9), None);
         assert_eq!(block(1.0, 2.1).deepest_in(&lower, 1e-9), None);
-        let bar = |x: f64| Mesh::<1, 2>::uniform_bar(1.0, 10).unwrap().placed(&[x], 0.0).unwrap();
+        let bar = |x: f64| Mesh::uniform_bar(1.0, 10).unwrap().placed(&[x, 0.0, 0.0], 0.0).unwrap();
         let inside = bar(0.75).deepest_in(&bar(0.0), 1e-9).unwrap();
         assert!((inside.depth - 0.25).abs() < 1e-12 && inside.node.index() == 0, "{inside:?}");
     }

@@ -1,18 +1,15 @@
 //! Several bodies as one mesh, each in its place, and a body out of such a mesh.
 
-use super::{ElementGroups, FacetGroups, Mesh, MeshError};
+use super::{ElementGroups, FacetRows, Mesh, MeshError};
+use crate::border::{Vector, cut, padded};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::message::{short, vector};
-use crate::simplex::{Element, Simplex};
 use std::collections::BTreeMap;
 
 /// Nodes that are inside by less than this share of the larger body touch it: rounding of places.
 const ROUNDING: f64 = 1e-12;
 
-impl<const D: usize, const N: usize> Mesh<D, N>
-where
-    Element<D, N>: Simplex<D, N>,
-{
+impl Mesh {
     /// The mesh of some bodies with their names: nodes and elements one body after the other. The elements of a body
     /// are the group of its name; the groups of its mesh become "body.group".
     ///
@@ -20,22 +17,25 @@ where
     /// Bodies that overlap, or too many elements.
     pub fn joined(bodies: &[(&str, &Self)]) -> Result<Self, MeshError> {
         let (mut points, mut cells) = (Vec::new(), Vec::new());
-        let (mut facet_groups, mut element_groups) = (FacetGroups::new(), ElementGroups::new());
+        let (mut facet_groups, mut element_groups) = (FacetRows::new(), ElementGroups::new());
+        let (mut first_node, mut first_element) = (0, 0);
         for (body, mesh) in bodies {
-            let (first_node, first_element) = (points.len(), cells.len());
             points.extend_from_slice(mesh.points());
-            cells.extend(mesh.plain_cells().map(|cell| cell.map(|node| first_node + node)));
-            for (group, facets) in mesh.plain_facet_groups() {
-                let facets = facets.into_iter().map(|nodes| nodes.map(|node| first_node + node)).collect();
-                facet_groups.insert(format!("{body}.{group}"), facets);
+            cells.extend(mesh.cells.iter().map(|node| first_node + node.index()));
+            for (group, nodes) in mesh.plain_facet_groups() {
+                facet_groups.insert(format!("{body}.{group}"), nodes.into_iter().map(|n| first_node + n).collect());
             }
             for (group, elements) in mesh.plain_element_groups() {
                 let elements = elements.into_iter().map(|element| first_element + element).collect();
                 element_groups.insert(format!("{body}.{group}"), elements);
             }
-            element_groups.insert((*body).to_string(), (first_element..cells.len()).collect());
+            let all = (first_element..first_element + mesh.element_count()).collect();
+            element_groups.insert((*body).to_string(), all);
+            (first_node, first_element) = (first_node + mesh.node_count(), first_element + mesh.element_count());
         }
-        let made = Self::of_bodies(points, &cells, &facet_groups, &element_groups)?;
+        let dimension = bodies.first().map_or(1, |(_, mesh)| mesh.dimension());
+        let groups = (&facet_groups, &element_groups);
+        let made = Self::bodies_from_rows(dimension, &points, &cells, groups)?;
         let import_warnings = bodies.iter().flat_map(|(_, mesh)| mesh.import_warnings.iter().cloned()).collect();
         Ok(Self {
             reoriented: bodies.iter().map(|(_, mesh)| mesh.reoriented).sum(),
@@ -78,12 +78,12 @@ where
             group.map_or_else(|| format!("\"{}\"", bodies[body].0), |group| format!("\"{}.{group}\"", bodies[body].0))
         };
         let before: usize = bodies[..own].iter().map(|(_, mesh)| mesh.node_count()).sum();
-        let place = bodies[own].1.points()[inside.node.index()];
+        let (mesh, place) = (bodies[own].1, bodies[own].1.point(inside.node));
         Some(format!(
             ": node {} of {} at {} m is {} m inside, behind {}",
             before + inside.node.index(),
             surface(own, 0),
-            vector(&place),
+            vector(&place[..mesh.dimension()]),
             short(inside.depth),
             surface(other, 1)
         ))
@@ -97,26 +97,27 @@ where
     pub fn part_of_group(&self, group: &str) -> Option<Result<Self, MeshError>> {
         let chosen = self.element_groups.get(group)?;
         let elements: BTreeMap<ElementId, usize> = chosen.iter().enumerate().map(|(new, &old)| (old, new)).collect();
-        let mut nodes: BTreeMap<usize, usize> =
-            chosen.iter().flat_map(|e| self.cells[e.index()]).map(|node| (node.index(), 0)).collect();
+        let mut nodes: BTreeMap<NodeId, usize> = chosen.iter().flat_map(|&e| self.cell(e)).map(|&n| (n, 0)).collect();
         nodes.values_mut().enumerate().for_each(|(new, number)| *number = new);
-        let points = nodes.keys().map(|&node| self.points[node]).collect();
-        let cells: Vec<_> = chosen.iter().map(|e| self.cells[e.index()].map(|node| nodes[&node.index()])).collect();
+        let dimension = self.dimension();
+        let points: Vec<f64> = nodes.keys().flat_map(|&node| self.point(node).into_iter().take(dimension)).collect();
+        let cells: Vec<_> = chosen.iter().flat_map(|&e| self.cell(e)).map(|node| nodes[node]).collect();
         let of_chosen = |facet: &&FacetId| {
-            let facet = &self.facets[facet.index()];
+            let facet = self.facet(**facet);
             elements.contains_key(&facet.owner) || facet.neighbour.is_some_and(|e| elements.contains_key(&e))
         };
-        let along = |facet: &FacetId| self.facets[facet.index()].nodes.map(|node| nodes[&node.index()]);
+        let along = |&facet: &FacetId| self.facet(facet).nodes.iter().map(|node| nodes[node]);
         let facets = self
             .facet_groups
             .iter()
-            .map(|(name, all)| (name.clone(), all.iter().filter(of_chosen).map(along).collect::<Vec<_>>()));
+            .map(|(name, all)| (name.clone(), all.iter().filter(of_chosen).flat_map(along).collect::<Vec<_>>()));
         let inside = self
             .element_groups
             .iter()
             .map(|(name, all)| (name.clone(), all.iter().filter_map(|e| elements.get(e).copied()).collect::<Vec<_>>()));
         let (facets, inside) = (facets.filter(|(_, all)| !all.is_empty()), inside.filter(|(_, all)| !all.is_empty()));
-        let made = Self::of_bodies(points, &cells, &facets.collect(), &inside.collect());
+        let groups: (FacetRows, ElementGroups) = (facets.collect(), inside.collect());
+        let made = Self::bodies_from_rows(dimension, &points, &cells, (&groups.0, &groups.1));
         Some(made.map(|mesh| mesh.with_import_warnings(self.import_warnings.clone())))
     }
 
@@ -124,10 +125,12 @@ where
     ///
     /// # Errors
     /// As [`Mesh::new`]: points that fall together or are not finite.
-    pub fn mapped(&self, map: impl Fn(&[f64; D]) -> [f64; D]) -> Result<Self, MeshError> {
-        let cells: Vec<_> = self.plain_cells().collect();
-        let points = self.points().iter().map(map).collect();
-        let made = Self::of_bodies(points, &cells, &self.plain_facet_groups(), &self.plain_element_groups())?;
+    pub fn mapped<const D: usize>(&self, map: impl Fn(&[f64; D]) -> [f64; D]) -> Result<Self, MeshError> {
+        let (dimension, cells) = (self.dimension(), self.cells.iter().map(|node| node.index()).collect::<Vec<_>>());
+        let points: Vec<f64> =
+            self.places().flat_map(|place| padded(&map(&cut(&place))).into_iter().take(dimension)).collect();
+        let groups = (&self.plain_facet_groups(), &self.plain_element_groups());
+        let made = Self::bodies_from_rows(dimension, &points, &cells, groups)?;
         Ok(Self { reoriented: self.reoriented, ..made.with_import_warnings(self.import_warnings.clone()) })
     }
 
@@ -136,26 +139,20 @@ where
     ///
     /// # Errors
     /// As [`Mesh::mapped`].
-    pub fn placed(&self, origin: &[f64; D], degrees: f64) -> Result<Self, MeshError> {
+    pub fn placed<const D: usize>(&self, origin: &[f64; D], degrees: f64) -> Result<Self, MeshError> {
         // A body that is not turned keeps the bits of its mesh.
         let (sin, cos) = degrees.to_radians().sin_cos();
-        self.mapped(|p| {
-            let mut turned = *p;
-            if let [x, y] = turned.as_mut_slice() {
-                (*x, *y) = (cos * *x - sin * *y, sin * *x + cos * *y);
-            }
+        let (turns, origin) = (self.dimension() > 1, padded(origin));
+        self.mapped(|&[x, y, z]: &Vector| {
+            let turned = if turns { [cos * x - sin * y, sin * x + cos * y, z] } else { [x, y, z] };
             std::array::from_fn(|c| origin[c] + turned[c])
         })
     }
 
-    fn plain_cells(&self) -> impl Iterator<Item = [usize; N]> + '_ {
-        self.cells().iter().map(|cell| cell.map(NodeId::index))
-    }
-
-    fn plain_facet_groups(&self) -> FacetGroups<D> {
-        let nodes = |facet: &FacetId| self.facets()[facet.index()].nodes.map(NodeId::index);
+    fn plain_facet_groups(&self) -> FacetRows {
+        let nodes = |&facet: &FacetId| self.facet(facet).nodes.iter().map(|node| node.index());
         let groups = self.facet_groups().iter();
-        groups.map(|(name, facets)| (name.clone(), facets.iter().map(nodes).collect())).collect()
+        groups.map(|(name, facets)| (name.clone(), facets.iter().flat_map(nodes).collect())).collect()
     }
 
     fn plain_element_groups(&self) -> ElementGroups {

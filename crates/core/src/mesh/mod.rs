@@ -1,10 +1,8 @@
 //! Meshes of P1 simplices, checked once when they are made.
 //!
-//! `D` is the dimension and `N = D + 1` the number of nodes of an element: [`BarMesh`] and
-//! [`TriangleMesh`] name the two cases.
+//! A mesh has no dimension in its type: cells, facets and coordinates are data in rows. Code that is compiled for a
+//! dimension `D` and elements of `N` nodes reads them as arrays: [`Mesh::points_in`], [`Mesh::nodes_of`].
 
-mod any;
-mod any_search;
 mod bisection;
 mod check;
 mod generated;
@@ -20,18 +18,16 @@ mod place;
 mod refine;
 mod refine_locally;
 mod renumber;
+mod rows;
 mod star;
 mod strips;
 mod topology;
 
-pub use any::{AnyAround, AnyFacet, AnyMesh, FacetRows};
-pub use any_search::{AnyBisection, AnyLocator};
 pub use bisection::Bisection;
 pub use check::{MeshError, room};
-pub use generated::Generated;
 pub use generator::Diagonals;
 pub use import_warning::ImportWarning;
-pub use locate::Locator;
+pub use locate::{Locator, MOST_NODES, Weights};
 pub use order::Numbering;
 pub use place::Around;
 pub(crate) use renumber::NewNumbers;
@@ -39,17 +35,16 @@ pub use star::{Star, Stars};
 pub use strips::Strips;
 pub use topology::Facet;
 
+use crate::border::{Vector, cut, padded};
 use crate::ids::{ElementId, FacetId, NodeId};
-use crate::simplex::{CellGeometry, Element, Simplex};
+use crate::simplex::{CellGeometry, Shape, simplex};
 use std::collections::BTreeMap;
-
-/// A mesh of 2-node bars.
-pub type BarMesh = Mesh<1, 2>;
-/// A mesh of 3-node triangles.
-pub type TriangleMesh = Mesh<2, 3>;
+use topology::Facets;
 
 /// Named groups of facets, each facet given by its nodes in any order.
 pub type FacetGroups<const D: usize> = BTreeMap<String, Vec<[usize; D]>>;
+/// Named groups of facets: the nodes of all their facets, in rows.
+pub type FacetRows = BTreeMap<String, Vec<usize>>;
 /// Named groups of elements, by number.
 pub type ElementGroups = BTreeMap<String, Vec<usize>>;
 
@@ -57,12 +52,15 @@ pub type ElementGroups = BTreeMap<String, Vec<usize>>;
 /// non-manifold facets and nodes. Elements are positively oriented. Separate parts do not overlap, and touch only if
 /// the mesh is one of several bodies.
 #[derive(Clone, Debug)]
-pub struct Mesh<const D: usize, const N: usize> {
-    simplex: &'static dyn Simplex<D, N>,
-    points: Vec<[f64; D]>,
-    cells: Vec<[NodeId; N]>,
-    facets: Vec<Facet<D>>,
-    cell_facets: Vec<[FacetId; N]>,
+pub struct Mesh {
+    kind: Shape,
+    /// Coordinates of the nodes, in rows.
+    points: Vec<f64>,
+    /// Nodes of the elements, in rows.
+    cells: Vec<NodeId>,
+    facets: Facets,
+    /// Facets of the elements, in rows.
+    cell_facets: Vec<FacetId>,
     stars: Stars,
     facet_groups: BTreeMap<String, Vec<FacetId>>,
     element_groups: BTreeMap<String, Vec<ElementId>>,
@@ -74,6 +72,29 @@ pub struct Mesh<const D: usize, const N: usize> {
     import_warnings: Vec<ImportWarning>,
 }
 
+/// Does something with the dimension and the nodes of an element of a mesh as constants.
+macro_rules! in_kind {
+    ($mesh:expr, $dimension:ident, $nodes:ident => $body:expr) => {
+        match $mesh.kind {
+            $crate::simplex::Shape::Bar => {
+                #[allow(dead_code)]
+                const $dimension: usize = 1;
+                #[allow(dead_code)]
+                const $nodes: usize = 2;
+                $body
+            }
+            $crate::simplex::Shape::Triangle => {
+                #[allow(dead_code)]
+                const $dimension: usize = 2;
+                #[allow(dead_code)]
+                const $nodes: usize = 3;
+                $body
+            }
+        }
+    };
+}
+use in_kind;
+
 /// How near the separate parts of a mesh may be.
 #[derive(Clone, Copy)]
 enum Parts {
@@ -81,7 +102,7 @@ enum Parts {
     MayTouch,
 }
 
-impl<const D: usize, const N: usize> Mesh<D, N> {
+impl Mesh {
     /// Builds and checks a mesh.
     ///
     /// `points` are coordinates in metres, `cells` node numbers from 0. Negatively oriented
@@ -89,16 +110,13 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     ///
     /// # Errors
     /// A mesh that fails a check, with the numbers of the nodes or elements at fault.
-    pub fn new(
+    pub fn new<const D: usize, const N: usize>(
         points: Vec<[f64; D]>,
         cells: &[[usize; N]],
         facet_groups: &FacetGroups<D>,
         element_groups: &ElementGroups,
-    ) -> Result<Self, MeshError>
-    where
-        Element<D, N>: Simplex<D, N>,
-    {
-        Self::checked(&Element, points, cells, (facet_groups, element_groups), Parts::Apart)
+    ) -> Result<Self, MeshError> {
+        Self::checked(points, cells, (&rows(facet_groups), element_groups), Parts::Apart)
     }
 
     /// The same of bodies that may touch: parts of the mesh, of which nodes may be at one place. A problem has contact
@@ -106,25 +124,22 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     ///
     /// # Errors
     /// As [`Mesh::new`], for parts that overlap.
-    pub fn of_bodies(
+    pub fn of_bodies<const D: usize, const N: usize>(
         points: Vec<[f64; D]>,
         cells: &[[usize; N]],
         facet_groups: &FacetGroups<D>,
         element_groups: &ElementGroups,
-    ) -> Result<Self, MeshError>
-    where
-        Element<D, N>: Simplex<D, N>,
-    {
-        Self::checked(&Element, points, cells, (facet_groups, element_groups), Parts::MayTouch)
+    ) -> Result<Self, MeshError> {
+        Self::checked(points, cells, (&rows(facet_groups), element_groups), Parts::MayTouch)
     }
 
-    fn checked(
-        simplex: &'static dyn Simplex<D, N>,
+    fn checked<const D: usize, const N: usize>(
         points: Vec<[f64; D]>,
         cells: &[[usize; N]],
-        (facet_groups, element_groups): (&FacetGroups<D>, &ElementGroups),
+        (facet_groups, element_groups): (&FacetRows, &ElementGroups),
         given: Parts,
     ) -> Result<Self, MeshError> {
+        let simplex = simplex::<D, N>();
         room(cells.len())?;
         check::points(&points)?;
         let mut cells = check::cells(points.len(), cells)?;
@@ -135,7 +150,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
             Parts::MayTouch => check::duplicate_points_of_parts(&points, &part, size)?,
         }
         let reoriented = check::orient(simplex, &points, &mut cells)?;
-        let (facets, cell_facets) = topology::facets(&cells)?;
+        let (facets, cell_facets) = topology::facets::<D, N>(&cells)?;
         let stars = Stars::new(simplex, points.len(), &cells, &facets, &cell_facets)?;
         let (parts, touching) = parts::separate(simplex, (&points, &part), &cells, &facets, size)?;
         if let (Parts::Apart, Some(pair)) = (given, touching.first()) {
@@ -144,11 +159,11 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         let facet_groups = check::facet_groups(&facets, points.len(), facet_groups)?;
         let element_groups = check::element_groups(cells.len(), element_groups)?;
         Ok(Self {
-            simplex,
-            points,
-            cells,
+            kind: simplex.shape(),
+            points: points.into_flattened(),
+            cells: cells.into_flattened(),
             facets,
-            cell_facets,
+            cell_facets: cell_facets.into_flattened(),
             stars,
             facet_groups,
             element_groups,
@@ -162,38 +177,117 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
 
     /// The kind of its elements.
     #[must_use]
-    pub fn simplex(&self) -> &'static dyn Simplex<D, N> {
-        self.simplex
+    pub fn shape(&self) -> Shape {
+        self.kind
     }
 
-    /// Coordinates of the nodes (m).
+    /// 1 for bars, 2 for plane bodies.
     #[must_use]
-    pub fn points(&self) -> &[[f64; D]] {
+    pub fn dimension(&self) -> usize {
+        self.kind.dimension()
+    }
+
+    /// Nodes of an element.
+    #[must_use]
+    pub fn nodes_of_element(&self) -> usize {
+        self.kind.nodes()
+    }
+
+    /// Coordinates of the nodes (m), in rows.
+    #[must_use]
+    pub fn points(&self) -> &[f64] {
         &self.points
     }
 
-    /// Nodes of each element, positively oriented.
+    /// Coordinates of the nodes (m), in their dimension.
+    ///
+    /// # Panics
+    /// For another dimension.
+    #[inline]
     #[must_use]
-    pub fn cells(&self) -> &[[NodeId; N]] {
+    pub fn points_in<const D: usize>(&self) -> &[[f64; D]] {
+        assert_eq!(D, self.dimension(), "the dimension of the mesh");
+        self.points.as_chunks().0
+    }
+
+    /// Nodes of all elements, in rows, positively oriented.
+    #[must_use]
+    pub fn cell_rows(&self) -> &[NodeId] {
         &self.cells
     }
 
-    /// All facets: edges in 2D, points in 1D.
-    #[must_use]
-    pub fn facets(&self) -> &[Facet<D>] {
-        &self.facets
+    /// Nodes of each element.
+    pub fn cells(&self) -> std::slice::ChunksExact<'_, NodeId> {
+        self.cells.chunks_exact(self.nodes_of_element())
     }
 
-    /// Facets of each element; entry `k` lies opposite to local node `k`.
+    /// Nodes of each element, whose number is known.
+    ///
+    /// # Panics
+    /// For another number.
+    #[inline]
     #[must_use]
-    pub fn cell_facets(&self) -> &[[FacetId; N]] {
-        &self.cell_facets
+    pub fn nodes_of<const N: usize>(&self) -> &[[NodeId; N]] {
+        assert_eq!(N, self.nodes_of_element(), "nodes of an element");
+        self.cells.as_chunks().0
+    }
+
+    /// Nodes of an element.
+    #[must_use]
+    pub fn cell(&self, element: ElementId) -> &[NodeId] {
+        let count = self.nodes_of_element();
+        &self.cells[count * element.index()..count * (element.index() + 1)]
+    }
+
+    /// Facets of each element, whose number is known; entry `k` lies opposite to local node `k`.
+    #[inline]
+    #[must_use]
+    pub fn facets_of<const N: usize>(&self) -> &[[FacetId; N]] {
+        self.cell_facets.as_chunks().0
+    }
+
+    /// Facets of an element; entry `k` lies opposite to its node `k`.
+    #[must_use]
+    pub fn cell_facets(&self, element: ElementId) -> &[FacetId] {
+        let count = self.nodes_of_element();
+        &self.cell_facets[count * element.index()..count * (element.index() + 1)]
+    }
+
+    /// Number of facets: edges in 2D, points in 1D.
+    #[must_use]
+    pub fn facet_count(&self) -> usize {
+        self.facets.len()
+    }
+
+    /// A facet.
+    #[inline]
+    #[must_use]
+    pub fn facet(&self, facet: FacetId) -> Facet<'_> {
+        self.facets.get(facet.index())
+    }
+
+    /// The nodes of a facet, ascending.
+    #[inline]
+    #[must_use]
+    pub fn facet_nodes<const D: usize>(&self, facet: FacetId) -> [NodeId; D] {
+        self.facets.nodes.as_chunks().0[facet.index()]
+    }
+
+    /// All facets, in order.
+    pub fn facets(&self) -> impl ExactSizeIterator<Item = Facet<'_>> {
+        self.facets.iter()
     }
 
     /// The elements around each node, in order.
     #[must_use]
     pub fn stars(&self) -> &Stars {
         &self.stars
+    }
+
+    /// The elements around a node, in order.
+    #[must_use]
+    pub fn elements_around(&self, node: NodeId) -> &[ElementId] {
+        self.stars.star(node).elements
     }
 
     /// Named groups of facets.
@@ -229,7 +323,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     /// For each node the first node of its part.
     #[must_use]
     pub fn part_of_nodes(&self) -> Vec<NodeId> {
-        parts::part_of_nodes(self.points.len(), &self.cells)
+        in_kind!(self, D, N => parts::part_of_nodes(self.points.len() / D, self.nodes_of::<N>()))
     }
 
     /// For each node the number of its part, from 0, in the order of their first nodes.
@@ -273,7 +367,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     #[must_use]
     pub fn part_of_elements(&self) -> Vec<usize> {
         let of_node = self.part_numbers();
-        self.cells.iter().map(|cell| of_node[cell[0].index()]).collect()
+        self.cells().map(|cell| of_node[cell[0].index()]).collect()
     }
 
     /// Number of separate parts; elements that share a node belong to one part.
@@ -295,69 +389,127 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     }
 
     /// Number of nodes.
+    #[inline]
     #[must_use]
     pub fn node_count(&self) -> usize {
-        self.points.len()
+        self.points.len() / self.dimension()
     }
 
     /// Number of elements.
+    #[inline]
     #[must_use]
     pub fn element_count(&self) -> usize {
-        self.cells.len()
+        self.cells.len() / self.nodes_of_element()
     }
 
-    /// Coordinates of the nodes of an element (m).
+    /// All elements.
+    pub fn elements(&self) -> impl ExactSizeIterator<Item = ElementId> + use<> {
+        (0..self.element_count()).map(ElementId::new)
+    }
+
+    /// The place of a node (m).
     #[must_use]
-    pub fn cell_points(&self, element: ElementId) -> [[f64; D]; N] {
-        self.cells[element.index()].map(|node| self.points[node.index()])
+    pub fn point(&self, node: NodeId) -> Vector {
+        in_kind!(self, D, N => padded(&self.points_in::<D>()[node.index()]))
+    }
+
+    /// Places of the nodes (m).
+    pub fn places(&self) -> impl ExactSizeIterator<Item = Vector> + Clone + '_ {
+        (0..self.node_count()).map(|node| self.point(NodeId::new(node)))
+    }
+
+    /// Places of the nodes of an element (m).
+    #[must_use]
+    pub fn cell_points(&self, element: ElementId) -> Vec<Vector> {
+        self.cell(element).iter().map(|&node| self.point(node)).collect()
+    }
+
+    /// Coordinates of the nodes of an element (m), in their dimension.
+    #[inline]
+    #[must_use]
+    pub fn corners<const D: usize, const N: usize>(&self, element: ElementId) -> [[f64; D]; N] {
+        let (points, cells): (&[[f64; D]], &[[NodeId; N]]) = (self.points.as_chunks().0, self.cells.as_chunks().0);
+        cells[element.index()].map(|node| points[node.index()])
+    }
+
+    /// The mean of the nodes of an element (m), in their dimension.
+    #[must_use]
+    pub fn centroid_in<const D: usize>(&self, element: ElementId) -> [f64; D] {
+        let (points, nodes) = (self.points_in::<D>(), self.cell(element));
+        std::array::from_fn(|c| nodes.iter().map(|node| points[node.index()][c]).sum::<f64>() / nodes.len() as f64)
     }
 
     /// The mean of the nodes of an element (m).
     #[must_use]
-    pub fn centroid(&self, element: ElementId) -> [f64; D] {
-        let corners = self.cell_points(element);
-        std::array::from_fn(|c| corners.iter().map(|p| p[c]).sum::<f64>() / N as f64)
+    pub fn centroid(&self, element: ElementId) -> Vector {
+        in_kind!(self, D, N => padded(&self.centroid_in::<D>(element)))
     }
 
     /// The volume of each element (length in 1D, area in 2D).
     #[must_use]
     pub fn volumes(&self) -> Vec<f64> {
-        (0..self.element_count()).map(|e| self.cell_geometry(ElementId::new(e)).volume).collect()
+        self.elements().map(|element| self.volume(element)).collect()
+    }
+
+    /// The volume of an element (length in 1D, area in 2D).
+    #[must_use]
+    pub fn volume(&self, element: ElementId) -> f64 {
+        in_kind!(self, D, N => self.geometry::<D, N>(element).volume)
     }
 
     /// Volume and shape-function gradients of an element (length in 1D, area in 2D).
+    #[inline]
     #[must_use]
-    pub fn cell_geometry(&self, element: ElementId) -> CellGeometry<D, N> {
-        self.simplex.geometry(&self.cell_points(element))
+    pub fn geometry<const D: usize, const N: usize>(&self, element: ElementId) -> CellGeometry<D, N> {
+        simplex().geometry(&self.corners(element))
+    }
+
+    /// ∇φ_i of the nodes of an element (1/m).
+    #[must_use]
+    pub fn gradients(&self, element: ElementId) -> Vec<Vector> {
+        in_kind!(self, D, N => self.geometry::<D, N>(element).gradients.iter().map(padded).collect())
     }
 
     /// The local number of `node` in `element`.
     #[must_use]
     pub fn local_node(&self, element: ElementId, node: NodeId) -> Option<usize> {
-        self.cells[element.index()].iter().position(|&other| other == node)
+        self.cell(element).iter().position(|&other| other == node)
+    }
+
+    /// Outward unit normal of a boundary facet, in its dimension, and its measure (length in 2D, 1 in 1D).
+    #[must_use]
+    pub fn normal_in<const D: usize>(&self, facet: FacetId) -> ([f64; D], f64) {
+        let (normal, measure) = self.facet_normal(facet);
+        (cut(&normal), measure)
     }
 
     /// Outward unit normal of a boundary facet, and its measure (length in 2D, 1 in 1D).
     #[must_use]
-    pub fn facet_normal(&self, facet: FacetId) -> ([f64; D], f64) {
-        let owner = self.facets[facet.index()].owner;
-        let opposite = self.cell_facets[owner.index()].iter().position(|&f| f == facet).unwrap_or(0);
-        self.cell_geometry(owner).facet_normal(opposite)
+    pub fn facet_normal(&self, facet: FacetId) -> (Vector, f64) {
+        let owner = self.facet(facet).owner;
+        let opposite = self.cell_facets(owner).iter().position(|&f| f == facet).unwrap_or(0);
+        in_kind!(self, D, N => {
+            let (normal, measure) = self.geometry::<D, N>(owner).facet_normal(opposite);
+            (padded(&normal), measure)
+        })
     }
 
     /// Whether all nodes of a facet have the same coordinate in a direction, to the rounding of a mesh that was turned
     /// and moved.
     #[must_use]
     pub fn stands_across(&self, facet: FacetId, direction: usize) -> bool {
-        let nodes = &self.facets[facet.index()].nodes;
-        let [low, high] = [f64::min, f64::max]
-            .map(|choose| nodes.iter().map(|node| self.points[node.index()][direction]).reduce(choose).unwrap_or(0.0));
+        let places = self.facet(facet).nodes.iter().map(|&node| self.point(node)[direction]);
+        let [low, high] = [f64::min, f64::max].map(|choose| places.clone().reduce(choose).unwrap_or(0.0));
         // Some operations on coordinates as large as the mesh or as its distance from the origin.
         high - low <= 16.0 * f64::EPSILON * (self.size + high.abs().max(low.abs()))
     }
 
     /// Facets that belong to one element only.
     pub fn boundary(&self) -> impl Iterator<Item = FacetId> + '_ {
-        self.facets.iter().enumerate().filter(|(_, facet)| facet.neighbour.is_none()).map(|(i, _)| FacetId::new(i))
+        self.facets.sides.iter().enumerate().filter(|(_, side)| side.1.is_none()).map(|(i, _)| FacetId::new(i))
     }
+}
+
+fn rows<const D: usize>(groups: &FacetGroups<D>) -> FacetRows {
+    groups.iter().map(|(name, facets)| (name.clone(), facets.as_flattened().to_vec())).collect()
 }

@@ -3,7 +3,7 @@
 //! A sweep over the elements reads and writes their nodes. In a local order these are the nodes of a narrow front that
 //! stays in the cache; the elements of a strip touch consecutive nodes.
 
-use super::Mesh;
+use super::{Mesh, in_kind};
 use crate::ids::{ElementId, NodeId};
 
 /// A front of so many nodes is always local: a nodal vector of theirs at eight levels takes 32 kB, as much as the first
@@ -76,7 +76,7 @@ fn row(at: usize, width: usize) -> std::ops::Range<usize> {
     width * at..width * (at + 1)
 }
 
-impl<const D: usize, const N: usize> Mesh<D, N> {
+impl Mesh {
     /// A local numbering: nodes by breadth-first levels from the periphery of each part (Cuthill and McKee 1969),
     /// elements by their nodes. `None` if the present order is local enough.
     #[must_use]
@@ -86,12 +86,14 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         }
         let nodes = breadth_first(self);
         let place = inverse(&nodes);
-        let corners = |e: usize| {
-            let mut corners = self.cells[e].map(|node| place[node.index()]);
-            corners.sort_unstable();
-            corners
-        };
-        let elements = sorted(self.element_count(), nodes.len(), corners);
+        let elements = in_kind!(self, D, N => {
+            let corners = |e: usize| {
+                let mut corners = self.nodes_of::<N>()[e].map(|node| place[node.index()]);
+                corners.sort_unstable();
+                corners
+            };
+            sorted(self.element_count(), nodes.len(), corners)
+        });
         Some(Numbering { nodes, elements: elements.into_iter().map(|e| ElementId::new(e as usize)).collect() })
     }
 
@@ -101,9 +103,9 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     pub fn is_local(&self) -> bool {
         let front = SMALL.max((FRONT * (self.node_count() as f64).sqrt()) as usize);
         let mut reached = 0;
-        self.cells.iter().all(|cell| {
-            let numbers = cell.map(NodeId::index);
-            let [low, high] = [usize::min, usize::max].map(|pick| numbers.into_iter().fold(numbers[0], pick));
+        self.cells().all(|cell| {
+            let numbers = cell.iter().map(|node| node.index());
+            let [low, high] = [usize::min, usize::max].map(|pick| numbers.clone().fold(cell[0].index(), pick));
             reached = reached.max(low);
             high - low <= front && reached - low <= front
         })
@@ -138,7 +140,7 @@ pub(super) fn sorted<const M: usize>(count: usize, node_count: usize, nodes: imp
 }
 
 /// All nodes by breadth-first levels, part by part.
-fn breadth_first<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Vec<NodeId> {
+fn breadth_first(mesh: &Mesh) -> Vec<NodeId> {
     let mut order = Vec::with_capacity(mesh.node_count());
     let mut walk = Walk { mesh, pass: 0, seen: vec![0; mesh.node_count()], queue: Vec::new(), last: 0 };
     for first in (0..mesh.node_count()).map(NodeId::new) {
@@ -157,8 +159,8 @@ fn breadth_first<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Vec<NodeI
 }
 
 /// A walk through a part of the mesh.
-struct Walk<'m, const D: usize, const N: usize> {
-    mesh: &'m Mesh<D, N>,
+struct Walk<'m> {
+    mesh: &'m Mesh,
     pass: u32,
     /// The last pass that came to each node.
     seen: Vec<u32>,
@@ -168,7 +170,7 @@ struct Walk<'m, const D: usize, const N: usize> {
     last: usize,
 }
 
-impl<const D: usize, const N: usize> Walk<'_, D, N> {
+impl Walk<'_> {
     /// Nodes with few elements first, and of those the lowest number.
     fn rank(&self, node: NodeId) -> (usize, NodeId) {
         (self.mesh.stars.star(node).elements.len(), node)
@@ -201,7 +203,7 @@ impl<const D: usize, const N: usize> Walk<'_, D, N> {
     fn visit_around(&mut self, node: NodeId) {
         let mesh = self.mesh;
         for element in mesh.stars.star(node).elements {
-            for &near in &mesh.cells[element.index()] {
+            for &near in mesh.cell(*element) {
                 if self.seen[near.index()] != self.pass {
                     self.seen[near.index()] = self.pass;
                     self.queue.push(near);

@@ -3,9 +3,10 @@
 //! Elements that share a node belong to one part. Parts may touch, but not overlap.
 
 use super::check::DUPLICATE;
-use super::{Facet, Mesh, MeshError};
+use super::topology::Facets;
+use super::{Mesh, MeshError, in_kind};
 use crate::ids::{ElementId, NodeId};
-use crate::simplex::Simplex;
+use crate::simplex::{Simplex, simplex};
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
@@ -21,7 +22,7 @@ pub(super) fn separate<const D: usize, const N: usize>(
     simplex: &dyn Simplex<D, N>,
     (points, part): (&[[f64; D]], &[NodeId]),
     cells: &[[NodeId; N]],
-    facets: &[Facet<D>],
+    facets: &Facets,
     size: f64,
 ) -> Result<(usize, Vec<[ElementId; 2]>), MeshError> {
     let tolerance = DUPLICATE * size;
@@ -69,29 +70,35 @@ fn root(parent: &mut [NodeId], mut node: NodeId) -> NodeId {
 /// A smaller part of the volume of an element is rounding.
 const AT_FACET: f64 = 1e-9;
 
-impl<const D: usize, const N: usize> Mesh<D, N> {
+impl Mesh {
     /// Two elements of different parts that overlap if each node is displaced so far (m).
-    pub(crate) fn overlap_after(&self, displacement: &[[f64; D]]) -> Option<[ElementId; 2]> {
+    pub(crate) fn overlap_after(&self, displacement: &[f64]) -> Option<[ElementId; 2]> {
         let (points, part) = (self.displaced(displacement), self.part_of_nodes());
-        match separate(self.simplex, (&points, &part), &self.cells, &self.facets, self.size) {
+        let (facets, size) = (&self.facets, self.size);
+        let separated = in_kind!(self, D, N => {
+            separate(simplex::<D, N>(), (points.as_chunks().0, &part), self.nodes_of::<N>(), facets, size)
+        });
+        match separated {
             Err(MeshError::PartsTouch { elements }) => Some(elements.map(ElementId::new)),
             _ => None,
         }
     }
 
     /// Whether a node is in an element of another part if each node is displaced so far (m).
-    pub(crate) fn encloses_after(&self, displacement: &[[f64; D]], node: NodeId) -> bool {
+    pub(crate) fn encloses_after(&self, displacement: &[f64], node: NodeId) -> bool {
         let (points, part) = (self.displaced(displacement), self.part_of_nodes());
-        let others = self.cells.iter().filter(|cell| part[cell[0].index()] != part[node.index()]);
-        others.map(|cell| cell.map(|corner| points[corner.index()])).any(|corners| {
-            let least = -AT_FACET * self.simplex.signed_volume(&corners).abs();
-            self.simplex.encloses(&corners, &points[node.index()], least)
+        in_kind!(self, D, N => {
+            let points: &[[f64; D]] = points.as_chunks().0;
+            let others = self.nodes_of::<N>().iter().filter(|cell| part[cell[0].index()] != part[node.index()]);
+            others.map(|cell| cell.map(|corner| points[corner.index()])).any(|corners| {
+                let least = -AT_FACET * simplex::<D, N>().signed_volume(&corners).abs();
+                simplex::<D, N>().encloses(&corners, &points[node.index()], least)
+            })
         })
     }
 
-    fn displaced(&self, displacement: &[[f64; D]]) -> Vec<[f64; D]> {
-        let moved = |(point, by): (&[f64; D], &[f64; D])| std::array::from_fn(|c| point[c] + by[c]);
-        self.points.iter().zip(displacement).map(moved).collect()
+    fn displaced(&self, displacement: &[f64]) -> Vec<f64> {
+        self.points.iter().zip(displacement).map(|(point, by)| point + by).collect()
     }
 }
 
@@ -107,15 +114,15 @@ enum Meeting {
 fn touches<const D: usize, const N: usize>(
     mut grid: Grid<D>,
     element_count: usize,
-    facets: &[Facet<D>],
+    facets: &Facets,
     part_of: impl Fn(ElementId) -> NodeId,
     corners: impl Fn(ElementId) -> [[f64; D]; N],
     meeting: impl Fn(ElementId, ElementId) -> Option<Meeting>,
 ) -> Result<Vec<[ElementId; 2]>, MeshError> {
     let mut touching = Vec::new();
     let mut outer = vec![false; element_count];
-    for facet in facets.iter().filter(|facet| facet.neighbour.is_none()) {
-        outer[facet.owner.index()] = true;
+    for (owner, _) in facets.sides.iter().filter(|(_, neighbour)| neighbour.is_none()) {
+        outer[owner.index()] = true;
     }
     for at_boundary in [true, false] {
         for element in (0..element_count).filter(|&e| outer[e] == at_boundary).map(ElementId::new) {

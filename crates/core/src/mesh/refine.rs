@@ -1,9 +1,10 @@
 //! Nested finer meshes.
 
-use super::{ElementGroups, FacetGroups, Mesh, MeshError, Parts, room};
-use crate::simplex::Child;
+use super::{ElementGroups, FacetRows, Mesh, MeshError, Parts, in_kind, room};
+use crate::ids::FacetId;
+use crate::simplex::{Child, simplex};
 
-impl<const D: usize, const N: usize> Mesh<D, N> {
+impl Mesh {
     /// The mesh with each element cut by the middles of its edges, a bar into two elements and a triangle into four,
     /// for true errors against a nested mesh.
     ///
@@ -15,46 +16,52 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
     /// A mesh so fine that middles cannot be told from corners, or with more nodes than there are numbers or more
     /// elements than memory can hold.
     pub fn refined(&self) -> Result<Self, MeshError> {
-        room(self.element_count() * self.simplex.children().len())?;
+        in_kind!(self, D, N => self.cut_all::<D, N>())
+    }
+
+    fn cut_all<const D: usize, const N: usize>(&self) -> Result<Self, MeshError> {
+        let simplex = simplex::<D, N>();
+        let children = simplex.children();
+        room(self.element_count() * children.len())?;
         let edges = self.edges();
-        let mut points = self.points.clone();
-        points.extend(edges.iter().map(|&[a, b]| {
-            let (p, q) = (&self.points[a], &self.points[b]);
-            std::array::from_fn(|c| 0.5 * (p[c] + q[c]))
-        }));
+        let mut points = self.points_in::<D>().to_vec();
+        let corners = self.points_in::<D>();
+        points.extend(
+            edges.iter().map(|&[a, b]| -> [f64; D] { std::array::from_fn(|c| 0.5 * (corners[a][c] + corners[b][c])) }),
+        );
         let node = |a: usize, b: usize| match edges.binary_search(&[a.min(b), a.max(b)]) {
             Ok(edge) => self.node_count() + edge,
             // A corner: no edge joins a node with itself.
             Err(_) => a,
         };
-        let children = self.simplex.children();
-        let cells = self.cells.iter().map(|cell| cell.map(|n| n.index()));
+        let cells = self.nodes_of::<N>().iter().map(|cell| cell.map(|n| n.index()));
         let cells: Vec<_> = cells.flat_map(|cell| cut(cell, children, &node)).collect();
-        let facet = |facet: usize| self.facets[facet].nodes.map(|n| n.index());
+        let facet = |facet: FacetId| self.facet_nodes::<D>(facet).map(|n| n.index());
         let facets = self.facet_groups.iter().map(|(name, group)| {
-            let parts = group.iter().flat_map(|f| cut(facet(f.index()), self.simplex.facet_children(), &node));
-            (name.clone(), parts.collect())
+            let parts = group.iter().flat_map(|&f| cut(facet(f), simplex.facet_children(), &node));
+            (name.clone(), parts.flatten().collect())
         });
         let elements = self.element_groups.iter().map(|(name, group)| {
             let parts = group.iter().flat_map(|e| (0..children.len()).map(|part| children.len() * e.index() + part));
             (name.clone(), parts.collect())
         });
-        let (facets, elements): (FacetGroups<D>, ElementGroups) = (facets.collect(), elements.collect());
-        Self::checked(self.simplex, points, &cells, (&facets, &elements), Parts::MayTouch)
+        let (facets, elements): (FacetRows, ElementGroups) = (facets.collect(), elements.collect());
+        Self::checked(points, &cells, (&facets, &elements), Parts::MayTouch)
     }
 
     /// The values at the nodes of [`Mesh::refined`] of a field that is linear in the elements, from its values at the
-    /// nodes of this mesh.
+    /// nodes of this mesh, both in rows.
     #[must_use]
-    pub fn prolonged(&self, nodal: &[[f64; D]]) -> Vec<[f64; D]> {
-        let middle = |[a, b]: [usize; 2]| std::array::from_fn(|c| 0.5 * (nodal[a][c] + nodal[b][c]));
-        nodal.iter().copied().chain(self.edges().into_iter().map(middle)).collect()
+    pub fn prolonged(&self, nodal: &[f64]) -> Vec<f64> {
+        let width = nodal.len() / self.node_count();
+        let middle = |[a, b]: [usize; 2]| (0..width).map(move |c| 0.5 * (nodal[width * a + c] + nodal[width * b + c]));
+        nodal.iter().copied().chain(self.edges().into_iter().flat_map(middle)).collect()
     }
 
     /// The nodes of each edge, ascending, in ascending order.
     pub(super) fn edges(&self) -> Vec<[usize; 2]> {
-        let pairs = (0..N).flat_map(|j| (0..j).map(move |i| (i, j)));
-        let edges = self.cells.iter().flat_map(|cell| pairs.clone().map(|(i, j)| [cell[i].index(), cell[j].index()]));
+        let pairs = (0..self.nodes_of_element()).flat_map(|j| (0..j).map(move |i| (i, j)));
+        let edges = self.cells().flat_map(|cell| pairs.clone().map(|(i, j)| [cell[i].index(), cell[j].index()]));
         let mut edges: Vec<_> = edges.map(|[a, b]| [a.min(b), a.max(b)]).collect();
         edges.sort_unstable();
         edges.dedup();
@@ -75,28 +82,28 @@ fn cut<const M: usize>(
 mod tests {
     use super::*;
     use crate::ids::ElementId;
-    use crate::mesh::{BarMesh, TriangleMesh};
+    use crate::mesh::FacetGroups;
 
     /// Each of the four parts has a quarter of the area and lies in its parent; groups cover what they covered.
     #[test]
     fn parts_are_quarters() {
         let groups = ElementGroups::from([("some".to_string(), vec![3, 5])]);
-        let disc = TriangleMesh::disc(0.5, 3).unwrap();
-        let cells: Vec<_> = disc.cells().iter().map(|cell| cell.map(|n| n.index())).collect();
+        let disc = Mesh::disc(0.5, 3).unwrap();
+        let cells: Vec<_> = disc.nodes_of::<3>().iter().map(|cell| cell.map(|n| n.index())).collect();
         let rim = FacetGroups::from([("rim".to_string(), vec![[19, 20], [20, 21]])]);
-        let coarse = TriangleMesh::new(disc.points().to_vec(), &cells, &rim, &groups).unwrap();
+        let coarse = Mesh::new(disc.points_in::<2>().to_vec(), &cells, &rim, &groups).unwrap();
         let fine = coarse.refined().unwrap();
         assert_eq!(fine.node_count(), coarse.node_count() + coarse.facets().len());
-        assert_eq!(fine.points()[..coarse.node_count()], *coarse.points());
+        assert_eq!(fine.points_in::<2>()[..coarse.node_count()], *coarse.points_in::<2>());
         assert_eq!((fine.element_count(), fine.reoriented_elements()), (4 * coarse.element_count(), 0));
         for e in 0..coarse.element_count() {
-            let parent = coarse.cell_geometry(ElementId::new(e));
-            let origin = coarse.cell_points(ElementId::new(e))[0];
+            let parent = coarse.geometry::<2, 3>(ElementId::new(e));
+            let origin = coarse.corners::<2, 3>(ElementId::new(e))[0];
             for part in 4 * e..4 * e + 4 {
                 // Rounding of a few products of coordinates below 1.
-                let volume = fine.cell_geometry(ElementId::new(part)).volume;
+                let volume = fine.geometry::<2, 3>(ElementId::new(part)).volume;
                 assert!((volume - 0.25 * parent.volume).abs() < 1e-15, "part {part}");
-                for p in fine.cell_points(ElementId::new(part)) {
+                for p in fine.corners::<2, 3>(ElementId::new(part)) {
                     let weights = parent.gradients.map(|g| g[0] * (p[0] - origin[0]) + g[1] * (p[1] - origin[1]));
                     let weights = [1.0 + weights[0], weights[1], weights[2]];
                     assert!(weights.iter().all(|w| (-1e-13..1.0 + 1e-13).contains(w)), "{weights:?}");
@@ -105,8 +112,7 @@ mod tests {
         }
         let parts: Vec<_> = fine.element_groups()["some"].iter().map(|e| e.index()).collect();
         assert_eq!(parts, [12, 13, 14, 15, 20, 21, 22, 23]);
-        let length =
-            |mesh: &TriangleMesh| -> f64 { mesh.facet_groups()["rim"].iter().map(|&f| mesh.facet_normal(f).1).sum() };
+        let length = |mesh: &Mesh| -> f64 { mesh.facet_groups()["rim"].iter().map(|&f| mesh.facet_normal(f).1).sum() };
         assert_eq!(fine.facet_groups()["rim"].len(), 4);
         // Rounding of four lengths below 1.
         assert!((length(&fine) - length(&coarse)).abs() < 1e-15);
@@ -114,15 +120,15 @@ mod tests {
 
     #[test]
     fn bars_are_halved() {
-        let fine = BarMesh::uniform_bar(2.0, 2).unwrap().refined().unwrap();
-        assert_eq!(fine.points(), [[0.0], [1.0], [2.0], [0.5], [1.5]]);
+        let fine = Mesh::uniform_bar(2.0, 2).unwrap().refined().unwrap();
+        assert_eq!(fine.points(), [0.0, 1.0, 2.0, 0.5, 1.5]);
         assert_eq!(
-            fine.cells().iter().map(|cell| cell.map(|n| n.index())).collect::<Vec<_>>(),
+            fine.nodes_of::<2>().iter().map(|cell| cell.map(|n| n.index())).collect::<Vec<_>>(),
             [[0, 3], [3, 1], [1, 4], [4, 2]]
         );
-        let coarse = BarMesh::uniform_bar(2.0, 2).unwrap();
-        assert_eq!(coarse.prolonged(&[[1.0], [2.0], [4.0]]), [[1.0], [2.0], [4.0], [1.5], [3.0]]);
+        let coarse = Mesh::uniform_bar(2.0, 2).unwrap();
+        assert_eq!(coarse.prolonged(&[1.0, 2.0, 4.0]), [1.0, 2.0, 4.0, 1.5, 3.0]);
         let end = fine.facet_groups()["end"][0];
-        assert_eq!(fine.facets()[end.index()].nodes[0].index(), 2);
+        assert_eq!(fine.facet_nodes::<1>(end)[0].index(), 2);
     }
 }

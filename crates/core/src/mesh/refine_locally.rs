@@ -5,7 +5,7 @@
 //! was cut from, however often it is refined.
 
 use super::bisection::Twins;
-use super::{ElementGroups, FacetGroups, Mesh, MeshError, Parts};
+use super::{ElementGroups, FacetRows, Mesh, MeshError, Parts, in_kind};
 use crate::ids::ElementId;
 
 /// The edges that are cut, and the order in which an element is cut by them.
@@ -18,7 +18,7 @@ pub(super) struct Cuts {
     middle: Vec<Option<usize>>,
 }
 
-impl<const D: usize, const N: usize> Mesh<D, N> {
+impl Mesh {
     /// The mesh with each chosen element cut by the middles of its edges, a bar into two elements and a triangle into
     /// four, and as many other elements as a conforming mesh needs.
     ///
@@ -34,37 +34,44 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
 
     /// The mesh with some edges cut.
     pub(super) fn cut(&self, cuts: &Cuts) -> Result<Self, MeshError> {
-        let mut points = self.points.clone();
-        points.extend(cuts.edges.iter().zip(&cuts.middle).filter(|(_, middle)| middle.is_some()).map(
-            |(&[a, b], _)| {
-                let (p, q) = (&self.points[a], &self.points[b]);
-                std::array::from_fn(|c| 0.5 * (p[c] + q[c]))
-            },
-        ));
+        in_kind!(self, D, N => self.cut_in::<D, N>(cuts))
+    }
+
+    fn cut_in<const D: usize, const N: usize>(&self, cuts: &Cuts) -> Result<Self, MeshError> {
+        let corners = self.points_in::<D>();
+        let mut points = corners.to_vec();
+        points.extend(
+            cuts.edges
+                .iter()
+                .zip(&cuts.middle)
+                .filter(|(_, middle)| middle.is_some())
+                .map(|(&[a, b], _)| -> [f64; D] { std::array::from_fn(|c| 0.5 * (corners[a][c] + corners[b][c])) }),
+        );
         let (mut cells, mut first) = (Vec::new(), Vec::with_capacity(self.element_count() + 1));
-        for cell in &self.cells {
+        for cell in self.nodes_of::<N>() {
             first.push(cells.len());
             cuts.parts(cell.map(|n| n.index()), &mut cells);
         }
         first.push(cells.len());
         let facets = self.facet_groups.iter().map(|(name, group)| {
             let mut parts = Vec::new();
-            group.iter().for_each(|f| cuts.parts(self.facets[f.index()].nodes.map(|n| n.index()), &mut parts));
-            (name.clone(), parts)
+            group.iter().for_each(|&f| cuts.parts(self.facet_nodes::<D>(f).map(|n| n.index()), &mut parts));
+            (name.clone(), parts.into_flattened())
         });
         let elements = self.element_groups.iter().map(|(name, group)| {
             (name.clone(), group.iter().flat_map(|e| first[e.index()]..first[e.index() + 1]).collect())
         });
-        let (facets, elements): (FacetGroups<D>, ElementGroups) = (facets.collect(), elements.collect());
-        Self::checked(self.simplex, points, &cells, (&facets, &elements), Parts::MayTouch)
+        let (facets, elements): (FacetRows, ElementGroups) = (facets.collect(), elements.collect());
+        Self::checked(points, &cells, (&facets, &elements), Parts::MayTouch)
     }
 
     /// All edges of the chosen elements, the longest edge of each element that has an edge that is cut, and the twins
     /// of all these.
     pub(super) fn cuts(&self, chosen: impl Fn(ElementId) -> bool, twins: &[Twins]) -> Cuts {
         let edges = self.edges();
+        let (points, d) = (&self.points, self.dimension());
         let square =
-            |&[a, b]: &[usize; 2]| -> f64 { (0..D).map(|c| (self.points[a][c] - self.points[b][c]).powi(2)).sum() };
+            |&[a, b]: &[usize; 2]| -> f64 { (0..d).map(|c| (points[d * a + c] - points[d * b + c]).powi(2)).sum() };
         let squares: Vec<f64> = edges.iter().map(square).collect();
         let mut order: Vec<usize> = (0..edges.len()).collect();
         // The sort is stable: edges of one length stay in the order of their nodes.
@@ -72,8 +79,10 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         let mut rank = vec![0; edges.len()];
         order.iter().enumerate().for_each(|(place, &edge)| rank[edge] = place);
         let mut cuts = Cuts { middle: vec![None; edges.len()], edges, rank };
-        let of_cells: Vec<usize> = self.cells.iter().flat_map(|cell| cuts.edges_of(cell.map(|n| n.index()))).collect();
-        let of_cells: Vec<&[usize]> = of_cells.chunks(N * (N - 1) / 2).collect();
+        let of_cells: Vec<usize> = in_kind!(self, D, N => {
+            self.nodes_of::<N>().iter().flat_map(|cell| cuts.edges_of(cell.map(|n| n.index()))).collect()
+        });
+        let of_cells: Vec<&[usize]> = of_cells.chunks(of_cells.len() / self.element_count()).collect();
         let mut cut = vec![false; cuts.edges.len()];
         for (_, edges) in of_cells.iter().enumerate().filter(|&(e, _)| chosen(ElementId::new(e))) {
             edges.iter().for_each(|&edge| cut[edge] = true);
@@ -152,10 +161,10 @@ impl Cuts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{BarMesh, TriangleMesh};
+    use crate::mesh::FacetGroups;
 
     /// A skew quadrilateral with a fan of unequal triangles, and groups.
-    fn fan() -> TriangleMesh {
+    fn fan() -> Mesh {
         let points = vec![[0.0, 0.0], [1.0, 0.1], [0.9, 0.8], [-0.2, 0.7], [0.35, 0.3], [1.9, 0.3]];
         let cells = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 5, 2]];
         let edges = FacetGroups::from([
@@ -163,16 +172,16 @@ mod tests {
             ("upper".to_string(), vec![[3, 2], [3, 0]]),
         ]);
         let elements = ElementGroups::from([("left".to_string(), vec![0, 3]), ("right".to_string(), vec![4])]);
-        TriangleMesh::new(points, &cells, &edges, &elements).unwrap()
+        Mesh::new(points, &cells, &edges, &elements).unwrap()
     }
 
-    fn areas(mesh: &TriangleMesh) -> Vec<f64> {
-        (0..mesh.element_count()).map(|e| mesh.cell_geometry(ElementId::new(e)).volume).collect()
+    fn areas(mesh: &Mesh) -> Vec<f64> {
+        (0..mesh.element_count()).map(|e| mesh.geometry::<2, 3>(ElementId::new(e)).volume).collect()
     }
 
-    fn smallest_angle(mesh: &TriangleMesh) -> f64 {
+    fn smallest_angle(mesh: &Mesh) -> f64 {
         let angle = |e: usize, k: usize| {
-            let p = mesh.cell_points(ElementId::new(e));
+            let p = mesh.corners::<2, 3>(ElementId::new(e));
             let [a, b] = [1, 2].map(|j| [p[(k + j) % 3][0] - p[k][0], p[(k + j) % 3][1] - p[k][1]]);
             (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1])
         };
@@ -187,18 +196,13 @@ mod tests {
     /// Area and outline stay, so that the mesh conforms.
     #[test]
     fn angles_stay_above_half_over_ten_rounds() {
-        let flat = TriangleMesh::new(
+        let flat = Mesh::new(
             vec![[0.0, 0.0], [1.0, 0.0], [0.21, 0.12]],
             &[[0, 1, 2]],
             &FacetGroups::new(),
             &ElementGroups::new(),
         );
-        for coarse in [
-            fan(),
-            flat.unwrap(),
-            TriangleMesh::disc(0.5, 3).unwrap(),
-            TriangleMesh::rectangle(0.5, 0.4, 5, 4).unwrap(),
-        ] {
+        for coarse in [fan(), flat.unwrap(), Mesh::disc(0.5, 3).unwrap(), Mesh::rectangle(0.5, 0.4, 5, 4).unwrap()] {
             let mut mesh = coarse.clone();
             for round in 0..10 {
                 mesh = mesh.refined_where(some(round, 6)).unwrap();
@@ -210,7 +214,7 @@ mod tests {
             // Rounding of a sum of some 10⁴ terms; so below.
             assert!((fine - total).abs() < 1e-11 * total);
             // Both sides of an edge with a node inside it would be boundary.
-            let outline = |mesh: &TriangleMesh| -> f64 { mesh.boundary().map(|f| mesh.facet_normal(f).1).sum() };
+            let outline = |mesh: &Mesh| -> f64 { mesh.boundary().map(|f| mesh.facet_normal(f).1).sum() };
             assert!((outline(&mesh) - outline(&coarse)).abs() < 1e-11 * outline(&coarse));
         }
     }
@@ -221,14 +225,14 @@ mod tests {
     fn parts_are_nested() {
         let coarse = fan();
         let fine = coarse.refined_where(|e| e.index() == 1).unwrap();
-        assert_eq!(fine.points()[..coarse.node_count()], *coarse.points());
+        assert_eq!(fine.points_in::<2>()[..coarse.node_count()], *coarse.points_in::<2>());
         assert!(fine.element_count() > coarse.element_count() + 3);
         let mut filled = vec![0.0; coarse.element_count()];
         for (part, area) in areas(&fine).into_iter().enumerate() {
-            let points = fine.cell_points(ElementId::new(part));
+            let points = fine.corners::<2, 3>(ElementId::new(part));
             let inside = |e: &usize| {
                 let (parent, origin) =
-                    (coarse.cell_geometry(ElementId::new(*e)), coarse.cell_points(ElementId::new(*e))[0]);
+                    (coarse.geometry::<2, 3>(ElementId::new(*e)), coarse.corners::<2, 3>(ElementId::new(*e))[0]);
                 points.iter().all(|p| {
                     let w = parent.gradients.map(|g| g[0] * (p[0] - origin[0]) + g[1] * (p[1] - origin[1]));
                     [1.0 + w[0], w[1], w[2]].iter().all(|w| (-1e-13..1.0 + 1e-13).contains(w))
@@ -240,15 +244,13 @@ mod tests {
             assert!((filled - area).abs() < 1e-15);
         }
         for name in ["left", "right"] {
-            let area = |mesh: &TriangleMesh| -> f64 {
-                mesh.element_groups()[name].iter().map(|e| areas(mesh)[e.index()]).sum()
-            };
+            let area =
+                |mesh: &Mesh| -> f64 { mesh.element_groups()[name].iter().map(|e| areas(mesh)[e.index()]).sum() };
             assert!((area(&fine) - area(&coarse)).abs() < 1e-15);
         }
         for name in ["lower", "upper"] {
-            let length = |mesh: &TriangleMesh| -> f64 {
-                mesh.facet_groups()[name].iter().map(|&f| mesh.facet_normal(f).1).sum()
-            };
+            let length =
+                |mesh: &Mesh| -> f64 { mesh.facet_groups()[name].iter().map(|&f| mesh.facet_normal(f).1).sum() };
             assert!((length(&fine) - length(&coarse)).abs() < 1e-15);
         }
     }
@@ -256,7 +258,7 @@ mod tests {
     /// The chosen element gets four parts, its neighbours across cut edges two or three, the others none.
     #[test]
     fn few_other_elements_are_cut() {
-        let coarse = TriangleMesh::rectangle(1.0, 1.0, 8, 8).unwrap();
+        let coarse = Mesh::rectangle(1.0, 1.0, 8, 8).unwrap();
         let fine = coarse.refined_where(|e| e.index() == 54).unwrap();
         // Its own 3 new parts, the 2 at its short sides cut in 3 each, at their hypotenuse and then at the side, which
         // are the longest edges of 2 more elements; the one at its hypotenuse in 2.
@@ -267,10 +269,10 @@ mod tests {
     fn all_and_none() {
         let coarse = fan();
         let same = coarse.refined_where(|_| false).unwrap();
-        assert_eq!((same.points(), same.cells()), (coarse.points(), coarse.cells()));
+        assert_eq!((same.points_in::<2>(), same.nodes_of::<3>()), (coarse.points_in::<2>(), coarse.nodes_of::<3>()));
         assert_eq!((same.facet_groups(), same.element_groups()), (coarse.facet_groups(), coarse.element_groups()));
         let (fine, regular) = (coarse.refined_where(|_| true).unwrap(), coarse.refined().unwrap());
-        assert_eq!(fine.points(), regular.points());
+        assert_eq!(fine.points_in::<2>(), regular.points_in::<2>());
         for (part, area) in areas(&fine).into_iter().enumerate() {
             assert!((area - 0.25 * areas(&coarse)[part / 4]).abs() < 1e-15);
         }
@@ -278,9 +280,9 @@ mod tests {
 
     #[test]
     fn chosen_bars_are_halved() {
-        let fine = BarMesh::uniform_bar(3.0, 3).unwrap().refined_where(|e| e.index() == 1).unwrap();
-        assert_eq!(fine.points(), [[0.0], [1.0], [2.0], [3.0], [1.5]]);
-        let cells: Vec<_> = fine.cells().iter().map(|cell| cell.map(|n| n.index())).collect();
+        let fine = Mesh::uniform_bar(3.0, 3).unwrap().refined_where(|e| e.index() == 1).unwrap();
+        assert_eq!(fine.points(), [0.0, 1.0, 2.0, 3.0, 1.5]);
+        let cells: Vec<_> = fine.nodes_of::<2>().iter().map(|cell| cell.map(|n| n.index())).collect();
         assert_eq!(cells, [[0, 1], [1, 4], [4, 2], [2, 3]]);
     }
 }

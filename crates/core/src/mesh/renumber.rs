@@ -1,7 +1,8 @@
 //! The same mesh under other numbers.
 
 use super::order::{inverse, sorted};
-use super::{Facet, Mesh, Numbering};
+use super::topology::Facets;
+use super::{Facet, Mesh, Numbering, in_kind};
 use crate::ids::{ElementId, FacetId, NodeId};
 use std::collections::BTreeMap;
 
@@ -36,28 +37,34 @@ impl NewNumbers {
     }
 }
 
-impl<const D: usize, const N: usize> Mesh<D, N> {
+impl Mesh {
     /// The mesh under new numbers, and those by the old ones: as if it were made from the renumbered points, elements
     /// and groups. Each element keeps the order of its nodes.
     pub(crate) fn renumbered(&self, numbering: &Numbering) -> (Self, NewNumbers) {
         let (nodes, elements) = (numbering.nodes(), numbering.elements());
         let mut new = NewNumbers { node: inverse(nodes), element: vec![0; elements.len()], facet: Vec::new() };
         elements.iter().enumerate().for_each(|(at, old)| new.element[old.index()] = at as u32);
-        let ends = |f: usize| {
-            let mut ends = self.facets[f].nodes.map(|node| new.node[node.index()]);
-            ends.sort_unstable();
-            ends
-        };
-        let order = sorted(self.facets.len(), nodes.len(), ends);
+        let order = in_kind!(self, D, N => {
+            let ends = |f: usize| {
+                let mut ends = self.facet_nodes::<D>(FacetId::new(f)).map(|node| new.node[node.index()]);
+                ends.sort_unstable();
+                ends
+            };
+            sorted(self.facets.len(), nodes.len(), ends)
+        });
         new.facet = vec![0; order.len()];
         order.iter().enumerate().for_each(|(at, &old)| new.facet[old as usize] = at as u32);
 
+        let mut points = Vec::new();
+        numbering.order_nodal(&self.points, &mut points);
+        let mut facets = Facets { width: self.facets.width, ..Facets::default() };
+        order.iter().for_each(|&old| push_renumbered(self.facets.get(old as usize), &new, &mut facets));
         let mesh = Self {
-            simplex: self.simplex,
-            points: nodes.iter().map(|node| self.points[node.index()]).collect(),
-            cells: elements.iter().map(|e| self.cells[e.index()].map(|node| new.node(node))).collect(),
-            facets: order.iter().map(|&old| renumbered(&self.facets[old as usize], &new)).collect(),
-            cell_facets: elements.iter().map(|e| self.cell_facets[e.index()].map(|f| new.facet(f))).collect(),
+            kind: self.kind,
+            points,
+            cells: elements.iter().flat_map(|&e| self.cell(e)).map(|&node| new.node(node)).collect(),
+            facets,
+            cell_facets: elements.iter().flat_map(|&e| self.cell_facets(e)).map(|&f| new.facet(f)).collect(),
             stars: self.stars.renumbered(nodes, &new.element, &new.facet),
             facet_groups: groups(&self.facet_groups, |f| new.facet(f)),
             element_groups: groups(&self.element_groups, |e| new.element(e)),
@@ -69,9 +76,7 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
         };
         (mesh, new)
     }
-}
 
-impl<const D: usize, const N: usize> Mesh<D, N> {
     /// The elements that touch under new numbers, in ascending order.
     fn touching_renumbered(&self, new: &NewNumbers) -> Vec<[ElementId; 2]> {
         let ascending = |pair: &[ElementId; 2]| {
@@ -85,14 +90,13 @@ impl<const D: usize, const N: usize> Mesh<D, N> {
 }
 
 /// A facet under new numbers; the lower element owns it.
-fn renumbered<const D: usize>(facet: &Facet<D>, new: &NewNumbers) -> Facet<D> {
-    let mut nodes = facet.nodes.map(|node| new.node(node));
-    nodes.sort_unstable();
+fn push_renumbered(facet: Facet<'_>, new: &NewNumbers, facets: &mut Facets) {
+    let first = facets.nodes.len();
     let (owner, neighbour) = (new.element(facet.owner), facet.neighbour.map(|e| new.element(e)));
-    match neighbour {
-        Some(other) => Facet { nodes, owner: owner.min(other), neighbour: Some(owner.max(other)) },
-        None => Facet { nodes, owner, neighbour },
-    }
+    let [low, high] = neighbour.map_or([owner; 2], |other| [owner.min(other), owner.max(other)]);
+    facets.nodes.extend(facet.nodes.iter().map(|&node| new.node(node)));
+    facets.nodes[first..].sort_unstable();
+    facets.sides.push((low, neighbour.map(|_| high)));
 }
 
 fn groups<Id: Copy + Ord>(groups: &BTreeMap<String, Vec<Id>>, new: impl Fn(Id) -> Id) -> BTreeMap<String, Vec<Id>> {

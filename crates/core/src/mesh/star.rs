@@ -1,6 +1,7 @@
 //! The elements around each node in counterclockwise order, with the facets between them.
 
-use super::{Facet, MeshError};
+use super::MeshError;
+use super::topology::Facets;
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::simplex::Simplex;
 
@@ -94,7 +95,7 @@ impl Stars {
         simplex: &dyn Simplex<D, N>,
         node_count: usize,
         cells: &[[NodeId; N]],
-        facets: &[Facet<D>],
+        facets: &Facets,
         cell_facets: &[[FacetId; N]],
     ) -> Result<Self, MeshError> {
         let (facets_around, (starts, incident)) = (simplex.facets_around(), incident_elements(node_count, cells));
@@ -108,7 +109,7 @@ impl Stars {
             let local = cells[element.index()].iter().position(|&n| n == node).unwrap_or(0);
             facets_around[local].map(|side| side.map(|k| cell_facets[element.index()][k]))
         };
-        let is_end = |facet: Option<FacetId>| facet.is_none_or(|f| facets[f.index()].neighbour.is_none());
+        let is_end = |facet: Option<FacetId>| facet.is_none_or(|f| facets.sides[f.index()].1.is_none());
         for i in 0..node_count {
             let (node, around) = (NodeId::new(i), &incident[starts[i] as usize..starts[i + 1] as usize]);
             let first = around.iter().copied().find(|&e| is_end(sides(e, node)[0])).unwrap_or(around[0]);
@@ -122,7 +123,7 @@ impl Stars {
                 stars.links.push(exit);
                 count += 1;
                 let Some(facet) = exit.filter(|_| exit != start) else { break };
-                let Facet { owner, neighbour, .. } = facets[facet.index()];
+                let (owner, neighbour) = facets.sides[facet.index()];
                 let Some(next) = neighbour.map(|n| if n == element { owner } else { n }) else { break };
                 element = next;
             }
@@ -158,11 +159,11 @@ fn incident_elements<const N: usize>(node_count: usize, cells: &[[NodeId; N]]) -
 #[cfg(test)]
 mod tests {
     use crate::ids::NodeId;
-    use crate::mesh::{BarMesh, ElementGroups, FacetGroups, MeshError, TriangleMesh};
+    use crate::mesh::{ElementGroups, FacetGroups, Mesh, MeshError};
 
     #[test]
     fn stars_of_a_square() {
-        let mesh = TriangleMesh::rectangle(1.0, 1.0, 2, 2).unwrap();
+        let mesh = Mesh::rectangle(1.0, 1.0, 2, 2).unwrap();
         let sizes: Vec<_> = (0..9).map(|i| mesh.stars().star(NodeId::new(i)).elements.len()).collect();
         assert_eq!(sizes, [2, 3, 1, 3, 6, 3, 1, 3, 2]);
         let closed: Vec<_> = (0..9).map(|i| mesh.stars().star(NodeId::new(i)).is_closed()).collect();
@@ -171,7 +172,7 @@ mod tests {
         for i in [0, 1, 2, 3, 5, 6, 7, 8] {
             let star = mesh.stars().star(NodeId::new(i));
             for end in [star.links[0], star.links[star.links.len() - 1]] {
-                assert_eq!(mesh.facets()[end.unwrap().index()].neighbour, None);
+                assert_eq!(mesh.facet(end.unwrap()).neighbour, None);
             }
         }
     }
@@ -179,13 +180,13 @@ mod tests {
     #[test]
     fn elements_on_the_same_side_of_a_facet_overlap() {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [0.5, 1.0], [0.5, 2.0]];
-        let made = TriangleMesh::new(points, &[[0, 1, 2], [0, 1, 3]], &FacetGroups::new(), &ElementGroups::new());
+        let made = Mesh::new(points, &[[0, 1, 2], [0, 1, 3]], &FacetGroups::new(), &ElementGroups::new());
         assert_eq!(made.unwrap_err(), MeshError::Overlap { elements: [0, 1] });
     }
 
     #[test]
     fn stars_of_a_bar() {
-        let mesh = BarMesh::uniform_bar(1.0, 2).unwrap();
+        let mesh = Mesh::uniform_bar(1.0, 2).unwrap();
         let star = |i: usize| mesh.stars().star(NodeId::new(i));
         assert_eq!((star(0).links[0].is_some(), star(0).links[1]), (true, None));
         assert_eq!((star(1).links[0], star(1).links[1].is_some(), star(1).links[2]), (None, true, None));

@@ -106,7 +106,7 @@ fn highest<const N: usize>(cell: &[NodeId; N]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::TriangleMesh;
+    use crate::mesh::Mesh;
 
     /// All that is promised of the cut of these cells.
     fn check(cells: &[[NodeId; 3]], nodes: usize, strips: &Strips) {
@@ -131,8 +131,8 @@ mod tests {
             nx in 1_usize..9, ny in 1_usize..40, fewest in 1_usize..40,
             swaps in proptest::collection::vec((0_usize..300, 0_usize..30), 0..3),
         ) {
-            let mesh = TriangleMesh::rectangle(1.0, 1.0, nx, ny).unwrap();
-            let mut cells = mesh.cells().to_vec();
+            let mesh = Mesh::rectangle(1.0, 1.0, nx, ny).unwrap();
+            let mut cells = mesh.nodes_of::<3>().to_vec();
             for (at, distance) in swaps {
                 let (from, to) = (at % cells.len(), (at + distance) % cells.len());
                 cells.swap(from, to);
@@ -143,12 +143,12 @@ mod tests {
 
     #[test]
     fn a_rectangle_has_strips_of_its_rows() {
-        let mesh = TriangleMesh::rectangle(1.0, 1.0, 10, 50).unwrap();
-        let strips = Strips::with_fewest(mesh.cells(), 100);
+        let mesh = Mesh::rectangle(1.0, 1.0, 10, 50).unwrap();
+        let strips = Strips::with_fewest(mesh.nodes_of::<3>(), 100);
         assert_eq!(strips.count(), 10);
         assert_eq!((strips.nodes(1), strips.own_nodes(1)), (55..121, 66..110));
-        assert_eq!(Strips::new(mesh.cells()).count(), 1);
-        let mut reversed = mesh.cells().to_vec();
+        assert_eq!(Strips::new(mesh.nodes_of::<3>()).count(), 1);
+        let mut reversed = mesh.nodes_of::<3>().to_vec();
         reversed.reverse();
         assert_eq!(Strips::with_fewest(&reversed, 100).count(), 1);
     }

@@ -2,19 +2,20 @@
 
 use super::MeshError;
 use crate::ids::{ElementId, FacetId, NodeId};
+use std::cmp::Ordering;
 
 /// An edge in 2D, a point in 1D.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Facet<const D: usize> {
+pub struct Facet<'m> {
     /// Its nodes, in ascending order.
-    pub nodes: [NodeId; D],
+    pub nodes: &'m [NodeId],
     /// The element whose outward normal orients the facet.
     pub owner: ElementId,
     /// The element on the other side, none on the boundary.
     pub neighbour: Option<ElementId>,
 }
 
-impl<const D: usize> Facet<D> {
+impl Facet<'_> {
     /// +1 seen from the owner, −1 from the neighbour: the sign η of the equilibrated tractions.
     #[inline]
     #[must_use]
@@ -34,6 +35,51 @@ impl<const D: usize> Facet<D> {
     #[must_use]
     pub fn position(&self, node: NodeId) -> usize {
         self.nodes.iter().position(|&other| other == node).unwrap_or(0)
+    }
+}
+
+/// The facets of a mesh, as data.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Facets {
+    /// Nodes of each facet: the dimension of the mesh.
+    pub(super) width: usize,
+    /// Nodes of all facets, in rows.
+    pub(super) nodes: Vec<NodeId>,
+    /// The elements of each facet.
+    pub(super) sides: Vec<(ElementId, Option<ElementId>)>,
+}
+
+impl Facets {
+    pub(super) fn len(&self) -> usize {
+        self.sides.len()
+    }
+
+    pub(super) fn get(&self, facet: usize) -> Facet<'_> {
+        let (owner, neighbour) = self.sides[facet];
+        Facet { nodes: &self.nodes[self.width * facet..self.width * (facet + 1)], owner, neighbour }
+    }
+
+    pub(super) fn iter(&self) -> impl ExactSizeIterator<Item = Facet<'_>> {
+        (0..self.len()).map(|facet| self.get(facet))
+    }
+
+    /// The facet with these nodes, ascending.
+    pub(super) fn find(&self, nodes: &[NodeId]) -> Option<usize> {
+        let (mut low, mut high) = (0, self.len());
+        while low < high {
+            let middle = usize::midpoint(low, high);
+            match self.get(middle).nodes.cmp(nodes) {
+                Ordering::Less => low = middle + 1,
+                Ordering::Greater => high = middle,
+                Ordering::Equal => return Some(middle),
+            }
+        }
+        None
+    }
+
+    pub(super) fn push(&mut self, nodes: &[NodeId], owner: ElementId, neighbour: Option<ElementId>) {
+        self.nodes.extend_from_slice(nodes);
+        self.sides.push((owner, neighbour));
     }
 }
 
@@ -60,10 +106,9 @@ fn is_even<const D: usize, const N: usize>(cells: &[[NodeId; N]], side: &([NodeI
 }
 
 /// All facets in the order of their nodes, and those of each element.
-#[allow(clippy::type_complexity)]
 pub(super) fn facets<const D: usize, const N: usize>(
     cells: &[[NodeId; N]],
-) -> Result<(Vec<Facet<D>>, Vec<[FacetId; N]>), MeshError> {
+) -> Result<(Facets, Vec<[FacetId; N]>), MeshError> {
     let mut sides: Vec<([NodeId; D], ElementId, u8)> = Vec::with_capacity(cells.len() * N);
     for (e, cell) in cells.iter().enumerate() {
         for k in 0..N {
@@ -72,7 +117,7 @@ pub(super) fn facets<const D: usize, const N: usize>(
     }
     sides.sort_unstable();
 
-    let mut facets: Vec<Facet<D>> = Vec::new();
+    let mut facets = Facets { width: D, ..Facets::default() };
     let mut cell_facets = vec![[FacetId::new(0); N]; cells.len()];
     for shared in sides.chunk_by(|a, b| a.0 == b.0) {
         if shared.len() > 2 {
@@ -87,11 +132,12 @@ pub(super) fn facets<const D: usize, const N: usize>(
             return Err(MeshError::Overlap { elements: [one.1.index(), other.1.index()] });
         }
         let id = FacetId::new(facets.len());
-        facets.push(Facet { nodes: shared[0].0, owner: shared[0].1, neighbour: shared.get(1).map(|s| s.1) });
+        facets.push(&shared[0].0, shared[0].1, shared.get(1).map(|s| s.1));
         for side in shared {
             cell_facets[side.1.index()][usize::from(side.2)] = id;
         }
     }
-    facets.shrink_to_fit();
+    facets.nodes.shrink_to_fit();
+    facets.sides.shrink_to_fit();
     Ok((facets, cell_facets))
 }

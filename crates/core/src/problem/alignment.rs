@@ -1,5 +1,6 @@
 //! How well edges are aligned with an interface.
 
+use crate::border::Vector;
 use crate::contact::dot;
 use crate::ids::FacetId;
 use crate::mesh::Mesh;
@@ -16,11 +17,11 @@ pub(super) fn unit<const D: usize>(vector: &[f64; D]) -> [f64; D] {
 }
 
 /// Σ of outward normals times areas of facets (m or 1).
-pub(super) fn outward<const D: usize, const N: usize>(mesh: &Mesh<D, N>, facets: &[FacetId]) -> [f64; D] {
-    let mut sum = [0.0; D];
+pub(super) fn outward(mesh: &Mesh, facets: &[FacetId]) -> Vector {
+    let mut sum = [0.0; 3];
     for &facet in facets {
         let (normal, area) = mesh.facet_normal(facet);
-        (0..D).for_each(|c| sum[c] += area * normal[c]);
+        (0..3).for_each(|c| sum[c] += area * normal[c]);
     }
     sum
 }

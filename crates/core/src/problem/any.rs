@@ -7,7 +7,8 @@ use crate::contact::{AnyFacing, AnyObstacle, ContactFacet, ContactNode, Frame, I
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::load::Table;
 use crate::material::Elastic;
-use crate::mesh::{AnyMesh, Numbering};
+use crate::mesh::{Mesh, Numbering};
+use crate::simplex::Shape;
 use crate::units::Units;
 use std::any::Any;
 use std::sync::Arc;
@@ -15,7 +16,7 @@ use std::sync::Arc;
 /// A checked problem of either dimension, shared. Fields are in rows, as [`border`](crate::border) says.
 #[derive(Clone, Debug)]
 pub struct AnyProblem {
-    mesh: AnyMesh,
+    mesh: Arc<Mesh>,
     problem: Typed,
 }
 
@@ -74,13 +75,13 @@ impl<'p> ProblemRef<'p> {
 
 impl From<BarProblem> for AnyProblem {
     fn from(problem: BarProblem) -> Self {
-        Self { mesh: AnyMesh::D1(problem.mesh.clone()), problem: Typed::D1(Arc::new(problem)) }
+        Self { mesh: problem.mesh.clone(), problem: Typed::D1(Arc::new(problem)) }
     }
 }
 
 impl From<TriangleProblem> for AnyProblem {
     fn from(problem: TriangleProblem) -> Self {
-        Self { mesh: AnyMesh::D2(problem.mesh.clone()), problem: Typed::D2(Arc::new(problem)) }
+        Self { mesh: problem.mesh.clone(), problem: Typed::D2(Arc::new(problem)) }
     }
 }
 
@@ -122,16 +123,16 @@ impl AnyProblem {
     ///
     /// # Errors
     /// The first thing that is wrong, with its place.
-    pub fn new(mesh: &AnyMesh, stated: &Statement) -> Result<Self, InputError> {
-        match mesh {
-            AnyMesh::D1(mesh) => statement::build(mesh, stated).map(Self::from),
-            AnyMesh::D2(mesh) => statement::build(mesh, stated).map(Self::from),
+    pub fn new(mesh: &Arc<Mesh>, stated: &Statement) -> Result<Self, InputError> {
+        match mesh.shape() {
+            Shape::Bar => statement::build::<1, 2>(mesh, stated).map(Self::from),
+            Shape::Triangle => statement::build::<2, 3>(mesh, stated).map(Self::from),
         }
     }
 
     /// The mesh.
     #[must_use]
-    pub fn mesh(&self) -> &AnyMesh {
+    pub fn mesh(&self) -> &Arc<Mesh> {
         &self.mesh
     }
 

@@ -1,26 +1,20 @@
 //! Supports and loads, from named groups to facets, nodes and elements.
 
-use super::{BodyLoad, Cause, Conditions, FacetLoad, GroupOf, HeldBy, InputError, PrescribedComponent, Problem};
+use super::{BodyLoad, Cause, Conditions, FacetLoad, GroupOf, HeldBy, InputError, PrescribedComponent};
 use crate::ids::{ElementId, FacetId, NodeId};
-use crate::load::{BodyForce, Support, Table, Traction};
+use crate::load::{BodyForce, Profile, Support, Table, Traction};
 use crate::mesh::Mesh;
 use crate::message::axis;
 use std::collections::BTreeMap;
 
 /// The members of a group of facets.
-pub(super) fn facet_group<'m, const D: usize, const N: usize>(
-    mesh: &'m Mesh<D, N>,
-    name: &str,
-) -> Result<&'m [FacetId], Cause> {
-    group(mesh.facet_groups(), name, GroupOf::facets(mesh.simplex().shape()), mesh.element_groups(), GroupOf::Elements)
+pub(super) fn facet_group<'m>(mesh: &'m Mesh, name: &str) -> Result<&'m [FacetId], Cause> {
+    group(mesh.facet_groups(), name, GroupOf::facets(mesh.shape()), mesh.element_groups(), GroupOf::Elements)
 }
 
 /// The members of a group of elements.
-pub(super) fn element_group<'m, const D: usize, const N: usize>(
-    mesh: &'m Mesh<D, N>,
-    name: &str,
-) -> Result<&'m [ElementId], Cause> {
-    group(mesh.element_groups(), name, GroupOf::Elements, mesh.facet_groups(), GroupOf::facets(mesh.simplex().shape()))
+pub(super) fn element_group<'m>(mesh: &'m Mesh, name: &str) -> Result<&'m [ElementId], Cause> {
+    group(mesh.element_groups(), name, GroupOf::Elements, mesh.facet_groups(), GroupOf::facets(mesh.shape()))
 }
 
 fn group<'m, Id, Other>(
@@ -40,7 +34,7 @@ fn group<'m, Id, Other>(
 }
 
 /// The first support or traction on each facet, which then cannot touch a plane.
-pub(super) fn held<const D: usize, const N: usize>(mesh: &Mesh<D, N>, stated: &Conditions) -> Vec<Option<HeldBy>> {
+pub(super) fn held(mesh: &Mesh, stated: &Conditions) -> Vec<Option<HeldBy>> {
     let mut held = vec![None; mesh.facets().len()];
     let supports = stated.supports.iter().enumerate().map(|(i, s)| (HeldBy::Support(i), &s.group));
     let tractions = stated.tractions.iter().enumerate().map(|(i, t)| (HeldBy::Traction(i), &t.group));
@@ -74,10 +68,7 @@ impl<const D: usize> Supports<D> {
 }
 
 /// Resolves the supports; two may overlap only if they prescribe the same motion.
-pub(super) fn supports<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
-    supports: &[Support],
-) -> Result<Supports<D>, InputError> {
+pub(super) fn supports<const D: usize>(mesh: &Mesh, supports: &[Support]) -> Result<Supports<D>, InputError> {
     let mut facets = vec![[false; D]; mesh.facets().len()];
     let mut motions: Vec<Table> = Vec::new();
     let mut by_node: BTreeMap<(NodeId, usize), (usize, Option<usize>)> = BTreeMap::new();
@@ -93,7 +84,7 @@ pub(super) fn supports<const D: usize, const N: usize>(
             let motion = support.velocity.as_ref().map(|table| motion_index(&mut motions, table.component(component)));
             for facet in members {
                 facets[facet.index()][component] = true;
-                for node in mesh.facets()[facet.index()].nodes {
+                for node in mesh.facet_nodes::<D>(*facet) {
                     let (first, earlier) = *by_node.entry((node, component)).or_insert((index, motion));
                     if earlier != motion {
                         let (node, component) = (node.index(), axis(component));
@@ -119,8 +110,8 @@ fn motion_index(motions: &mut Vec<Table>, motion: Table) -> usize {
 }
 
 /// Tractions facet by facet.
-pub(super) fn tractions<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
+pub(super) fn tractions<const D: usize>(
+    mesh: &Mesh,
     tractions: &[Traction],
     supported: &[[bool; D]],
 ) -> Result<Vec<FacetLoad<D>>, InputError> {
@@ -132,10 +123,10 @@ pub(super) fn tractions<const D: usize, const N: usize>(
         let acts = traction.value.acting_components();
         for &facet in members {
             if let Some(c) = (0..D).find(|&c| acts[c] && supported[facet.index()][c]) {
-                let nodes = mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
+                let nodes = mesh.facet_nodes::<D>(facet).map(NodeId::index).to_vec();
                 return Err(fail(Cause::LoadedSupport { component: axis(c), nodes }, "group"));
             }
-            let profile = Problem::profile_on(mesh, facet, &traction.profile);
+            let profile = profile_on::<D>(mesh, facet, &traction.profile);
             finite(&profile).map_err(|cause| fail(cause, "profile"))?;
             loads.push(FacetLoad { facet, profile, table });
         }
@@ -143,10 +134,15 @@ pub(super) fn tractions<const D: usize, const N: usize>(
     Ok(loads)
 }
 
+/// The factor of a traction at each node of a facet.
+pub(super) fn profile_on<const D: usize>(mesh: &Mesh, facet: FacetId, profile: &Profile) -> [f64; D] {
+    mesh.facet_nodes::<D>(facet).map(|node| profile.at(&mesh.points_in::<D>()[node.index()]))
+}
+
 /// Body forces with the volume at each node on which they act, and the list of each element.
 #[allow(clippy::type_complexity)]
-pub(super) fn body_forces<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
+pub(super) fn body_forces<const N: usize>(
+    mesh: &Mesh,
     forces: &[BodyForce],
     volume: impl Fn(ElementId) -> f64,
 ) -> Result<(Vec<BodyLoad>, Vec<Vec<u16>>), InputError> {
@@ -162,7 +158,7 @@ pub(super) fn body_forces<const D: usize, const N: usize>(
         let mut nodal = vec![0.0; mesh.node_count()];
         for element in members {
             by_element[element.index()].push(index as u16);
-            for node in mesh.cells()[element.index()] {
+            for node in mesh.nodes_of::<N>()[element.index()] {
                 nodal[node.index()] += volume(element) / N as f64;
             }
         }

@@ -42,7 +42,7 @@ pub struct Conditions {
 /// Collects the parts of a problem; [`Builder::build`] checks them all, in one place.
 #[derive(Clone, Debug)]
 pub struct Builder<const D: usize, const N: usize> {
-    mesh: Arc<Mesh<D, N>>,
+    mesh: Arc<Mesh>,
     stated: Conditions,
     displacement: Initial<D>,
     velocity: Initial<D>,
@@ -53,7 +53,7 @@ pub struct Builder<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Builder<D, N> {
-    pub(super) fn new(mesh: Arc<Mesh<D, N>>) -> Self {
+    pub(super) fn new(mesh: Arc<Mesh>) -> Self {
         Self {
             mesh,
             stated: Conditions::default(),
@@ -68,7 +68,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
 
     /// The mesh.
     #[must_use]
-    pub fn mesh(&self) -> &Mesh<D, N> {
+    pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
@@ -190,10 +190,10 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let (materials, element_material) = materials(mesh, &self.stated.materials)?;
         waves(&materials)?;
         let extent = |e: ElementId| materials[usize::from(element_material[e.index()])].extent();
-        let volume = |e: ElementId| mesh.cell_geometry(e).volume * extent(e);
+        let volume = |e: ElementId| mesh.volume(e) * extent(e);
 
         let density = |e: ElementId| materials[usize::from(element_material[e.index()])].density();
-        let mass = lumped_mass(mesh, |e| density(e) * volume(e));
+        let mass = lumped_mass::<N>(mesh, |e| density(e) * volume(e));
 
         let initial_displacement = nodal(&self.displacement, mesh.node_count(), "displacement")?;
         let initial_velocity = nodal(&self.velocity, mesh.node_count(), "velocity")?;
@@ -205,9 +205,9 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             return Err(Cause::NoFreedom.at("support", None, ""));
         }
         let facet_loads = boundary::tractions(mesh, &self.stated.tractions, &supported)?;
-        let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.stated.body_forces, volume)?;
+        let (body_loads, element_body_loads) = boundary::body_forces::<N>(mesh, &self.stated.body_forces, volume)?;
 
-        let law = |f: FacetId| &materials[usize::from(element_material[mesh.facets()[f.index()].owner.index()])];
+        let law = |f: FacetId| &materials[usize::from(element_material[mesh.facet(f).owner.index()])];
         let (body, held, velocity) = (Vec::new(), boundary::held(mesh, &self.stated), &initial_velocity[..]);
         let bodies = Bodies { mesh, body, held, fixed, supported: &supported, lines, velocity, mass: &mass, law: &law };
         let start = Start { displacement: &initial_displacement, velocity: &initial_velocity, mass: &mass };
@@ -244,28 +244,22 @@ impl<const D: usize, const N: usize> Builder<D, N> {
 }
 
 /// The mesh with the groups of facets that contact has added.
-fn with_groups<const D: usize, const N: usize>(
-    mesh: Arc<Mesh<D, N>>,
-    groups: Vec<(String, Vec<FacetId>)>,
-) -> Arc<Mesh<D, N>> {
+fn with_groups(mesh: Arc<Mesh>, groups: Vec<(String, Vec<FacetId>)>) -> Arc<Mesh> {
     if groups.is_empty() { mesh } else { Arc::new(Arc::unwrap_or_clone(mesh).with_facet_groups(groups)) }
 }
 
 /// The mass of each node (kg), from those of the elements.
-fn lumped_mass<const D: usize, const N: usize>(mesh: &Mesh<D, N>, of_element: impl Fn(ElementId) -> f64) -> Vec<f64> {
+fn lumped_mass<const N: usize>(mesh: &Mesh, of_element: impl Fn(ElementId) -> f64) -> Vec<f64> {
     let mut mass = vec![0.0; mesh.node_count()];
     for e in (0..mesh.element_count()).map(ElementId::new) {
         let share = of_element(e) / N as f64;
-        mesh.cells()[e.index()].iter().for_each(|node| mass[node.index()] += share);
+        mesh.nodes_of::<N>()[e.index()].iter().for_each(|node| mass[node.index()] += share);
     }
     mass
 }
 
 /// One material for each element.
-fn materials<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
-    given: &[(Option<String>, Elastic)],
-) -> Result<(Vec<Elastic>, Vec<u16>), InputError> {
+fn materials(mesh: &Mesh, given: &[(Option<String>, Elastic)]) -> Result<(Vec<Elastic>, Vec<u16>), InputError> {
     const NONE: u16 = u16::MAX;
     let mut of_element = vec![NONE; mesh.element_count()];
     for (index, (group, _)) in given.iter().enumerate() {

@@ -14,9 +14,9 @@ const OPENINGS: std::ops::RangeInclusive<f64> = 15.0..=165.0;
 pub(super) const ALIGNED: f64 = 1e-12;
 
 /// Adds an obstacle and the facets that may touch it to the contact surface.
-pub(super) fn add<const D: usize, const N: usize>(
+pub(super) fn add<const D: usize>(
     surface: &mut ContactSurface<D>,
-    mesh: &Mesh<D, N>,
+    mesh: &Mesh,
     (obstacle, plane): (Obstacle<D>, &Plane<D>),
     held: impl Fn(FacetId) -> Option<HeldBy>,
     prescribed: impl Fn(NodeId) -> [bool; D],
@@ -25,13 +25,13 @@ pub(super) fn add<const D: usize, const N: usize>(
     let index = surface.obstacles().len();
     let facing = facing(mesh, &obstacle, held).map_err(|(cause, key)| cause.at("obstacle", Some(index), key))?;
     if let Some(other) = surface.facets().iter().find(|other| facing.contains(&other.facet)) {
-        let nodes = mesh.facets()[other.facet.index()].nodes.map(NodeId::index).to_vec();
+        let nodes = mesh.facet_nodes::<D>(other.facet).map(NodeId::index).to_vec();
         return Err(Cause::TwoPlanes { nodes, first: other.obstacle + 1 }.at("obstacle", Some(index), "group"));
     }
     let mut nodes: Vec<(ContactNode, [f64; D])> = Vec::new();
     for node in along_the_boundary(mesh, &facing) {
         let beside = surface.nodes().iter().position(|c| c.node == node);
-        let (point, held) = (mesh.points()[node.index()], prescribed(node));
+        let (point, held) = (mesh.points_in::<D>()[node.index()], prescribed(node));
         let frame = obstacle.frame_at(&point);
         let free = (0..D).all(|c| !held[c] || frame.normal()[c].abs() <= ALIGNED);
         let guided = free && held != [false; D];
@@ -47,7 +47,7 @@ pub(super) fn add<const D: usize, const N: usize>(
     }
     let position: BTreeMap<NodeId, usize> = nodes.iter().enumerate().map(|(at, (c, _))| (c.node, at)).collect();
     let facet = |facet: FacetId| {
-        let nodes = mesh.facets()[facet.index()].nodes.map(|node| position[&node]);
+        let nodes = mesh.facet_nodes::<D>(facet).map(|node| position[&node]);
         ContactFacet { facet, nodes, area: area(facet), obstacle: index }
     };
     surface.add(obstacle, nodes, facing.into_iter().map(facet));
@@ -84,13 +84,13 @@ fn corner<const D: usize>(
 }
 
 /// Free facets that face an obstacle, of its group if it names one. The error has the key of the statement.
-fn facing<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
+fn facing<const D: usize>(
+    mesh: &Mesh,
     obstacle: &Obstacle<D>,
     held: impl Fn(FacetId) -> Option<HeldBy>,
 ) -> Result<Vec<FacetId>, (Cause, &'static str)> {
-    let nodes = |facet: FacetId| mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
-    let faces = |&facet: &FacetId| dot(&mesh.facet_normal(facet).0, &normal_at(mesh, obstacle, facet)) < FACES;
+    let nodes = |facet: FacetId| mesh.facet_nodes::<D>(facet).map(NodeId::index).to_vec();
+    let faces = |&facet: &FacetId| dot(&mesh.normal_in::<D>(facet).0, &normal_at(mesh, obstacle, facet)) < FACES;
     let mut found: Vec<FacetId>;
     if let Some(name) = obstacle.group() {
         let group = super::boundary::facet_group(mesh, name).map_err(|cause| (cause, "group"))?;
@@ -114,16 +114,11 @@ fn facing<const D: usize, const N: usize>(
 }
 
 /// The normal of a group that does not face the obstacle, and the groups that do face it.
-fn nothing_faces<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
-    obstacle: &Obstacle<D>,
-    name: &str,
-    group: &[FacetId],
-) -> Cause {
+fn nothing_faces<const D: usize>(mesh: &Mesh, obstacle: &Obstacle<D>, name: &str, group: &[FacetId]) -> Cause {
     let mean = |facets: &[FacetId]| {
         let mut sum = [0.0; D];
         for &facet in facets {
-            let (normal, area) = mesh.facet_normal(facet);
+            let (normal, area) = mesh.normal_in::<D>(facet);
             (0..D).for_each(|c| sum[c] += area * normal[c]);
         }
         let length = dot(&sum, &sum).sqrt();
@@ -138,18 +133,18 @@ fn nothing_faces<const D: usize, const N: usize>(
 }
 
 /// Normal of an obstacle at the centroid of a facet.
-fn normal_at<const D: usize, const N: usize>(mesh: &Mesh<D, N>, obstacle: &Obstacle<D>, facet: FacetId) -> [f64; D] {
-    let points = mesh.facets()[facet.index()].nodes.map(|node| mesh.points()[node.index()]);
+fn normal_at<const D: usize>(mesh: &Mesh, obstacle: &Obstacle<D>, facet: FacetId) -> [f64; D] {
+    let points = mesh.facet_nodes::<D>(facet).map(|node| mesh.points_in::<D>()[node.index()]);
     let centroid = std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / D as f64);
     *obstacle.frame_at(&centroid).normal()
 }
 
 /// Nodes of the facets, piece by piece. In 2D a piece is a chain from one end to the other: not all facets of a closed
 /// curve face the same obstacle.
-pub(super) fn along_the_boundary<const D: usize, const N: usize>(mesh: &Mesh<D, N>, facets: &[FacetId]) -> Vec<NodeId> {
+pub(super) fn along_the_boundary(mesh: &Mesh, facets: &[FacetId]) -> Vec<NodeId> {
     let mut neighbours: BTreeMap<NodeId, Vec<NodeId>> = BTreeMap::new();
     for facet in facets {
-        let nodes = &mesh.facets()[facet.index()].nodes;
+        let nodes = mesh.facet(*facet).nodes;
         for node in nodes {
             neighbours.entry(*node).or_default().extend(nodes.iter().filter(|n| *n != node));
         }

@@ -37,8 +37,8 @@ pub(super) struct Stated<'a> {
 }
 
 /// The pairs of surfaces of all contacts, beside the facets that may touch planes.
-pub(super) fn surfaces<const D: usize, const N: usize>(
-    bodies: &Bodies<'_, D, N>,
+pub(super) fn surfaces<const D: usize>(
+    bodies: &Bodies<'_, D>,
     stated: &Stated<'_>,
     start: &Start<'_, D>,
     facing_planes: &BTreeSet<FacetId>,
@@ -50,7 +50,7 @@ pub(super) fn surfaces<const D: usize, const N: usize>(
         let Between::Groups(groups) = &contact.between else { continue };
         let place = Place { table: "contact", index: Some(index), key: contact.key() };
         let fail = |cause| InputError { place, cause };
-        let choice = made.of_groups::<D>(contact, groups).map_err(|cause| fail(cause.into()))?;
+        let choice = of_groups(bodies.mesh, contact, groups).map_err(|cause| fail(cause.into()))?;
         bodies.sides(choice.otherwise.as_ref().unwrap_or(&choice.first)).map_err(fail)?;
     }
     let by_groups = contacts.iter().all(|contact| matches!(contact.between, Between::Groups(_)));
@@ -89,19 +89,26 @@ pub(super) fn surfaces<const D: usize, const N: usize>(
     Ok(made)
 }
 
+/// The interface of two groups.
+fn of_groups(mesh: &Mesh, contact: &Contact, groups: &[String; 2]) -> Result<Choice, ObstacleError> {
+    let (dimension, groups) = (mesh.dimension(), groups.each_ref().map(String::as_str));
+    let otherwise = contact.matching.is_none().then(|| contact.interface(dimension, groups, false)).transpose()?;
+    Ok(Choice { first: contact.interface(dimension, groups, contact.matching != Some(false))?, otherwise })
+}
+
 impl Surfaces {
     /// The interface of contacts that are solved together. Bodies that are not named may have none: what is left of
     /// their edges beside those of other contacts cannot meet.
-    fn of_members<const D: usize, const N: usize>(
+    fn of_members(
         &mut self,
-        mesh: &Mesh<D, N>,
+        mesh: &Mesh,
         (proposals, members): (&[Proposal<'_>], &[Member]),
         names: &[String],
     ) -> Result<Option<Choice>, Cause> {
         let Proposal { contact, source, .. } = &proposals[members[0].contact];
         match source {
             _ if members.len() > 1 => Ok(Some(self.of_several(mesh, (proposals, members), names)?)),
-            Source::Groups(groups) => Ok(Some(self.of_groups::<D>(contact, groups)?)),
+            Source::Groups(groups) => Ok(Some(of_groups(mesh, contact, groups)?)),
             Source::Found(found) => match self.of_found(mesh, contact, (names, found))? {
                 None if matches!(contact.between, Between::Bodies(_)) => {
                     Err(Cause::NothingSees { bodies: found.pair.map(|body| names[body].clone()) })
@@ -111,16 +118,10 @@ impl Surfaces {
         }
     }
 
-    fn of_groups<const D: usize>(&self, contact: &Contact, groups: &[String; 2]) -> Result<Choice, ObstacleError> {
-        let groups = groups.each_ref().map(String::as_str);
-        let otherwise = contact.matching.is_none().then(|| contact.interface(D, groups, false)).transpose()?;
-        Ok(Choice { first: contact.interface(D, groups, contact.matching != Some(false))?, otherwise })
-    }
-
     /// The interface of two surfaces that are found, if they have edges that face each other.
-    fn of_found<const D: usize, const N: usize>(
+    fn of_found(
         &mut self,
-        mesh: &Mesh<D, N>,
+        mesh: &Mesh,
         contact: &Contact,
         (names, found): (&[String], &Found),
     ) -> Result<Option<Choice>, ObstacleError> {
@@ -129,7 +130,9 @@ impl Surfaces {
         let stays = found.slide <= SLIDES * shortest;
         let mut make = |matching: bool| {
             let groups = self.groups_of(mesh, names, found, matching);
-            groups.map(|groups| contact.interface(D, groups.each_ref().map(String::as_str), matching)).transpose()
+            groups
+                .map(|groups| contact.interface(mesh.dimension(), groups.each_ref().map(String::as_str), matching))
+                .transpose()
         };
         let (first, otherwise) = match contact.matching.or((!stays).then_some(false)) {
             Some(matching) => (make(matching)?, None),
@@ -140,13 +143,7 @@ impl Surfaces {
 
     /// The names of both surfaces, if they face each other: those of groups of the mesh, if there are such, else of new
     /// ones.
-    fn groups_of<const D: usize, const N: usize>(
-        &mut self,
-        mesh: &Mesh<D, N>,
-        names: &[String],
-        found: &Found,
-        matching: bool,
-    ) -> Option<[String; 2]> {
+    fn groups_of(&mut self, mesh: &Mesh, names: &[String], found: &Found, matching: bool) -> Option<[String; 2]> {
         let relation = if matching { "facing" } else { "towards" };
         let mut sides = found.seeing.clone();
         if !matching {
@@ -163,9 +160,9 @@ impl Surfaces {
     }
 
     /// The interface between a common surface and those of several bodies.
-    fn of_several<const D: usize, const N: usize>(
+    fn of_several(
         &mut self,
-        mesh: &Mesh<D, N>,
+        mesh: &Mesh,
         (proposals, members): (&[Proposal<'_>], &[Member]),
         names: &[String],
     ) -> Result<Choice, ObstacleError> {
@@ -188,17 +185,12 @@ impl Surfaces {
         // The sides stay in the order of the first contact.
         let groups = if members[0].common == 0 { [make(true), make(false)] } else { [make(false), make(true)] };
         let contact = proposals[members[0].contact].contact;
-        let first = contact.interface(D, groups.each_ref().map(String::as_str), false)?;
+        let first = contact.interface(mesh.dimension(), groups.each_ref().map(String::as_str), false)?;
         Ok(Choice { first, otherwise: None })
     }
 
     /// The name of a group of these facets: one of the mesh, or a new one.
-    fn group<const D: usize, const N: usize>(
-        &mut self,
-        mesh: &Mesh<D, N>,
-        name: String,
-        facets: Vec<FacetId>,
-    ) -> String {
+    fn group(&mut self, mesh: &Mesh, name: String, facets: Vec<FacetId>) -> String {
         if let Some((name, _)) = mesh.facet_groups().iter().find(|(_, group)| **group == facets) {
             return name.clone();
         }
@@ -208,11 +200,7 @@ impl Surfaces {
 }
 
 /// The facets of the common surface of several contacts, and those of the others. All those that the user named stay.
-fn facets_of_several<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
-    proposals: &[Proposal<'_>],
-    members: &[Member],
-) -> [Vec<FacetId>; 2] {
+fn facets_of_several(mesh: &Mesh, proposals: &[Proposal<'_>], members: &[Member]) -> [Vec<FacetId>; 2] {
     let mut sides = [BTreeSet::new(), BTreeSet::new()];
     let mut nearest = [Vec::new(), Vec::new()];
     let (mut named, mut across) = (false, None);
@@ -256,8 +244,8 @@ impl Pairs {
         self.found.iter().zip(&self.contact).filter(move |(_, of)| **of == contact).map(|(found, _)| found)
     }
 
-    fn new<const D: usize, const N: usize>(
-        bodies: &Bodies<'_, D, N>,
+    fn new<const D: usize>(
+        bodies: &Bodies<'_, D>,
         stated: &Stated<'_>,
         start: &Start<'_, D>,
         facing_planes: &BTreeSet<FacetId>,
@@ -270,7 +258,7 @@ impl Pairs {
                 Between::Groups(groups) => {
                     let facets =
                         groups.each_ref().map(|group| mesh.facet_groups().get(group).map_or(&[][..], Vec::as_slice));
-                    let nodes = facets.map(|all| all.iter().flat_map(|facet| mesh.facets()[facet.index()].nodes));
+                    let nodes = facets.map(|all| all.iter().flat_map(|facet| mesh.facet_nodes::<D>(*facet)));
                     let nodes: [Vec<NodeId>; 2] = nodes.map(Iterator::collect);
                     if let [Some(a), Some(b)] = nodes.each_ref().map(|nodes| nodes.first()) {
                         known.insert(ordered([a, b].map(|node| of_node[node.index()])));

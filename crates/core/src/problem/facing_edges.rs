@@ -1,6 +1,7 @@
 //! Edges that are found and that face the other surface of their interface.
 
 use super::alignment::{FOUND, outward, unit};
+use crate::border::Vector;
 use crate::contact::dot;
 use crate::ids::FacetId;
 use crate::mesh::Mesh;
@@ -9,15 +10,15 @@ use crate::mesh::Mesh;
 const ALIKE: f64 = 1e-9;
 
 /// Chooses the facets of two sides that can belong to one interface.
-pub(super) struct FacingEdges<'m, const D: usize, const N: usize> {
-    pub(super) mesh: &'m Mesh<D, N>,
+pub(super) struct FacingEdges<'m> {
+    pub(super) mesh: &'m Mesh,
     /// The facets of both sides that are nearest to the other side when the bodies meet.
     pub(super) nearest: [Vec<FacetId>; 2],
     /// The direction across which the line of symmetry of two halves stands: normals are those of the whole ones.
     pub(super) across: Option<usize>,
 }
 
-impl<const D: usize, const N: usize> FacingEdges<'_, D, N> {
+impl FacingEdges<'_> {
     /// The facets without those that face away from the mean normal of their own side or towards that of the other one:
     /// the normal of an interface is one of these two. The worst ones leave first, because the mean changes. Long edges
     /// beside a corner may so push out the ones that meet. Then those leave first that face least what these face. None
@@ -47,7 +48,7 @@ impl<const D: usize, const N: usize> FacingEdges<'_, D, N> {
     fn leave(
         &self,
         mut sides: [Vec<FacetId>; 2],
-        rank: impl Fn(usize, FacetId, &[[f64; D]; 2]) -> f64,
+        rank: impl Fn(usize, FacetId, &[Vector; 2]) -> f64,
     ) -> Option<[Vec<FacetId>; 2]> {
         loop {
             let normals = self.normals(&sides);
@@ -71,7 +72,7 @@ impl<const D: usize, const N: usize> FacingEdges<'_, D, N> {
     }
 
     /// The mean outward normals of both sides.
-    fn normals(&self, sides: &[Vec<FacetId>; 2]) -> [[f64; D]; 2] {
+    fn normals(&self, sides: &[Vec<FacetId>; 2]) -> [Vector; 2] {
         sides.each_ref().map(|facets| {
             let mut sum = outward(self.mesh, facets);
             self.across.into_iter().for_each(|c| sum[c] = 0.0);
@@ -80,7 +81,7 @@ impl<const D: usize, const N: usize> FacingEdges<'_, D, N> {
     }
 
     /// How well a facet of a side faces the other side: the least cosine with its own normal and against the other one.
-    fn cosine(&self, side: usize, facet: FacetId, normals: &[[f64; D]; 2]) -> f64 {
+    fn cosine(&self, side: usize, facet: FacetId, normals: &[Vector; 2]) -> f64 {
         let normal = self.mesh.facet_normal(facet).0;
         dot(&normal, &normals[side]).min(-dot(&normal, &normals[1 - side]))
     }

@@ -28,7 +28,7 @@ pub(super) enum Source<'a> {
 }
 
 impl Source<'_> {
-    pub(super) fn facets<const D: usize, const N: usize>(&self, mesh: &Mesh<D, N>) -> [Vec<FacetId>; 2] {
+    pub(super) fn facets(&self, mesh: &Mesh) -> [Vec<FacetId>; 2] {
         match self {
             Self::Groups(groups) => {
                 groups.each_ref().map(|group| mesh.facet_groups().get(group).cloned().unwrap_or_default())
@@ -47,8 +47,8 @@ pub(super) struct Member {
 
 /// Puts contacts that share nodes together; the others stay alone, in the order of their first ones. Surfaces that
 /// share nodes otherwise are left for the error that nodes in two contacts have.
-pub(super) fn joined<const D: usize, const N: usize>(
-    bodies: &Bodies<'_, D, N>,
+pub(super) fn joined<const D: usize>(
+    bodies: &Bodies<'_, D>,
     proposals: &[Proposal<'_>],
 ) -> Result<Vec<Vec<Member>>, InputError> {
     let mut made: Vec<Vec<Member>> = Vec::new();
@@ -56,7 +56,7 @@ pub(super) fn joined<const D: usize, const N: usize>(
     for (contact, proposal) in proposals.iter().enumerate() {
         made.push(vec![Member { contact, common: 0 }]);
         for (common, facets) in proposal.facets.iter().enumerate() {
-            for node in facets.iter().flat_map(|facet| bodies.mesh.facets()[facet.index()].nodes) {
+            for node in facets.iter().flat_map(|facet| bodies.mesh.facet_nodes::<D>(*facet)) {
                 let one = Member { contact, common };
                 let other = *owner.entry(node).or_insert(one);
                 if other.contact != contact && join(bodies, proposals, &mut made, [other, one]) {
@@ -70,8 +70,8 @@ pub(super) fn joined<const D: usize, const N: usize>(
 }
 
 /// Puts two contacts with a common node together; false if they cannot be or are already.
-fn join<const D: usize, const N: usize>(
-    bodies: &Bodies<'_, D, N>,
+fn join<const D: usize>(
+    bodies: &Bodies<'_, D>,
     proposals: &[Proposal<'_>],
     made: &mut [Vec<Member>],
     pair: [Member; 2],
@@ -107,7 +107,7 @@ fn join<const D: usize, const N: usize>(
 
 /// Whether two surfaces that share a node are one. Of those that are found, the search has decided it: it looks along
 /// the directions in which bodies meet, and the mean normal of edges beside a corner may be far from them.
-fn one_direction<const D: usize, const N: usize>(mesh: &Mesh<D, N>, pair: [(&Proposal<'_>, usize); 2]) -> bool {
+fn one_direction(mesh: &Mesh, pair: [(&Proposal<'_>, usize); 2]) -> bool {
     if let [Source::Found(first), Source::Found(second)] = pair.map(|(proposal, _)| proposal.source) {
         return first.shared == second.shared;
     }

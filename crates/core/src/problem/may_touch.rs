@@ -19,8 +19,8 @@ pub(super) struct AllContact<const D: usize> {
 }
 
 /// Finds the surfaces that may touch, and makes the contact surface of them.
-pub(super) fn all_contact<const D: usize, const N: usize>(
-    bodies: Bodies<'_, D, N>,
+pub(super) fn all_contact<const D: usize>(
+    bodies: Bodies<'_, D>,
     obstacles: Vec<Obstacle<D>>,
     stated: Stated<'_>,
     start: &Start<'_, D>,
@@ -43,8 +43,8 @@ pub(super) fn all_contact<const D: usize, const N: usize>(
 }
 
 /// The planes with the facets that face them.
-fn planes<const D: usize, const N: usize>(
-    bodies: &Bodies<'_, D, N>,
+fn planes<const D: usize>(
+    bodies: &Bodies<'_, D>,
     obstacles: Vec<Obstacle<D>>,
     displacement: &[[f64; D]],
 ) -> Result<ContactSurface<D>, InputError> {
@@ -62,9 +62,9 @@ fn planes<const D: usize, const N: usize>(
 }
 
 /// Adds the surfaces of different bodies that may touch.
-fn with_interfaces<const D: usize, const N: usize>(
+fn with_interfaces<const D: usize>(
     mut surface: ContactSurface<D>,
-    bodies: &Bodies<'_, D, N>,
+    bodies: &Bodies<'_, D>,
     choices: &[(Choice, Place)],
     displacement: &[[f64; D]],
 ) -> Result<(ContactSurface<D>, Vec<Interface>), InputError> {
@@ -77,9 +77,9 @@ fn with_interfaces<const D: usize, const N: usize>(
 }
 
 /// Adds the first one of two ways of contact that the surfaces allow.
-fn add_interface<const D: usize, const N: usize>(
+fn add_interface<const D: usize>(
     surface: &mut ContactSurface<D>,
-    bodies: &Bodies<'_, D, N>,
+    bodies: &Bodies<'_, D>,
     Choice { first, otherwise }: &Choice,
     displacement: &[[f64; D]],
 ) -> Result<Interface, Cause> {
@@ -98,13 +98,9 @@ fn add_interface<const D: usize, const N: usize>(
 }
 
 /// An obstacle that has the whole body behind it has its normal reversed.
-fn in_front<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
-    plane: &Plane<D>,
-    displacement: &[[f64; D]],
-) -> Result<(), Cause> {
+fn in_front<const D: usize>(mesh: &Mesh, plane: &Plane<D>, displacement: &[[f64; D]]) -> Result<(), Cause> {
     let gap = |(x, u): (&[f64; D], &[f64; D])| plane.gap(&std::array::from_fn(|c| x[c] + u[c]));
-    let gaps: Vec<f64> = mesh.points().iter().zip(displacement).map(gap).collect();
+    let gaps: Vec<f64> = mesh.points_in::<D>().iter().zip(displacement).map(gap).collect();
     let node = (0..gaps.len()).fold(0, |deepest, i| if gaps[i] < gaps[deepest] { i } else { deepest });
     // As for contact: rounding must not put a body that rests on the obstacle behind it.
     let tolerance = 1e-12 * mesh.size();

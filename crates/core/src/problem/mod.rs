@@ -38,7 +38,7 @@ pub use statement::Statement;
 
 use crate::contact::{ContactSurface, Facing, Interface, Obstacle};
 use crate::ids::{ElementId, FacetId, NodeId};
-use crate::load::{Profile, Table};
+use crate::load::Table;
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
 use crate::units::Units;
@@ -78,7 +78,7 @@ pub struct BodyLoad {
 /// An elastic body that may strike rigid obstacles, with its supports and loads, checked.
 #[derive(Clone, Debug)]
 pub struct Problem<const D: usize, const N: usize> {
-    mesh: Arc<Mesh<D, N>>,
+    mesh: Arc<Mesh>,
     stated: Conditions,
     materials: Vec<Elastic>,
     element_material: Vec<u16>,
@@ -108,13 +108,13 @@ pub type TriangleProblem = Problem<2, 3>;
 impl<const D: usize, const N: usize> Problem<D, N> {
     /// Starts the statement of a problem on a mesh.
     #[must_use]
-    pub fn builder(mesh: impl Into<Arc<Mesh<D, N>>>) -> Builder<D, N> {
+    pub fn builder(mesh: impl Into<Arc<Mesh>>) -> Builder<D, N> {
         Builder::new(mesh.into())
     }
 
     /// The mesh.
     #[must_use]
-    pub fn mesh(&self) -> &Mesh<D, N> {
+    pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
@@ -237,7 +237,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         for load in &self.facet_loads {
             let area = self.facet_area(load.facet);
             let moments = Self::facet_moments(area, &self.facet_traction_at(load, t));
-            let nodes = self.mesh.facets()[load.facet.index()].nodes;
+            let nodes = self.mesh.facet_nodes::<D>(load.facet);
             for (node, moment) in nodes.iter().zip(moments) {
                 (0..D).for_each(|c| force[node.index()][c] += moment[c]);
             }
@@ -371,14 +371,14 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     /// Volume of an element with section or thickness (m³).
     #[must_use]
     pub fn volume(&self, element: ElementId) -> f64 {
-        self.mesh.simplex().signed_volume(&self.mesh.cell_points(element)) * self.material(element).extent()
+        self.mesh.volume(element) * self.material(element).extent()
     }
 
     /// Area of a boundary facet with section or thickness (m²).
     #[must_use]
     pub fn facet_area(&self, facet: FacetId) -> f64 {
-        let owner = self.mesh.facets()[facet.index()].owner;
-        self.mesh.facet_normal(facet).1 * self.material(owner).extent()
+        let owner = self.mesh.facet(facet).owner;
+        self.mesh.normal_in::<D>(facet).1 * self.material(owner).extent()
     }
 
     /// Distances below this count as touching (m): 1e-12 of the body's size, so that landing
@@ -425,9 +425,5 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         let tractions = self.traction_tables.iter().map(|t| t.resampling_error(instants));
         let forces = self.body_loads.iter().map(|l| l.value.resampling_error(instants));
         motions.chain(tractions).chain(forces).fold(0.0, f64::max)
-    }
-
-    fn profile_on(mesh: &Mesh<D, N>, facet: FacetId, profile: &Profile) -> [f64; D] {
-        mesh.facets()[facet.index()].nodes.map(|node| profile.at(&mesh.points()[node.index()]))
     }
 }

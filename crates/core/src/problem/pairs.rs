@@ -14,16 +14,16 @@ type Facing<const D: usize> = ([Side<D>; 2], [f64; D], Vec<NodeId>);
 
 /// Adds the pairs of an interface to the contact surface, as two obstacles: for the first group the surface of the
 /// second one, and the other way round.
-pub(super) fn add<const D: usize, const N: usize>(
+pub(super) fn add<const D: usize>(
     surface: &mut ContactSurface<D>,
-    bodies: &Bodies<'_, D, N>,
+    bodies: &Bodies<'_, D>,
     interface: &Interface,
 ) -> Result<(), Cause> {
     let (sides, normal, partners) = bodies.facing(surface, interface)?;
     let away = normal.map(|n| -n);
     let ordered = [sides[0].nodes.clone(), partners];
     let start = surface.nodes().len();
-    let points = bodies.mesh.points();
+    let points = bodies.mesh.points_in::<D>();
     for (k, (nodes, side)) in ordered.iter().zip(&sides).enumerate() {
         let obstacle = surface.obstacles().len();
         let frame = if k == 0 { normal } else { away };
@@ -40,7 +40,7 @@ pub(super) fn add<const D: usize, const N: usize>(
         let contacts = nodes.iter().enumerate().map(contact).collect::<Result<Vec<_>, Cause>>()?;
         let position: BTreeMap<NodeId, usize> = nodes.iter().enumerate().map(|(at, &node)| (node, at)).collect();
         let facets = side.facets.iter().map(|&facet| {
-            let nodes = bodies.mesh.facets()[facet.index()].nodes.map(|node| position[&node]);
+            let nodes = bodies.mesh.facet_nodes::<D>(facet).map(|node| position[&node]);
             ContactFacet { facet, nodes, area: bodies.area(facet), obstacle }
         });
         let facing = Obstacle::surface(frame, interface.law(), interface.groups()[k].to_string(), None);
@@ -49,7 +49,7 @@ pub(super) fn add<const D: usize, const N: usize>(
     Ok(())
 }
 
-impl<const D: usize, const N: usize> Bodies<'_, D, N> {
+impl<const D: usize> Bodies<'_, D> {
     /// Both sides of an interface, which face each other in pairs.
     fn facing(&self, surface: &ContactSurface<D>, interface: &Interface) -> Result<Facing<D>, Cause> {
         let sides = self.sides(interface)?;
@@ -70,12 +70,13 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
 
     /// The node of the second side that faces each node of the first one.
     fn partners(&self, [first, second]: &[Side<D>; 2], normal: &[f64; D]) -> Result<Vec<NodeId>, Cause> {
-        let points = self.mesh.points();
+        let points = self.mesh.points_in::<D>();
         let counts = [first.nodes.len(), second.nodes.len()];
         if counts[0] != counts[1] {
             return Err(Cause::NotMatching { counts, node: first.nodes[0].index(), offset: 0.0 });
         }
-        let shortest = first.facets.iter().map(|&facet| self.mesh.facet_normal(facet).1).fold(f64::INFINITY, f64::min);
+        let shortest =
+            first.facets.iter().map(|&facet| self.mesh.normal_in::<D>(facet).1).fold(f64::INFINITY, f64::min);
         let frame = Frame::new(*normal);
         let offset = |a: NodeId, b: NodeId| {
             let apart = std::array::from_fn(|c| points[a.index()][c] - points[b.index()][c]);
@@ -92,7 +93,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let of: BTreeMap<NodeId, NodeId> = first.nodes.iter().copied().zip(partners.iter().copied()).collect();
         let edges = |facets: &[FacetId], image: &dyn Fn(NodeId) -> NodeId| -> BTreeMap<Vec<NodeId>, FacetId> {
             let sorted = |facet: &FacetId| {
-                let mut nodes = self.mesh.facets()[facet.index()].nodes.map(image).to_vec();
+                let mut nodes = self.mesh.facet_nodes::<D>(*facet).map(image).to_vec();
                 nodes.sort_unstable();
                 (nodes, *facet)
             };
@@ -102,7 +103,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let alone = ours.iter().find(|(nodes, _)| !theirs.contains_key(*nodes));
         match alone.or_else(|| theirs.iter().find(|(nodes, _)| !ours.contains_key(*nodes))) {
             Some((_, facet)) => {
-                Err(Cause::EdgesDiffer { nodes: self.mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec() })
+                Err(Cause::EdgesDiffer { nodes: self.mesh.facet_nodes::<D>(*facet).map(NodeId::index).to_vec() })
             }
             None => Ok(partners),
         }

@@ -18,7 +18,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         let mut prescribed: Vec<_> = self.prescribed.iter().map(renamed).collect();
         prescribed.sort_unstable_by_key(|p| (p.node, p.component));
         let facet_load = |load: &FacetLoad<D>| {
-            let nodes = &self.mesh.facets()[load.facet.index()].nodes;
+            let nodes = &self.mesh.facet_nodes::<D>(load.facet);
             FacetLoad { facet: new.facet(load.facet), profile: new.along(nodes, load.profile), ..*load }
         };
         let mut facet_loads: Vec<_> = self.facet_loads.iter().map(facet_load).collect();

@@ -33,7 +33,7 @@ impl RigidMotion {
         let (mesh, masses) = (problem.mesh(), problem.mass().to_vec());
         let (of_node, bodies) = (mesh.part_numbers(), mesh.parts());
         let (mut mass, mut centre, mut inertia) = (vec![0.0; bodies], vec![[0.0; 3]; bodies], vec![0.0; bodies]);
-        let points: Vec<Vector> = mesh.points().iter().map(padded).collect();
+        let points: Vec<Vector> = mesh.points_in::<D>().iter().map(padded).collect();
         for ((&body, x), m) in of_node.iter().zip(&points).zip(&masses) {
             mass[body] += m;
             (0..3).for_each(|c| centre[body][c] += m * x[c]);
@@ -89,16 +89,16 @@ impl RigidMotion {
 mod tests {
     use super::*;
     use crate::material::Elastic;
-    use crate::mesh::{BarMesh, ElementGroups, FacetGroups, TriangleMesh};
+    use crate::mesh::{ElementGroups, FacetGroups, Mesh};
     use crate::problem::{BarProblem, TriangleProblem};
 
     /// Two squares of 1 m, apart, of 2 kg each.
     fn squares() -> TriangleProblem {
-        let here = TriangleMesh::rectangle(1.0, 1.0, 3, 2).unwrap();
-        let points = here.points().iter().map(|[x, y]| [x + 5.0, *y]).collect();
-        let cells: Vec<_> = here.cells().iter().map(|cell| cell.map(|node| node.index())).collect();
-        let there = TriangleMesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new()).unwrap();
-        let mesh = TriangleMesh::joined(&[("a", &here), ("b", &there)]).unwrap();
+        let here = Mesh::rectangle(1.0, 1.0, 3, 2).unwrap();
+        let points = here.points_in::<2>().iter().map(|[x, y]| [x + 5.0, *y]).collect();
+        let cells: Vec<_> = here.nodes_of::<3>().iter().map(|cell| cell.map(|node| node.index())).collect();
+        let there = Mesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new()).unwrap();
+        let mesh = Mesh::joined(&[("a", &here), ("b", &there)]).unwrap();
         let law = Elastic::plane_strain(1.0, 0.2, 2.0, 1.0).unwrap();
         TriangleProblem::builder(mesh).material(law).build().unwrap()
     }
@@ -133,10 +133,10 @@ mod tests {
 
     #[test]
     fn a_bar_does_not_turn() {
-        let mesh = BarMesh::uniform_bar(2.0, 4).unwrap();
+        let mesh = Mesh::uniform_bar(2.0, 4).unwrap();
         let problem = BarProblem::builder(mesh).material(Elastic::bar(1.0, 1.0, 1.0).unwrap()).build().unwrap();
         let rigid = RigidMotion::new(&problem);
-        let field: Vec<[f64; 1]> = problem.mesh().points().iter().map(|[x]| [7.0 + (x - 1.0)]).collect();
+        let field: Vec<[f64; 1]> = problem.mesh().points_in::<1>().iter().map(|[x]| [7.0 + (x - 1.0)]).collect();
         // Masses of ¼, ½, ½, ½, ¼ kg at −1, −½, 0, ½, 1 m.
         assert!((rigid.relative_kinetic_energy(field.as_flattened()) - 0.375).abs() < 1e-14);
         assert_eq!(rigid.rotations(field.as_flattened()), [0.0]);

@@ -23,7 +23,7 @@ pub(super) struct Roles {
     pub(super) face: usize,
 }
 
-impl<const D: usize, const N: usize> Bodies<'_, D, N> {
+impl<const D: usize> Bodies<'_, D> {
     /// Which side is the slave: the one of several bodies, else the one that strikes the other side. Else it is the one
     /// that sticks out less beyond the other one; of two that do so alike, that with the shorter edges, else that of
     /// the softer body, of the lighter one, or of the one whose centre of mass is nearer. Of bodies that are all alike
@@ -98,7 +98,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let mean = unit(&side.of_whole);
         let (mut sum, mut length) = (0.0, 0.0);
         for &facet in &side.facets {
-            let (normal, area) = self.mesh.facet_normal(facet);
+            let (normal, area) = self.mesh.normal_in::<D>(facet);
             let apart: [f64; D] = std::array::from_fn(|c| normal[c] - mean[c]);
             sum += area * dot(&apart, &apart);
             length += area;
@@ -127,7 +127,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
     fn modulus(&self, side: &Side<D>) -> f64 {
         let (mut sum, mut length) = (0.0, 0.0);
         for &facet in &side.facets {
-            let (law, area) = ((self.law)(facet), self.mesh.facet_normal(facet).1);
+            let (law, area) = ((self.law)(facet), self.mesh.normal_in::<D>(facet).1);
             sum += area * law.wave_modulus();
             length += area;
         }
@@ -147,12 +147,12 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
 
     /// The ends of the edges of a side (m).
     fn edges(&self, side: &Side<D>, displacement: &[[f64; D]]) -> Vec<[[f64; D]; 2]> {
-        let nodes = side.facets.iter().map(|facet| &self.mesh.facets()[facet.index()].nodes);
+        let nodes = side.facets.iter().map(|facet| self.mesh.facet_nodes::<D>(*facet));
         nodes.map(|nodes| std::array::from_fn(|k| self.place(nodes[k.min(nodes.len() - 1)], displacement))).collect()
     }
 
     fn place(&self, node: NodeId, displacement: &[[f64; D]]) -> [f64; D] {
-        std::array::from_fn(|c| self.mesh.points()[node.index()][c] + displacement[node.index()][c])
+        std::array::from_fn(|c| self.mesh.points_in::<D>()[node.index()][c] + displacement[node.index()][c])
     }
 }
 

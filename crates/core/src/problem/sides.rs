@@ -4,6 +4,7 @@ use super::alignment::{FACES, outward, unit};
 use super::candidates::along_the_boundary;
 use super::symmetry::{self, Motion, NodeLines, SymmetryLine};
 use super::{Cause, HeldBy, boundary};
+use crate::border::cut;
 use crate::contact::{ContactSurface, Interface, Obstacle, dot};
 use crate::ids::{ElementId, FacetId, NodeId};
 use crate::material::{Elastic, Law};
@@ -11,8 +12,8 @@ use crate::mesh::Mesh;
 use std::collections::BTreeMap;
 
 /// The data of a problem that interfaces need.
-pub(super) struct Bodies<'m, const D: usize, const N: usize> {
-    pub(super) mesh: &'m Mesh<D, N>,
+pub(super) struct Bodies<'m, const D: usize> {
+    pub(super) mesh: &'m Mesh,
     /// For each node the first node of its body; empty without interfaces.
     pub(super) body: Vec<NodeId>,
     pub(super) held: Vec<Option<HeldBy>>,
@@ -46,10 +47,10 @@ pub(super) struct Side<const D: usize> {
     pub(super) bodies: Vec<NodeId>,
 }
 
-impl<const D: usize, const N: usize> Bodies<'_, D, N> {
+impl<const D: usize> Bodies<'_, D> {
     /// Area of a facet with section or thickness (m²).
     pub(super) fn area(&self, facet: FacetId) -> f64 {
-        self.mesh.facet_normal(facet).1 * (self.law)(facet).extent()
+        self.mesh.normal_in::<D>(facet).1 * (self.law)(facet).extent()
     }
 
     /// ρc² of the element at a facet, times its section or thickness (Pa·m in the plane).
@@ -97,9 +98,9 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
     pub(super) fn check_directions(&self, sides: [&Side<D>; 2], normal: &[f64; D]) -> Result<(), Cause> {
         let away = normal.map(|n| -n);
         for (side, outward) in sides.into_iter().zip([&away, normal]) {
-            let faces = |&facet: &FacetId| dot(&self.mesh.facet_normal(facet).0, outward) >= FACES;
+            let faces = |&facet: &FacetId| dot(&self.mesh.normal_in::<D>(facet).0, outward) >= FACES;
             if let Some(facet) = side.facets.iter().find(|facet| !faces(facet)) {
-                let nodes = self.mesh.facets()[facet.index()].nodes.map(NodeId::index).to_vec();
+                let nodes = self.mesh.facet_nodes::<D>(*facet).map(NodeId::index).to_vec();
                 let outward = Box::new([away.to_vec(), normal.to_vec()]);
                 return Err(Cause::TurnedAway { nodes, outward });
             }
@@ -110,9 +111,9 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
     /// The facets of a group, which are free.
     fn side(&self, group: &str) -> Result<Side<D>, Cause> {
         let mut facets = boundary::facet_group(self.mesh, group)?.to_vec();
-        let nodes_of = |facet: FacetId| self.mesh.facets()[facet.index()].nodes;
+        let nodes_of = |facet: FacetId| self.mesh.facet_nodes::<D>(facet);
         let shown = |facet: FacetId| nodes_of(facet).map(NodeId::index).to_vec();
-        if let Some(&facet) = facets.iter().find(|facet| self.mesh.facets()[facet.index()].neighbour.is_some()) {
+        if let Some(&facet) = facets.iter().find(|&&facet| self.mesh.facet(facet).neighbour.is_some()) {
             return Err(Cause::InnerFacet { nodes: shown(facet) });
         }
         if let Some((facet, by)) = facets.iter().find_map(|&facet| Some((facet, self.held[facet.index()]?))) {
@@ -122,7 +123,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let mut bodies: Vec<NodeId> = facets.iter().map(|&facet| self.body_of(facet)).collect();
         bodies.dedup();
         let nodes = along_the_boundary(self.mesh, &facets);
-        let outward = outward(self.mesh, &facets);
+        let outward = cut(&outward(self.mesh, &facets));
         Ok(Side { of_whole: outward, nodes, facets, outward, bodies })
     }
 
@@ -138,7 +139,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         let mut lines: Vec<SymmetryLine> = Vec::new();
         for (node, across) in own.iter().flat_map(|&node| (0..D).map(move |c| (node, c))) {
             let Some(motion @ Motion::Uniform(_)) = self.lines[node.index()][across] else { continue };
-            let line = SymmetryLine { across, place: self.mesh.points()[node.index()][across], motion };
+            let line = SymmetryLine { across, place: self.mesh.points_in::<D>()[node.index()][across], motion };
             if other.iter().any(|node| self.is_on(&line, *node)) {
                 lines.push(line);
             }
@@ -148,12 +149,12 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
 
     /// Whether a node is on a line of symmetry.
     pub(super) fn is_on(&self, line: &SymmetryLine, node: NodeId) -> bool {
-        line.has((&self.mesh.points()[node.index()], &self.lines[node.index()]), self.mesh.size())
+        line.has((&self.mesh.points_in::<D>()[node.index()], &self.lines[node.index()]), self.mesh.size())
     }
 
     /// The body of a facet, by its first node.
     pub(super) fn body_of(&self, facet: FacetId) -> NodeId {
-        self.body[self.mesh.facets()[facet.index()].nodes[0].index()]
+        self.body[self.mesh.facet_nodes::<D>(facet)[0].index()]
     }
 }
 
@@ -189,10 +190,7 @@ pub(super) fn check_nodes<const D: usize>(
 }
 
 /// Elements of different bodies that touch have nodes on the two sides of an interface.
-pub(super) fn check_touching<const D: usize, const N: usize>(
-    surface: &ContactSurface<D>,
-    mesh: &Mesh<D, N>,
-) -> Result<(), Cause> {
+pub(super) fn check_touching<const D: usize>(surface: &ContactSurface<D>, mesh: &Mesh) -> Result<(), Cause> {
     let touching = mesh.touching_elements();
     if touching.is_empty() {
         return Ok(());
@@ -202,7 +200,7 @@ pub(super) fn check_touching<const D: usize, const N: usize>(
     // The two obstacles of an interface follow each other, after all planes.
     let planes = surface.obstacles().iter().filter(|obstacle| obstacle.as_plane().is_some()).count();
     let sides = |element: ElementId| {
-        let nodes = mesh.cells()[element.index()].iter();
+        let nodes = mesh.cell(element).iter();
         nodes.filter_map(|node| obstacle.get(node)?.checked_sub(planes)).collect::<Vec<_>>()
     };
     let faces = |&[first, second]: &[ElementId; 2]| {

@@ -20,9 +20,9 @@ type Chain = Vec<(FacetId, [(f64, NodeId); 2])>;
 
 /// Adds an interface to the contact surface, as two obstacles: for the first group the surface of the second one, and
 /// the other way round.
-pub(super) fn add<const D: usize, const N: usize>(
+pub(super) fn add<const D: usize>(
     surface: &mut ContactSurface<D>,
-    bodies: &Bodies<'_, D, N>,
+    bodies: &Bodies<'_, D>,
     interface: &Interface,
     displacement: &[[f64; D]],
 ) -> Result<(), Cause> {
@@ -46,16 +46,16 @@ pub(super) fn add<const D: usize, const N: usize>(
 }
 
 /// Whether the surfaces that were added last do not face each other and one starts behind the other one.
-fn starts_behind<const D: usize, const N: usize>(
+fn starts_behind<const D: usize>(
     surface: &ContactSurface<D>,
-    bodies: &Bodies<'_, D, N>,
+    bodies: &Bodies<'_, D>,
     displacement: &[[f64; D]],
 ) -> bool {
     let behind = surface.sliding().last().and_then(|sliding| Gaps { surface, sliding, displacement }.behind());
     behind.is_some_and(|(depth, _)| depth > ONE_PLACE * bodies.mesh.size())
 }
 
-impl<const D: usize, const N: usize> Bodies<'_, D, N> {
+impl<const D: usize> Bodies<'_, D> {
     /// Adds both sides to the contact surface.
     fn add_surfaces(
         &self,
@@ -68,7 +68,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         self.check_directions([&sides[slave], &sides[1 - slave]], &normal)?;
         self.check_ridge(sides, &normal)?;
         // All coordinates are from a place on the interface, so that a distant origin leaves no rounding in them.
-        let origin = self.mesh.points()[sides[slave].nodes[0].index()];
+        let origin = self.mesh.points_in::<D>()[sides[slave].nodes[0].index()];
         let mut lines = Vec::new();
         for (k, side) in sides.iter().enumerate() {
             let frame = if k == slave { normal } else { normal.map(|n| -n) };
@@ -88,11 +88,11 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
     fn check_ridge(&self, sides: &[Side<D>; 2], normal: &[f64; D]) -> Result<(), Cause> {
         for line in self.common_lines(sides) {
             let slopes = |&&facet: &&FacetId| {
-                let meets_line = self.mesh.facets()[facet.index()].nodes.iter().any(|node| self.is_on(&line, *node));
-                meets_line && dot(&self.mesh.facet_normal(facet).0, normal).abs() < RIDGE
+                let meets_line = self.mesh.facet_nodes::<D>(facet).iter().any(|node| self.is_on(&line, *node));
+                meets_line && dot(&self.mesh.normal_in::<D>(facet).0, normal).abs() < RIDGE
             };
             if let [Some(first), Some(second)] = sides.each_ref().map(|side| side.facets.iter().find(slopes)) {
-                let edges = [first, second].map(|facet| self.mesh.facets()[facet.index()].nodes);
+                let edges = [first, second].map(|facet| self.mesh.facet_nodes::<D>(*facet));
                 let edges = edges.map(|nodes| nodes.map(NodeId::index).to_vec());
                 return Err(Cause::TwoSlopes { edges: Box::new(edges) });
             }
@@ -108,7 +108,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
         (normal, origin): (&[f64; D], &[f64; D]),
         facing: Obstacle<D>,
     ) -> Result<Line, Cause> {
-        let points = self.mesh.points();
+        let points = self.mesh.points_in::<D>();
         let from_origin = |node: NodeId| -> [f64; D] { std::array::from_fn(|c| points[node.index()][c] - origin[c]) };
         let along = tangent(normal);
         let chains = self.chains(side, |node| dot(&from_origin(node), &along))?;
@@ -128,7 +128,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
                 xi.push(ends[1].0);
                 edges.push(first);
                 compliance.push(1.0 / self.stiffness(facet));
-                let nodes = self.mesh.facets()[facet.index()].nodes.map(|node| first + usize::from(node == ends[1].1));
+                let nodes = self.mesh.facet_nodes::<D>(facet).map(|node| first + usize::from(node == ends[1].1));
                 facets.push(ContactFacet { facet, nodes, area: self.area(facet), obstacle });
             }
         }
@@ -165,7 +165,7 @@ impl<const D: usize, const N: usize> Bodies<'_, D, N> {
     /// Facets of a body along the interface, of which none covers another one.
     fn chain(&self, facets: &[FacetId], xi: impl Fn(NodeId) -> f64) -> Result<Chain, Cause> {
         let ends = |&facet: &FacetId| {
-            let nodes = &self.mesh.facets()[facet.index()].nodes;
+            let nodes = &self.mesh.facet_nodes::<D>(facet);
             let mut ends = [nodes[0], nodes[D - 1]].map(|node| (xi(node), node));
             ends.sort_by(|a, b| a.0.total_cmp(&b.0));
             (facet, ends)

@@ -99,7 +99,7 @@ fn behind<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize, de
     let node = problem.surface().nodes()[at].node;
     // Surfaces that look away from each other are behind each other, too.
     let rounding = depth <= ROUNDING * problem.mesh().size();
-    if rounding || problem.mesh().encloses_after(&problem.initial_displacement, node) {
+    if rounding || problem.mesh().encloses_after(problem.initial_displacement.as_flattened(), node) {
         return Cause::Overlaps { node: node.index(), depth, groups: groups(problem, at) };
     }
     behind_surface(problem, at, depth)
@@ -108,7 +108,7 @@ fn behind<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize, de
 /// Why a node may not be so far (m) behind the surface of another body in which it is not. Displacements alone can make
 /// bodies overlap: those of a mesh do not.
 fn behind_surface<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize, depth: f64) -> Cause {
-    if let Some(elements) = problem.mesh().overlap_after(&problem.initial_displacement) {
+    if let Some(elements) = problem.mesh().overlap_after(problem.initial_displacement.as_flattened()) {
         return Cause::ElementsOverlap { elements: elements.map(ElementId::index) };
     }
     let surface = problem.surface();

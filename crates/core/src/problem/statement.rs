@@ -37,7 +37,7 @@ pub struct Statement {
 
 /// Builds the problem on a mesh of its dimension.
 pub(super) fn build<const D: usize, const N: usize>(
-    mesh: &Arc<Mesh<D, N>>,
+    mesh: &Arc<Mesh>,
     stated: &Statement,
 ) -> Result<Problem<D, N>, InputError> {
     let mut builder = Problem::builder(mesh.clone());

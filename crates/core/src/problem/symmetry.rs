@@ -43,8 +43,8 @@ pub(crate) struct SymmetryLine {
 pub(crate) type NodeLines<const D: usize> = [Option<Motion>; D];
 
 /// Those of all nodes.
-pub(crate) fn node_lines<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
+pub(crate) fn node_lines<const D: usize>(
+    mesh: &Mesh,
     supported: &[[bool; D]],
     prescribed: &[PrescribedComponent],
     motions: &[Table],
@@ -63,12 +63,12 @@ pub(crate) fn node_lines<const D: usize, const N: usize>(
 
 /// For each node the directions across which it is on a line of symmetry: those in which supports hold an edge that
 /// stands across them.
-fn mirrors<const D: usize, const N: usize>(mesh: &Mesh<D, N>, supported: &[[bool; D]]) -> Vec<[bool; D]> {
+fn mirrors<const D: usize>(mesh: &Mesh, supported: &[[bool; D]]) -> Vec<[bool; D]> {
     let mut mirrors = vec![[false; D]; mesh.node_count()];
     for (index, supported) in supported.iter().enumerate().filter(|(_, supported)| supported.contains(&true)) {
         let facet = FacetId::new(index);
         for c in (0..D).filter(|&c| supported[c] && mesh.stands_across(facet, c)) {
-            mesh.facets()[index].nodes.iter().for_each(|node| mirrors[node.index()][c] = true);
+            mesh.facet(facet).nodes.iter().for_each(|node| mirrors[node.index()][c] = true);
         }
     }
     mirrors
@@ -92,17 +92,17 @@ impl<const D: usize, const N: usize> Problem<D, N> {
 
 /// The line of symmetry on which an edge is: supports hold it across the line alone. Bars have no such line, because
 /// nothing is beside them.
-pub(crate) fn line_of<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
+pub(crate) fn line_of<const D: usize>(
+    mesh: &Mesh,
     supported: &[bool; D],
     lines: &[NodeLines<D>],
     facet: FacetId,
 ) -> Option<SymmetryLine> {
     let mut held = (0..D).filter(|&c| supported[c]);
     let across = held.next().filter(|_| D == 2 && held.next().is_none())?;
-    let nodes = mesh.facets()[facet.index()].nodes;
+    let nodes = mesh.facet_nodes::<D>(facet);
     let motion = lines[nodes[0].index()][across].filter(|_| mesh.stands_across(facet, across))?;
-    Some(SymmetryLine { across, place: mesh.points()[nodes[0].index()][across], motion })
+    Some(SymmetryLine { across, place: mesh.points_in::<D>()[nodes[0].index()][across], motion })
 }
 
 /// Each of some lines once.

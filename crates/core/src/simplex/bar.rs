@@ -31,8 +31,4 @@ impl Simplex<1, 2> for Bar {
     fn facet_children(&self) -> &'static [Child<1>] {
         &[[[0, 0]]]
     }
-
-    fn facet_mean(&self, _: &[f64; 1], quantity: &dyn Fn(&[f64; 1]) -> f64) -> f64 {
-        quantity(&[1.0])
-    }
 }

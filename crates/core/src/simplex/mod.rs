@@ -7,6 +7,7 @@
 mod bar;
 mod triangle;
 
+use std::any::Any;
 use std::fmt::Debug;
 
 /// The element of dimension `D` with `N` nodes, if [`Simplex`] is written for it.
@@ -27,9 +28,67 @@ pub enum Shape {
     Triangle,
 }
 
+impl Shape {
+    /// Of its space.
+    #[inline]
+    #[must_use]
+    pub const fn dimension(self) -> usize {
+        match self {
+            Self::Bar => 1,
+            Self::Triangle => 2,
+        }
+    }
+
+    /// Number of its nodes.
+    #[inline]
+    #[must_use]
+    pub const fn nodes(self) -> usize {
+        match self {
+            Self::Bar => 2,
+            Self::Triangle => 3,
+        }
+    }
+}
+
+/// The element of this dimension with so many nodes.
+///
+/// # Panics
+/// If [`Simplex`] is not written for it.
+#[inline]
+#[must_use]
+pub fn simplex<const D: usize, const N: usize>() -> &'static dyn Simplex<D, N> {
+    const BAR: &dyn Simplex<1, 2> = &Element;
+    const TRIANGLE: &dyn Simplex<2, 3> = &Element;
+    let all: [&dyn Any; 2] = [&BAR, &TRIANGLE];
+    let Some(found) = all.into_iter().find_map(|one| one.downcast_ref()) else {
+        unreachable!("no element of dimension {D} with {N} nodes")
+    };
+    *found
+}
+
 /// Corners of a child in a refined element: a pair of equal nodes is that node, a pair of different nodes the middle
 /// between them.
 pub type Child<const N: usize> = [[usize; 2]; N];
+
+/// Mean over a facet of a quantity, given at the weights of the facet's nodes: exact if it is quadratic on each piece
+/// on which the linear `switch` with these nodal values keeps its sign. On a line, two Gauss points on each side of the
+/// place where the sign changes.
+pub fn facet_mean<const D: usize>(switch: &[f64; D], quantity: impl Fn(&[f64; D]) -> f64) -> f64 {
+    let (first, last) = (switch[0], switch[D - 1]);
+    if D == 1 {
+        return quantity(&[1.0; D]);
+    }
+    let turn = if first * last < 0.0 { first / (first - last) } else { 1.0 };
+    let gauss = 0.5 / 3.0_f64.sqrt();
+    let mut mean = 0.0;
+    for (from, to) in [(0.0, turn), (turn, 1.0)] {
+        for at in [0.5 - gauss, 0.5 + gauss] {
+            let s = from + at * (to - from);
+            mean += 0.5 * (to - from) * quantity(&std::array::from_fn(|k| if k == 0 { 1.0 - s } else { s }));
+        }
+    }
+    mean
+}
 
 mod sealed {
     pub trait Sealed {}
@@ -60,10 +119,6 @@ pub trait Simplex<const D: usize, const N: usize>: sealed::Sealed + Debug + Send
 
     /// The facets that a facet is cut into by the middles of its edges.
     fn facet_children(&self) -> &'static [Child<D>];
-
-    /// Mean over a facet of a quantity, given at the weights of the facet's nodes: exact if it is quadratic on each
-    /// piece on which the linear `switch` with these nodal values keeps its sign.
-    fn facet_mean(&self, switch: &[f64; D], quantity: &dyn Fn(&[f64; D]) -> f64) -> f64;
 
     /// Whether a point is in the element with these corners, positively oriented: with the point in place of a corner,
     /// no signed volume is below `least` (m or m²).

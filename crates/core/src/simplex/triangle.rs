@@ -35,18 +35,4 @@ impl Simplex<2, 3> for Triangle {
     fn facet_children(&self) -> &'static [Child<2>] {
         &[[[0, 0], [0, 1]], [[0, 1], [1, 1]]]
     }
-
-    /// Two Gauss points on each side of the place where the sign changes.
-    fn facet_mean(&self, &[first, last]: &[f64; 2], quantity: &dyn Fn(&[f64; 2]) -> f64) -> f64 {
-        let turn = if first * last < 0.0 { first / (first - last) } else { 1.0 };
-        let gauss = 0.5 / 3.0_f64.sqrt();
-        let mut mean = 0.0;
-        for (from, to) in [(0.0, turn), (turn, 1.0)] {
-            for at in [0.5 - gauss, 0.5 + gauss] {
-                let s = from + at * (to - from);
-                mean += 0.5 * (to - from) * quantity(&[1.0 - s, s]);
-            }
-        }
-        mean
-    }
 }

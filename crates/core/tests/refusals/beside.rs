@@ -7,14 +7,15 @@ use percute_core::problem::{Cause, Initial, Problem};
 
 /// Two blocks of 40 × 20 mm, the second one at a place and displaced, with contact of two groups.
 fn stated(at: [f64; 2], displaced: [f64; 2], groups: [&str; 2]) -> Option<Cause> {
-    let block = |at: &[f64; 2]| Mesh::<2, 3>::rectangle(0.04, 0.02, 4, 2).unwrap().placed(at, 0.0).unwrap();
+    let block = |at: &[f64; 2]| Mesh::rectangle(0.04, 0.02, 4, 2).unwrap().placed(at, 0.0).unwrap();
     let meshes = [block(&[0.0; 2]), block(&at)];
     let joined = Mesh::joined(&[("a", &meshes[0]), ("b", &meshes[1])]).unwrap();
     let displacement = [[0.0; 2], displaced].into_iter().zip(&meshes).flat_map(|(u, mesh)| vec![u; mesh.node_count()]);
     let displacement = Initial::Nodal(displacement.collect());
     let law = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
     let interface = Interface::sliding(2, groups[0], groups[1], 0.2).unwrap();
-    let builder = Problem::builder(joined).material(law).initial_displacement(displacement).interface(interface);
+    let builder =
+        Problem::<2, 3>::builder(joined).material(law).initial_displacement(displacement).interface(interface);
     builder.build().err().map(|error| error.cause)
 }
 

@@ -1,22 +1,22 @@
 //! Each [`MeshError`] from a bad mesh.
 
-use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, MeshError, TriangleMesh};
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh, MeshError};
 
-fn triangles(points: &[[f64; 2]], cells: &[[usize; 3]]) -> Result<TriangleMesh, MeshError> {
-    TriangleMesh::new(points.to_vec(), cells, &FacetGroups::new(), &ElementGroups::new())
+fn triangles(points: &[[f64; 2]], cells: &[[usize; 3]]) -> Result<Mesh, MeshError> {
+    Mesh::new(points.to_vec(), cells, &FacetGroups::new(), &ElementGroups::new())
 }
 
-fn bars(points: &[[f64; 1]], cells: &[[usize; 2]]) -> Result<BarMesh, MeshError> {
-    BarMesh::new(points.to_vec(), cells, &FacetGroups::new(), &ElementGroups::new())
+fn bars(points: &[[f64; 1]], cells: &[[usize; 2]]) -> Result<Mesh, MeshError> {
+    Mesh::new(points.to_vec(), cells, &FacetGroups::new(), &ElementGroups::new())
 }
 
 /// The corners of a unit square, and (2, 0).
 const CORNERS: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [2.0, 0.0]];
 
-fn square_with(facets: &[(&str, [usize; 2])], elements: &[(&str, usize)]) -> Result<TriangleMesh, MeshError> {
+fn square_with(facets: &[(&str, [usize; 2])], elements: &[(&str, usize)]) -> Result<Mesh, MeshError> {
     let facets = facets.iter().map(|(name, nodes)| (name.to_string(), vec![*nodes])).collect();
     let elements = elements.iter().map(|(name, element)| (name.to_string(), vec![*element])).collect();
-    TriangleMesh::new(CORNERS[..4].to_vec(), &[[0, 1, 2], [0, 2, 3]], &facets, &elements)
+    Mesh::new(CORNERS[..4].to_vec(), &[[0, 1, 2], [0, 2, 3]], &facets, &elements)
 }
 
 #[test]
@@ -32,21 +32,18 @@ fn generators() {
         MeshError::Generator { name, value, allowed } => (name, value, allowed),
         other => panic!("{other}"),
     };
-    assert_eq!(name(BarMesh::uniform_bar(-2.0, 3).unwrap_err()), ("length", -2.0, allowed));
-    assert_eq!(name(TriangleMesh::rectangle(0.0, 1.0, 1, 1).unwrap_err()), ("width", 0.0, allowed));
-    assert_eq!(
-        name(TriangleMesh::rectangle(1.0, f64::INFINITY, 1, 1).unwrap_err()),
-        ("height", f64::INFINITY, allowed)
-    );
-    assert_eq!(name(TriangleMesh::disc(-1.0, 1).unwrap_err()), ("radius", -1.0, allowed));
+    assert_eq!(name(Mesh::uniform_bar(-2.0, 3).unwrap_err()), ("length", -2.0, allowed));
+    assert_eq!(name(Mesh::rectangle(0.0, 1.0, 1, 1).unwrap_err()), ("width", 0.0, allowed));
+    assert_eq!(name(Mesh::rectangle(1.0, f64::INFINITY, 1, 1).unwrap_err()), ("height", f64::INFINITY, allowed));
+    assert_eq!(name(Mesh::disc(-1.0, 1).unwrap_err()), ("radius", -1.0, allowed));
     for rings in [0, 1826] {
-        let (what, value, _) = name(TriangleMesh::disc(1.0, rings).unwrap_err());
+        let (what, value, _) = name(Mesh::disc(1.0, rings).unwrap_err());
         assert_eq!((what, value), ("rings", rings as f64));
     }
-    assert_eq!(name(BarMesh::uniform_bar(1.0, 0).unwrap_err()).0, "elements");
-    assert_eq!(name(TriangleMesh::rectangle(1.0, 1.0, 0, 1).unwrap_err()).0, "nx");
-    assert_eq!(name(TriangleMesh::rectangle(1.0, 1.0, 1, 200_000_000).unwrap_err()), ("ny", 2e8, counts));
-    let (what, value, _) = name(TriangleMesh::rectangle(1.0, 1.0, 20_000, 20_000).unwrap_err());
+    assert_eq!(name(Mesh::uniform_bar(1.0, 0).unwrap_err()).0, "elements");
+    assert_eq!(name(Mesh::rectangle(1.0, 1.0, 0, 1).unwrap_err()).0, "nx");
+    assert_eq!(name(Mesh::rectangle(1.0, 1.0, 1, 200_000_000).unwrap_err()), ("ny", 2e8, counts));
+    let (what, value, _) = name(Mesh::rectangle(1.0, 1.0, 20_000, 20_000).unwrap_err());
     assert_eq!((what, value), ("nx * ny", 4e8));
 }
 
@@ -126,7 +123,7 @@ fn groups_of_what_is_not_there() {
 fn orientation_is_corrected() {
     let mesh = triangles(&CORNERS[..4], &[[0, 2, 1], [0, 2, 3]]).unwrap();
     assert_eq!(mesh.reoriented_elements(), 1);
-    assert_eq!(mesh.cells()[0].map(|n| n.index()), [0, 1, 2]);
+    assert_eq!(mesh.nodes_of::<3>()[0].map(|n| n.index()), [0, 1, 2]);
     assert_eq!(bars(&[[1.0], [0.0]], &[[0, 1]]).unwrap().reoriented_elements(), 1);
 }
 

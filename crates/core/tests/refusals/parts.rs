@@ -1,24 +1,24 @@
 //! Parts of a mesh that touch or overlap without common nodes, and parts that are apart.
 
-use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, MeshError, TriangleMesh};
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh, MeshError};
 use proptest::prelude::*;
 
 type Body = (Vec<[f64; 2]>, Vec<[usize; 3]>);
 
 fn rectangle(x: [f64; 2], y: [f64; 2], nx: usize, ny: usize) -> Body {
-    let mesh = TriangleMesh::rectangle(x[1] - x[0], y[1] - y[0], nx, ny).unwrap();
-    let points = mesh.points().iter().map(|p| [x[0] + p[0], y[0] + p[1]]).collect();
-    (points, mesh.cells().iter().map(|cell| cell.map(|n| n.index())).collect())
+    let mesh = Mesh::rectangle(x[1] - x[0], y[1] - y[0], nx, ny).unwrap();
+    let points = mesh.points_in::<2>().iter().map(|p| [x[0] + p[0], y[0] + p[1]]).collect();
+    (points, mesh.nodes_of::<3>().iter().map(|cell| cell.map(|n| n.index())).collect())
 }
 
 /// The bodies in one mesh, one after the other.
-fn together(bodies: &[Body]) -> Result<TriangleMesh, MeshError> {
+fn together(bodies: &[Body]) -> Result<Mesh, MeshError> {
     let (mut points, mut cells) = (Vec::new(), Vec::new());
     for (places, elements) in bodies {
         cells.extend(elements.iter().map(|cell| cell.map(|n| n + points.len())));
         points.extend(places);
     }
-    TriangleMesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new())
+    Mesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new())
 }
 
 /// Refused in either order, by one element of each; the elements of `a` come first.
@@ -98,7 +98,7 @@ fn parts_that_are_apart_are_accepted() {
 fn bars() {
     let bars = |points: &[f64], cells: &[[usize; 2]]| {
         let points = points.iter().map(|&x| [x]).collect();
-        BarMesh::new(points, cells, &FacetGroups::new(), &ElementGroups::new())
+        Mesh::new(points, cells, &FacetGroups::new(), &ElementGroups::new())
     };
     let touch = |elements| MeshError::PartsTouch { elements };
     // The second inside the first; across its end; a third that covers both.

@@ -3,7 +3,7 @@
 use percute_core::contact::Obstacle;
 use percute_core::load::{BodyForce, Profile, Support, Table, TableError, Traction};
 use percute_core::material::Elastic;
-use percute_core::mesh::{ElementGroups, FacetGroups, TriangleMesh};
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
 use percute_core::problem::{Builder, Cause, GroupOf, HeldBy, Initial, InputError, Place, TriangleProblem};
 
 /// A unit square of two triangles, 0-1-2 below the diagonal and 0-2-3 above it, with its sides, an
@@ -14,7 +14,7 @@ fn square() -> Builder<2, 3> {
     facets.insert("nothing".to_string(), vec![]);
     let elements = ElementGroups::from([("lower".to_string(), vec![0]), ("all".to_string(), vec![0, 1])]);
     let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-    TriangleProblem::builder(TriangleMesh::new(points, &[[0, 1, 2], [0, 2, 3]], &facets, &elements).unwrap())
+    TriangleProblem::builder(Mesh::new(points, &[[0, 1, 2], [0, 2, 3]], &facets, &elements).unwrap())
 }
 
 fn elastic() -> Elastic {

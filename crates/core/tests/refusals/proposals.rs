@@ -3,12 +3,12 @@
 use crate::found::{Body, problem};
 use percute_core::mesh::Mesh;
 
-fn block(size: [f64; 2], cells: [usize; 2], at: [f64; 2]) -> Mesh<2, 3> {
-    Mesh::<2, 3>::rectangle(size[0], size[1], cells[0], cells[1]).unwrap().placed(&at, 0.0).unwrap()
+fn block(size: [f64; 2], cells: [usize; 2], at: [f64; 2]) -> Mesh {
+    Mesh::rectangle(size[0], size[1], cells[0], cells[1]).unwrap().placed(&at, 0.0).unwrap()
 }
 
-fn disc(radius: f64, at: [f64; 2]) -> Mesh<2, 3> {
-    Mesh::<2, 3>::disc(radius, 4).unwrap().placed(&at, 0.0).unwrap()
+fn disc(radius: f64, at: [f64; 2]) -> Mesh {
+    Mesh::disc(radius, 4).unwrap().placed(&at, 0.0).unwrap()
 }
 
 /// The groups of all interfaces.
@@ -27,7 +27,8 @@ fn edges_that_meet_are_not_left_out_because_others_are_longer() {
         let at = [0.04 + 0.0105 * cos, 0.01 + 0.0105 * sin];
         let bodies = [("slab", slab(), [0.0; 2]), ("disc", disc(0.01, at), [-10.0 * cos, -10.0 * sin])];
         let problem = problem(&bodies).build().unwrap();
-        let nodes = problem.surface().nodes().iter().map(|contact| problem.mesh().points()[contact.node.index()]);
+        let nodes =
+            problem.surface().nodes().iter().map(|contact| problem.mesh().points_in::<2>()[contact.node.index()]);
         // The right side or the upper one, which faces the disc better.
         let of_slab: Vec<[f64; 2]> = nodes.filter(|[x, y]| *x <= 0.04 && *y <= 0.01).collect();
         let (c, place) = if degrees < 45.0 { (0, 0.04) } else { (1, 0.01) };

@@ -7,22 +7,22 @@ use percute_testkit::Random;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Whether bodies neither touch nor overlap.
-fn apart(bodies: &[Body<'_>], one: &Mesh<2, 3>) -> bool {
-    let mut all: Vec<(&str, &Mesh<2, 3>)> = bodies.iter().map(|(name, mesh, _)| (*name, mesh)).collect();
+fn apart(bodies: &[Body<'_>], one: &Mesh) -> bool {
+    let mut all: Vec<(&str, &Mesh)> = bodies.iter().map(|(name, mesh, _)| (*name, mesh)).collect();
     all.push(("one", one));
     Mesh::joined(&all).is_ok_and(|mesh| mesh.touching_elements().is_empty())
 }
 
 /// A disc or a block around the origin: upright with sides of whole half centimetres, or turned.
-fn shape(random: &mut Random, upright: bool) -> Mesh<2, 3> {
+fn shape(random: &mut Random, upright: bool) -> Mesh {
     if random.between(0.0, 1.0) < 0.2 {
-        let mesh = Mesh::<2, 3>::disc(random.between(0.004, 0.02), 2 + (random.bits() % 4) as usize).unwrap();
+        let mesh = Mesh::disc(random.between(0.004, 0.02), 2 + (random.bits() % 4) as usize).unwrap();
         return mesh.placed(&[0.0; 2], random.between(0.0, 60.0)).unwrap();
     }
     let size = [0, 1].map(|_| random.between(0.005, 0.05));
     let [width, height] = if upright { size.map(|s| (s * 200.0).ceil() / 200.0) } else { size };
     let [nx, ny] = [0, 1].map(|_| 1 + (random.bits() % 7) as usize);
-    let mesh = Mesh::<2, 3>::rectangle(width, height, nx, ny).unwrap();
+    let mesh = Mesh::rectangle(width, height, nx, ny).unwrap();
     let centred = mesh.placed(&[-0.5 * width, -0.5 * height], 0.0).unwrap();
     centred.placed(&[0.0; 2], if upright { 0.0 } else { random.between(0.0, 360.0) }).unwrap()
 }

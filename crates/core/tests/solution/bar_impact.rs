@@ -3,7 +3,7 @@
 use crate::solution::run::{Run, mean_rate, run};
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
-use percute_core::mesh::BarMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{BarProblem, Initial};
 use percute_core::time::TimeGrid;
 use percute_exact::BarImpact;
@@ -14,7 +14,7 @@ fn bar(gap: f64) -> BarImpact {
 }
 
 fn problem(bar: &BarImpact, elements: usize) -> BarProblem {
-    BarProblem::builder(BarMesh::uniform_bar(bar.length, elements).unwrap())
+    BarProblem::builder(Mesh::uniform_bar(bar.length, elements).unwrap())
         .material(Elastic::bar(bar.young, bar.density, bar.section).unwrap())
         .initial_velocity(Initial::Uniform([-bar.speed]))
         .obstacle(Obstacle::plane([-bar.gap], [1.0], 0.0, None).unwrap())
@@ -49,7 +49,7 @@ fn courant_one_is_exact_at_the_nodes() {
     // Displacements are of the order of v₀t; rounding grows with the steps: 60 · 1e-16 · 60.
     let travelled = exact.speed * run.time(release);
     for n in 0..=release {
-        for (x, u) in problem.mesh().points().iter().zip(run.displacement(n)) {
+        for (x, u) in problem.mesh().points_in::<1>().iter().zip(run.displacement(n)) {
             let expected = exact.displacement(x[0], run.time(n));
             assert!((u[0] - expected).abs() < 1e-12 * travelled, "step {n}, x = {}: {} against {expected}", x[0], u[0]);
         }

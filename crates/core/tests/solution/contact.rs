@@ -5,7 +5,7 @@ use percute_core::contact::Obstacle;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::History;
 use percute_core::load::{Support, Table};
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -19,8 +19,8 @@ const STILL: f64 = 1e-9;
 /// 200 m/s · 1 µs, as a start nearer than a quarter of that is refused.
 const GAP: f64 = 2.7e-4;
 
-fn thrown(mesh: TriangleMesh, velocity: [f64; 2], friction: f64, group: Option<&str>) -> TriangleProblem {
-    let lowest = mesh.points().iter().fold(f64::INFINITY, |m, p| m.min(p[1]));
+fn thrown(mesh: Mesh, velocity: [f64; 2], friction: f64, group: Option<&str>) -> TriangleProblem {
+    let lowest = mesh.points_in::<2>().iter().fold(f64::INFINITY, |m, p| m.min(p[1]));
     let plane = Obstacle::plane([0.0, lowest - GAP], [0.0, 1.0], friction, group.map(String::from)).unwrap();
     TriangleProblem::builder(mesh)
         .material(aluminium())
@@ -96,15 +96,15 @@ fn the_law_holds_at_every_step() {
 fn two_planes_share_the_nodes_by_groups() {
     let mesh = random_rectangle(0.05, 0.04, 6, 5).unwrap();
     let (points, cells): (Vec<_>, Vec<_>) =
-        (mesh.points().to_vec(), mesh.cells().iter().map(|c| c.map(|n| n.index())).collect());
+        (mesh.points_in::<2>().to_vec(), mesh.nodes_of::<3>().iter().map(|c| c.map(|n| n.index())).collect());
     // The corner node belongs to the bottom only.
     let side = |group: &str, keep: &dyn Fn(&[f64; 2]) -> bool| {
-        let facets = mesh.facet_groups()[group].iter().map(|f| mesh.facets()[f.index()].nodes.map(|n| n.index()));
+        let facets = mesh.facet_groups()[group].iter().map(|f| mesh.facet_nodes::<2>(*f).map(|n| n.index()));
         facets.filter(|nodes| nodes.iter().all(|&n| keep(&points[n]))).collect::<Vec<_>>()
     };
     let groups =
         [("floor".to_string(), side("bottom", &|_| true)), ("wall".to_string(), side("left", &|p| p[1] > 0.0))];
-    let mesh = TriangleMesh::new(points.clone(), &cells, &groups.into(), &Default::default()).unwrap();
+    let mesh = Mesh::new(points.clone(), &cells, &groups.into(), &Default::default()).unwrap();
     let plane = |point, normal, group: &str| Obstacle::plane(point, normal, 0.1, Some(group.to_string())).unwrap();
     let problem = TriangleProblem::builder(mesh)
         .material(aluminium())
@@ -272,7 +272,8 @@ fn held_nodes_get_no_reaction() {
         .build()
         .unwrap();
     let run = run(&problem, &steps(&problem, 60));
-    let held = problem.surface().nodes().iter().position(|c| problem.mesh().points()[c.node.index()] == [0.0, 0.0]);
+    let held =
+        problem.surface().nodes().iter().position(|c| problem.mesh().points_in::<2>()[c.node.index()] == [0.0, 0.0]);
     let held = held.unwrap();
     let mut reactions = 0;
     for n in 0..=run.last() {

@@ -7,7 +7,7 @@ use percute_core::contact::{ContactRecorder, ContactResults, ContactSteps, Statu
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::StepSource;
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, ElementGroups, TriangleMesh};
+use percute_core::mesh::{ElementGroups, Mesh};
 use percute_core::problem::{BarProblem, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_exact::BarImpact;
@@ -27,8 +27,8 @@ fn steps(results: &ContactResults) -> &ContactSteps {
     results.steps.as_ref().unwrap()
 }
 
-fn thrown(mesh: TriangleMesh, velocity: [f64; 2], friction: f64) -> TriangleProblem {
-    let lowest = mesh.points().iter().fold(f64::INFINITY, |m, p| m.min(p[1]));
+fn thrown(mesh: Mesh, velocity: [f64; 2], friction: f64) -> TriangleProblem {
+    let lowest = mesh.points_in::<2>().iter().fold(f64::INFINITY, |m, p| m.min(p[1]));
     TriangleProblem::builder(mesh)
         .material(aluminium())
         .initial_velocity(Initial::Uniform(velocity))
@@ -49,7 +49,7 @@ fn the_exact_bar_is_pressed_by_rho_c_v_for_two_transits() {
     let mut exact = BarImpact { length: 0.1, young: 70e9, density: 2700.0, section: 0.02, speed: 400.0, gap: 0.0 };
     let (speed_of_waves, dt) = (exact.wave_speed(), exact.length / ELEMENTS as f64 / exact.wave_speed());
     exact.gap = 3.0 * dt * exact.speed;
-    let problem = BarProblem::builder(BarMesh::uniform_bar(exact.length, ELEMENTS).unwrap())
+    let problem = BarProblem::builder(Mesh::uniform_bar(exact.length, ELEMENTS).unwrap())
         .material(Elastic::bar(exact.young, exact.density, exact.section).unwrap())
         .initial_velocity(Initial::Uniform([-exact.speed]))
         .obstacle(Obstacle::plane([-exact.gap], [1.0], 0.0, None).unwrap())
@@ -105,7 +105,7 @@ fn the_averaged_force_of_a_bar_is_rho_c_v_for_any_step() {
     ] {
         let cells: Vec<_> = (1..points.len()).map(|i| [i - 1, i]).collect();
         let groups = [("start".to_string(), vec![[0]])].into();
-        let mesh = BarMesh::new(points.clone(), &cells, &groups, &ElementGroups::new()).unwrap();
+        let mesh = Mesh::new(points.clone(), &cells, &groups, &ElementGroups::new()).unwrap();
         let free = BarProblem::builder(mesh.clone()).material(law).build().unwrap();
         let dt = courant * critical_time_step(&free);
         let problem = BarProblem::builder(mesh)
@@ -231,11 +231,11 @@ fn a_block_that_cannot_slide_sticks() {
 /// sides that may touch.
 #[test]
 fn the_parts_add_up() {
-    let mesh = TriangleMesh::rectangle(0.05, 0.04, 6, 5).unwrap();
+    let mesh = Mesh::rectangle(0.05, 0.04, 6, 5).unwrap();
     let plane = |point, normal, group: &str| Obstacle::plane(point, normal, 0.2, Some(group.to_string())).unwrap();
     let material = Elastic::plane_stress(70e9, 0.3, 2700.0, 0.5).unwrap();
     // Its lower half flies at the floor, its upper one at the ceiling.
-    let velocity = mesh.points().iter().map(|p| [30.0, 100.0 * (p[1] - 0.02) / 0.02]).collect();
+    let velocity = mesh.points_in::<2>().iter().map(|p| [30.0, 100.0 * (p[1] - 0.02) / 0.02]).collect();
     let problem = TriangleProblem::builder(mesh)
         .material(material)
         .initial_velocity(Initial::Nodal(velocity))
@@ -281,7 +281,7 @@ fn the_mirror_image_has_mirrored_results() {
         ))
     });
     let most = ours.total[ours.peak().unwrap()].normal_force;
-    let middle = mesh.points().iter().fold(0.0_f64, |m, p| m.max(p[0]));
+    let middle = mesh.points_in::<2>().iter().fold(0.0_f64, |m, p| m.max(p[0]));
     for (n, (a, b)) in ours.total.iter().zip(&theirs.total).enumerate() {
         assert_eq!((a.in_contact, a.slipping), (b.in_contact, b.slipping), "step {n}");
         // Rounding in another order, carried on by 120 steps.
@@ -298,7 +298,7 @@ fn the_mirror_image_has_mirrored_results() {
 /// sticks in both.
 #[test]
 fn half_a_body_has_half_the_results() {
-    let block = |width: f64, nx: usize| TriangleMesh::rectangle(width, 0.03, nx, 6).unwrap();
+    let block = |width: f64, nx: usize| Mesh::rectangle(width, 0.03, nx, 6).unwrap();
     let builder = |mesh| {
         TriangleProblem::builder(mesh)
             .material(aluminium())
@@ -326,19 +326,19 @@ fn half_a_body_has_half_the_results() {
 }
 
 /// The mesh and its mirror image in x = 0, on which its left side lies.
-fn doubled(half: &TriangleMesh) -> TriangleMesh {
-    let mut points = half.points().to_vec();
+fn doubled(half: &Mesh) -> Mesh {
+    let mut points = half.points_in::<2>().to_vec();
     let mut image = Vec::new();
-    for p in half.points() {
+    for p in half.points_in::<2>() {
         let on_axis = p[0] == 0.0;
         image.push(if on_axis { image.len() } else { points.len() });
         if !on_axis {
             points.push([-p[0], p[1]]);
         }
     }
-    let cells = half.cells().iter().map(|c| c.map(|n| n.index()));
+    let cells = half.nodes_of::<3>().iter().map(|c| c.map(|n| n.index()));
     let cells: Vec<_> = cells.clone().chain(cells.map(|c| c.map(|n| image[n]))).collect();
-    let bottom = half.facet_groups()["bottom"].iter().map(|f| half.facets()[f.index()].nodes.map(|n| n.index()));
+    let bottom = half.facet_groups()["bottom"].iter().map(|f| half.facet_nodes::<2>(*f).map(|n| n.index()));
     let bottom = bottom.clone().chain(bottom.map(|f| f.map(|n| image[n]))).collect();
-    TriangleMesh::new(points, &cells, &[("bottom".to_string(), bottom)].into(), &Default::default()).unwrap()
+    Mesh::new(points, &cells, &[("bottom".to_string(), bottom)].into(), &Default::default()).unwrap()
 }

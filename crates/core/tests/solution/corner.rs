@@ -3,7 +3,7 @@
 use crate::solution::run::{Run, aluminium, difference, largest, run};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{Stiffness, critical_time_step};
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::rotated;
@@ -38,7 +38,7 @@ impl Corner {
     /// With this gap to the wall.
     fn at_distance(&self, distance: f64) -> TriangleProblem {
         let (sin, cos) = self.opening.to_radians().sin_cos();
-        let mesh = TriangleMesh::rectangle(0.05, 0.04, 10, 8).unwrap();
+        let mesh = Mesh::rectangle(0.05, 0.04, 10, 8).unwrap();
         // At a right angle cos is 6e-17: the planes are exactly orthogonal only if it is 0.
         let cos = if self.opening == 90.0 { 0.0 } else { cos };
         let mesh = mesh.mapped(|[x, y]| [x + y * cos, y * sin]).unwrap();

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use percute_core::dynamics::{Stiffness, critical_time_step, element_time_step};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, TriangleMesh};
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
 use percute_core::problem::{BarProblem, Problem, TriangleProblem};
 use percute_testkit::{disc, random_rectangle};
 use std::f64::consts::PI;
@@ -54,7 +54,7 @@ fn uniform_bars_have_the_steps_of_their_modes() {
             if elements == 1 && lost == 1.0 {
                 continue; // Nothing can move.
             }
-            let mesh = BarMesh::uniform_bar(0.1, elements).unwrap();
+            let mesh = Mesh::uniform_bar(0.1, elements).unwrap();
             let mut builder = BarProblem::builder(mesh).material(Elastic::bar(70e9, 2700.0, 0.02).unwrap());
             for group in supports {
                 builder = builder.support(Support {
@@ -80,7 +80,7 @@ fn uniform_bars_have_the_steps_of_their_modes() {
 #[test]
 fn rectangles_and_discs_match_the_dense_solver() {
     let meshes = [
-        ("structured", TriangleMesh::rectangle(1.0, 0.7, 7, 5).unwrap()),
+        ("structured", Mesh::rectangle(1.0, 0.7, 7, 5).unwrap()),
         ("unstructured", random_rectangle(1.0, 0.7, 7, 3).unwrap()),
         ("slender", random_rectangle(5.0, 0.4, 24, 1).unwrap()),
     ];
@@ -97,11 +97,11 @@ fn rectangles_and_discs_match_the_dense_solver() {
 /// Two materials: the stiffer and lighter part sets the step.
 #[test]
 fn mixed_materials_match_the_dense_solver() {
-    let base = TriangleMesh::rectangle(1.0, 1.0, 5, 5).unwrap();
-    let cells: Vec<_> = base.cells().iter().map(|c| c.map(|n| n.index())).collect();
+    let base = Mesh::rectangle(1.0, 1.0, 5, 5).unwrap();
+    let cells: Vec<_> = base.nodes_of::<3>().iter().map(|c| c.map(|n| n.index())).collect();
     let groups =
         ElementGroups::from([("soft".to_string(), (0..20).collect()), ("hard".to_string(), (20..50).collect())]);
-    let mesh = TriangleMesh::new(base.points().to_vec(), &cells, &FacetGroups::new(), &groups).unwrap();
+    let mesh = Mesh::new(base.points_in::<2>().to_vec(), &cells, &FacetGroups::new(), &groups).unwrap();
     let problem = TriangleProblem::builder(mesh)
         .material_of("soft", Elastic::plane_stress(3e9, 0.4, 1200.0, 1.0).unwrap())
         .material_of("hard", Elastic::plane_stress(400e9, 0.2, 3900.0, 1.0).unwrap())

@@ -5,7 +5,7 @@ use percute_core::contact::Obstacle;
 use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
 use percute_core::history::{Discard, History, SinkError, State, StateSink};
 use percute_core::material::Elastic;
-use percute_core::mesh::BarMesh;
+use percute_core::mesh::Mesh;
 use percute_core::observer::{Progress, Unobserved};
 use percute_core::problem::{BarProblem, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -45,7 +45,7 @@ fn runs_above_the_critical_step_are_unstable() {
 }
 
 fn near_bar(gap: f64) -> BarProblem {
-    BarProblem::builder(BarMesh::uniform_bar(0.1, 10).unwrap())
+    BarProblem::builder(Mesh::uniform_bar(0.1, 10).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-400.0]))
         .obstacle(Obstacle::plane([-gap], [1.0], 0.0, None).unwrap())
@@ -83,7 +83,7 @@ fn a_start_too_near_names_what_will_do() {
 fn a_plane_is_placed_by_its_gap() {
     for gap in [0.0, 1e-6, 0.25] {
         let stated = |plane| {
-            BarProblem::builder(BarMesh::uniform_bar(0.1, 10).unwrap())
+            BarProblem::builder(Mesh::uniform_bar(0.1, 10).unwrap())
                 .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
                 .initial_displacement(Initial::Uniform([0.5]))
                 .obstacle(plane)
@@ -143,7 +143,7 @@ fn a_plane_that_is_struck_at_once_is_moved_by_the_least_gap() {
 #[test]
 fn a_plane_that_is_not_struck_stays() {
     for speed in [0.0, 3.0] {
-        let bar = BarProblem::builder(BarMesh::uniform_bar(0.1, 10).unwrap())
+        let bar = BarProblem::builder(Mesh::uniform_bar(0.1, 10).unwrap())
             .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
             .initial_velocity(Initial::Uniform([speed]))
             .obstacle(Obstacle::plane([0.0], [1.0], 0.0, None).unwrap());

@@ -6,7 +6,7 @@ use percute_core::element_state::{ElementState, kinetic_energy};
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::ids::ElementId;
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -20,9 +20,9 @@ const TRANSLATION: [f64; 2] = [3.0, -2.0];
 /// 1e-4.
 const ROUNDING: f64 = 1e-8;
 
-fn linear(mesh: &TriangleMesh) -> Vec<[f64; 2]> {
+fn linear(mesh: &Mesh) -> Vec<[f64; 2]> {
     let moved = |p: &[f64; 2]| std::array::from_fn(|a| TRANSLATION[a] + GRADIENT[a][0] * p[0] + GRADIENT[a][1] * p[1]);
-    mesh.points().iter().map(moved).collect()
+    mesh.points_in::<2>().iter().map(moved).collect()
 }
 
 fn elements<const D: usize, const N: usize>(problem: &Problem<D, N>) -> impl Iterator<Item = ElementId> {
@@ -80,9 +80,9 @@ fn a_linear_field_has_the_stress_of_three_dimensions() {
 
 #[test]
 fn a_bar_has_stress_along_it_alone() {
-    let problem = BarProblem::builder(BarMesh::uniform_bar(0.3, 3).unwrap());
+    let problem = BarProblem::builder(Mesh::uniform_bar(0.3, 3).unwrap());
     let problem = problem.material(Elastic::bar(2e11, 7800.0, 1e-4).unwrap()).build().unwrap();
-    let displacement: Vec<f64> = problem.mesh().points().iter().map(|p| -1e-3 * p[0]).collect();
+    let displacement: Vec<f64> = problem.mesh().points_in::<1>().iter().map(|p| -1e-3 * p[0]).collect();
     for element in elements(&problem) {
         let state = ElementState::new(&problem, element, &displacement);
         assert!((state.stress[0][0] + 2e8).abs() < 1e-6);
@@ -111,14 +111,12 @@ fn energies_of_the_elements_sum_to_those_of_the_balance() {
     let mesh = random_rectangle(0.05, 0.04, 8, 3).unwrap();
     let half: Vec<usize> = (0..mesh.element_count()).filter(|e| e % 2 == 0).collect();
     let other: Vec<usize> = (0..mesh.element_count()).filter(|e| e % 2 == 1).collect();
-    let cells: Vec<[usize; 3]> = mesh.cells().iter().map(|nodes| nodes.map(|n| n.index())).collect();
-    let bottom: Vec<[usize; 2]> = mesh.facet_groups()["bottom"]
-        .iter()
-        .map(|facet| mesh.facets()[facet.index()].nodes.map(|n| n.index()))
-        .collect();
+    let cells: Vec<[usize; 3]> = mesh.nodes_of::<3>().iter().map(|nodes| nodes.map(|n| n.index())).collect();
+    let bottom: Vec<[usize; 2]> =
+        mesh.facet_groups()["bottom"].iter().map(|facet| mesh.facet_nodes::<2>(*facet).map(|n| n.index())).collect();
     let edges = [("bottom".to_string(), bottom)].into();
     let groups = [("soft".to_string(), half), ("hard".to_string(), other)].into();
-    let mesh = TriangleMesh::new(mesh.points().to_vec(), &cells, &edges, &groups).unwrap();
+    let mesh = Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &edges, &groups).unwrap();
     let problem = TriangleProblem::builder(mesh)
         .material_of("soft", Elastic::plane_strain(3e9, 0.4, 1200.0, 0.1).unwrap())
         .material_of("hard", Elastic::plane_strain(70e9, 0.3, 2700.0, 0.1).unwrap())

@@ -4,7 +4,7 @@ use crate::solution::run::{mean_rate, on_rollers, run};
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::Support;
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::problem::{BarProblem, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_exact::{BarEnds, BarMode, BlockMode, Wave};
@@ -26,8 +26,8 @@ fn bar_mode(phase: f64) -> BarMode {
 }
 
 fn bar_problem(mode: &BarMode, elements: usize) -> BarProblem {
-    let mesh = BarMesh::uniform_bar(mode.length, elements).unwrap();
-    let at = |f: &dyn Fn(f64) -> f64| Initial::Nodal(mesh.points().iter().map(|x| [f(x[0])]).collect());
+    let mesh = Mesh::uniform_bar(mode.length, elements).unwrap();
+    let at = |f: &dyn Fn(f64) -> f64| Initial::Nodal(mesh.points_in::<1>().iter().map(|x| [f(x[0])]).collect());
     // The fixed end is at rest in exact arithmetic and here, since sin 0 = 0.
     let (displacement, velocity) = (at(&|x| mode.displacement(x, 0.0)), at(&|x| mode.velocity(x, 0.0)));
     BarProblem::builder(mesh)
@@ -64,7 +64,7 @@ fn a_bar_mode_has_the_frequency_of_the_dispersion_relation() {
 fn bar_error(mode: &BarMode, elements: usize, end: f64) -> f64 {
     let problem = bar_problem(mode, elements);
     let run = run(&problem, &TimeGrid::with_step(end, 0.7 * critical_time_step(&problem)).unwrap());
-    let points = problem.mesh().points().iter().zip(run.displacement(run.last()));
+    let points = problem.mesh().points_in::<1>().iter().zip(run.displacement(run.last()));
     points.fold(0.0_f64, |m, (x, u)| m.max((u[0] - mode.displacement(x[0], end)).abs())) / mode.amplitude
 }
 
@@ -106,10 +106,10 @@ fn block_mode(wave: Wave, numbers: [u32; 2], phase: f64) -> BlockMode {
     }
 }
 
-fn block_problem(mode: &BlockMode, mesh: TriangleMesh) -> TriangleProblem {
+fn block_problem(mode: &BlockMode, mesh: Mesh) -> TriangleProblem {
     let material = Elastic::plane_stress(70e9, 0.3, mode.density, mode.thickness).unwrap();
     let mut fields = [vec![], vec![]];
-    for &point in mesh.points() {
+    for &point in mesh.points_in::<2>() {
         // On the rollers sin(nπ) is rounding only; the supports want exact zeros.
         let on = [0, 1].map(|c| point[c] == 0.0 || point[c] == mode.sides[c]);
         let still = |v: [f64; 2]| [0, 1].map(|c| if on[c] { 0.0 } else { v[c] });
@@ -121,11 +121,13 @@ fn block_problem(mode: &BlockMode, mesh: TriangleMesh) -> TriangleProblem {
 }
 
 /// Root mean square of the nodal error at the end, weighted with the masses, over the amplitude.
-fn block_error(mode: &BlockMode, mesh: TriangleMesh, end: f64) -> f64 {
+fn block_error(mode: &BlockMode, mesh: Mesh, end: f64) -> f64 {
     let problem = block_problem(mode, mesh);
     let run = run(&problem, &TimeGrid::with_step(end, 0.7 * critical_time_step(&problem)).unwrap());
     let (mut squares, mut total) = (0.0, 0.0);
-    for ((point, u), mass) in problem.mesh().points().iter().zip(run.displacement(run.last())).zip(problem.mass()) {
+    for ((point, u), mass) in
+        problem.mesh().points_in::<2>().iter().zip(run.displacement(run.last())).zip(problem.mass())
+    {
         let exact = mode.displacement(*point, end);
         squares += mass * ((u[0] - exact[0]).powi(2) + (u[1] - exact[1]).powi(2));
         total += mass;
@@ -145,7 +147,7 @@ fn block_modes_converge_at_order_two() {
     ] {
         let mode = block_mode(wave, numbers, phase);
         let end = 1.2 * TAU / mode.angular_frequency();
-        let structured = |n: usize| TriangleMesh::rectangle(0.05, 0.04, n, n * 4 / 5).unwrap();
+        let structured = |n: usize| Mesh::rectangle(0.05, 0.04, n, n * 4 / 5).unwrap();
         let random = |n: usize| random_rectangle(0.05, 0.04, n, 1).unwrap();
         let errors = [10, 20, 40].map(|n| block_error(&mode, structured(n), end));
         let others = [10, 20, 40].map(|n| block_error(&mode, random(n), end));

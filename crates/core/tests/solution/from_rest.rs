@@ -52,7 +52,7 @@ fn a_support_that_starts_late_is_no_instability() {
 #[test]
 fn a_body_turned_at_rest_stays_at_rest() {
     let mesh = random_rectangle(0.05, 0.04, 6, 1).unwrap();
-    let turned: Vec<_> = mesh.points().iter().map(|p| [-1e-3 * p[1], 1e-3 * p[0]]).collect();
+    let turned: Vec<_> = mesh.points_in::<2>().iter().map(|p| [-1e-3 * p[1], 1e-3 * p[0]]).collect();
     let builder = TriangleProblem::builder(mesh).material(aluminium());
     let problem = builder.initial_displacement(Initial::Nodal(turned.clone())).build().unwrap();
     let run = run(&problem, &TimeGrid::uniform(500.0 * 0.9 * critical_time_step(&problem), 500).unwrap());

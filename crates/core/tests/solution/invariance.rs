@@ -4,7 +4,7 @@ use crate::solution::run::{Run, aluminium, fixed, run};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{Profile, Table, Traction};
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::strategy::{angle, rectangle};
@@ -25,7 +25,7 @@ struct Throw {
 }
 
 impl Throw {
-    fn new(mesh: &TriangleMesh, along: f64, speed: f64, friction: f64) -> Self {
+    fn new(mesh: &Mesh, along: f64, speed: f64, friction: f64) -> Self {
         let free = TriangleProblem::builder(mesh.clone()).material(aluminium()).build().unwrap();
         let step = 0.85 * critical_time_step(&free);
         let times = TimeGrid::uniform(60.0 * step, 60).unwrap();
@@ -34,7 +34,7 @@ impl Throw {
 
     /// The block above the rough plane and pulled on top, after `map` has moved all vectors and
     /// the plane's point; the bottom may touch.
-    fn problem(&self, mesh: TriangleMesh, map: impl Fn([f64; 2]) -> [f64; 2]) -> TriangleProblem {
+    fn problem(&self, mesh: Mesh, map: impl Fn([f64; 2]) -> [f64; 2]) -> TriangleProblem {
         let end = self.times.end();
         let pull = Table::new(vec![0.0, end], vec![map([2e8, 3e8]), map([-2e8, 1e8])]).unwrap();
         let bottom = Some("bottom".to_string());
@@ -137,7 +137,7 @@ proptest! {
     /// digits of the gradients, which 1e-9 leaves room for.
     #[test]
     fn the_origin_does_not_matter(mesh in rectangle(5), x in -30.0..30.0, y in -30.0..30.0) {
-        let pulled = |mesh: TriangleMesh| {
+        let pulled = |mesh: Mesh| {
             let value = Table::new(vec![0.0, 1e-4], vec![[2e8, 3e8], [-2e8, 1e8]]).unwrap();
             TriangleProblem::builder(mesh)
                 .material(aluminium())

@@ -4,7 +4,7 @@ use crate::solution::run::{aluminium, difference, fixed, gravity, largest, run};
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Profile, Table, Traction};
 use percute_core::material::Elastic;
-use percute_core::mesh::BarMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{BarProblem, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::{disc, random_rectangle};
@@ -39,7 +39,7 @@ fn a_uniform_traction_is_in_equilibrium_with_its_stress() {
     let mesh = random_rectangle(0.05, 0.04, 7, 11).unwrap();
     // Plane stress: ε_xx = (p − νq)/E, ε_yy = (q − νp)/E.
     let strain = [(p - poisson * q) / young, (q - poisson * p) / young];
-    let u0: Vec<_> = mesh.points().iter().map(|x| [strain[0] * x[0], strain[1] * x[1]]).collect();
+    let u0: Vec<_> = mesh.points_in::<2>().iter().map(|x| [strain[0] * x[0], strain[1] * x[1]]).collect();
     let pull = |group: &str, value| Traction {
         group: group.to_string(),
         value: Table::constant(value),
@@ -81,7 +81,7 @@ fn nodal_forces_keep_resultant_and_moment() {
     // At t = 1 the table stands halfway; the thickness is 0.5; the body force is uniform on 2 m².
     problem.external_forces(times.instants()[1], &mut force);
     let moment = |c: usize, weight: &dyn Fn(&[f64; 2]) -> f64| -> f64 {
-        force.iter().zip(problem.mesh().points()).map(|(f, x)| f[c] * weight(x)).sum()
+        force.iter().zip(problem.mesh().points_in::<2>()).map(|(f, x)| f[c] * weight(x)).sum()
     };
     // All terms are of order 1.
     assert!((moment(0, &|_| 1.0) - 4.5).abs() < 1e-13);
@@ -97,7 +97,7 @@ fn nodal_forces_keep_resultant_and_moment() {
 fn a_stepped_load_runs_in_as_a_wave() {
     let (young, density, section, pressure) = (70e9_f64, 2700.0_f64, 0.02, 1e8);
     let c = (young / density).sqrt();
-    let problem = BarProblem::builder(BarMesh::uniform_bar(0.1, 50).unwrap())
+    let problem = BarProblem::builder(Mesh::uniform_bar(0.1, 50).unwrap())
         .material(Elastic::bar(young, density, section).unwrap())
         .traction(Traction {
             group: "start".to_string(),
@@ -109,7 +109,7 @@ fn a_stepped_load_runs_in_as_a_wave() {
     let dt = 0.1 / 50.0 / c;
     let run = run(&problem, &TimeGrid::uniform(40.0 * dt, 40).unwrap());
     for n in 0..=40 {
-        for (x, u) in problem.mesh().points().iter().zip(run.displacement(n)) {
+        for (x, u) in problem.mesh().points_in::<1>().iter().zip(run.displacement(n)) {
             let expected = pressure / (density * c) * (run.time(n) - x[0] / c).max(0.0);
             // Rounding of 40 steps, of the largest displacement 40Δt p/(ρc).
             assert!((u[0] - expected).abs() < 1e-12 * pressure / (density * c) * 40.0 * dt, "step {n}, {x:?}");

@@ -7,35 +7,33 @@ use percute_core::dynamics::critical_time_step;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::load::{BodyForce, Profile, Table, Traction};
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, Mesh, Numbering, TriangleMesh};
+use percute_core::mesh::{Mesh, Numbering};
 use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
-use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
 use percute_testkit::{Random, random_rectangle, renumbered};
 
 /// Nodes and elements in random order.
-fn shuffle<const D: usize, const N: usize>(mesh: &Mesh<D, N>, seed: u64) -> Numbering {
+fn shuffle(mesh: &Mesh, seed: u64) -> Numbering {
     let mut random = Random::new(seed);
     let nodes = random.permutation(mesh.node_count()).into_iter().map(NodeId::new).collect();
     Numbering::new(nodes, random.permutation(mesh.element_count()).into_iter().map(ElementId::new).collect())
 }
 
 /// The mesh that its points, elements and groups make.
-fn rebuilt<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Mesh<D, N>
-where
-    Element<D, N>: Simplex<D, N>,
-{
-    let cells: Vec<_> = mesh.cells().iter().map(|cell| cell.map(NodeId::index)).collect();
-    let facet = |f: &percute_core::ids::FacetId| mesh.facets()[f.index()].nodes.map(NodeId::index);
-    let facets = mesh.facet_groups().iter().map(|(name, f)| (name.clone(), f.iter().map(facet).collect())).collect();
+fn rebuilt(mesh: &Mesh) -> Mesh {
+    let cells: Vec<_> = mesh.cell_rows().iter().map(|node| node.index()).collect();
+    let facet = |f: &percute_core::ids::FacetId| mesh.facet(*f).nodes.iter().map(|node| node.index());
+    let facets =
+        mesh.facet_groups().iter().map(|(name, f)| (name.clone(), f.iter().flat_map(facet).collect())).collect();
     let elements = mesh.element_groups().iter();
     let elements = elements.map(|(name, e)| (name.clone(), e.iter().map(|e| e.index()).collect())).collect();
-    Mesh::new(mesh.points().to_vec(), &cells, &facets, &elements).unwrap()
+    Mesh::from_rows(mesh.dimension(), mesh.points(), &cells, (&facets, &elements)).unwrap()
 }
 
-fn assert_same<const D: usize, const N: usize>(one: &Mesh<D, N>, other: &Mesh<D, N>) {
-    assert_eq!((one.points(), one.cells()), (other.points(), other.cells()));
-    assert_eq!((one.facets(), one.cell_facets()), (other.facets(), other.cell_facets()));
+fn assert_same(one: &Mesh, other: &Mesh) {
+    assert_eq!((one.points(), one.cell_rows()), (other.points(), other.cell_rows()));
+    assert!(one.facets().eq(other.facets()));
+    assert!(one.elements().all(|e| one.cell_facets(e) == other.cell_facets(e)));
     assert_eq!((one.facet_groups(), one.element_groups()), (other.facet_groups(), other.element_groups()));
     assert_eq!((one.size(), one.parts()), (other.size(), other.parts()));
     for node in (0..one.node_count()).map(NodeId::new) {
@@ -47,16 +45,16 @@ fn assert_same<const D: usize, const N: usize>(one: &Mesh<D, N>, other: &Mesh<D,
 /// A rectangle of two materials above a rough plane, held at the left, loaded on top and inside.
 fn loaded() -> TriangleProblem {
     let mesh = random_rectangle(1.0, 0.7, 8, 5).unwrap();
-    let cells: Vec<_> = mesh.cells().iter().map(|cell| cell.map(NodeId::index)).collect();
-    let facet = |f: &percute_core::ids::FacetId| mesh.facets()[f.index()].nodes.map(NodeId::index);
+    let cells: Vec<_> = mesh.nodes_of::<3>().iter().map(|cell| cell.map(NodeId::index)).collect();
+    let facet = |f: &percute_core::ids::FacetId| mesh.facet_nodes::<2>(*f).map(NodeId::index);
     let facets = mesh.facet_groups().iter().map(|(name, f)| (name.clone(), f.iter().map(facet).collect())).collect();
     let (low, high) = (0..cells.len()).partition(|e| e % 3 == 0);
     let groups = [("low".to_string(), low), ("high".to_string(), high)].into();
-    let mesh = TriangleMesh::new(mesh.points().to_vec(), &cells, &facets, &groups).unwrap();
+    let mesh = Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &facets, &groups).unwrap();
     let pull = Table::new(vec![0.0, 1e-3], vec![[2e6, 3e6], [-2e6, 1e6]]).unwrap();
     let profile = Profile { value: 0.3, gradient: [1.0, 0.0, 0.0] };
     let body = BodyForce { group: Some("low".to_string()), value: Table::constant([1e7, -3e7]) };
-    let nodes: Vec<_> = mesh.points().iter().map(|p| [0.0, -50.0 * p[0]]).collect();
+    let nodes: Vec<_> = mesh.points_in::<2>().iter().map(|p| [0.0, -50.0 * p[0]]).collect();
     TriangleProblem::builder(mesh)
         .material_of("low", aluminium())
         .material_of("high", Elastic::plane_strain(210e9, 0.25, 7800.0, 1.0).unwrap())
@@ -79,7 +77,7 @@ fn a_renumbered_mesh_is_that_of_its_parts() {
     let problem = loaded();
     let image = problem.renumbered(&shuffle(problem.mesh(), 3));
     assert_same(image.mesh(), &rebuilt(image.mesh()));
-    let problem = BarProblem::builder(BarMesh::uniform_bar(1.0, 9).unwrap())
+    let problem = BarProblem::builder(Mesh::uniform_bar(1.0, 9).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .build()
         .unwrap();
@@ -98,7 +96,7 @@ fn what_was_stated_follows_the_numbers() {
     let old = |node: NodeId| numbering.nodes()[node.index()];
     assert_eq!(contact(&image, &old), contact(&problem, &|node| node));
     for (facet, same) in image.surface().facets().iter().zip(problem.surface().facets()) {
-        let nodes = image.mesh().facets()[facet.facet.index()].nodes;
+        let nodes = image.mesh().facet_nodes::<2>(facet.facet);
         assert_eq!(nodes, facet.nodes.map(|at| image.surface().nodes()[at].node));
         assert_eq!((facet.area, facet.obstacle), (same.area, same.obstacle));
     }
@@ -154,7 +152,7 @@ fn largest(field: &[[f64; 2]]) -> f64 {
 }
 
 /// The largest difference of node numbers in an element, and how far the lowest falls back behind those before.
-fn front<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> (usize, usize) {
+fn front(mesh: &Mesh) -> (usize, usize) {
     let (mut span, mut back, mut reached) = (0, 0, 0);
     for cell in mesh.cells() {
         let low = cell.iter().map(|n| n.index()).min().unwrap();
@@ -169,20 +167,20 @@ fn front<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> (usize, usize) {
 #[test]
 fn a_local_order_is_kept() {
     for mesh in [
-        TriangleMesh::rectangle(1.0, 0.8, 50, 40).unwrap(),
-        TriangleMesh::rectangle(12.0, 1.0, 1200, 80).unwrap(),
-        renumbered(&TriangleMesh::rectangle(1.0, 1.0, 15, 15).unwrap(), 1).unwrap().0,
+        Mesh::rectangle(1.0, 0.8, 50, 40).unwrap(),
+        Mesh::rectangle(12.0, 1.0, 1200, 80).unwrap(),
+        renumbered(&Mesh::rectangle(1.0, 1.0, 15, 15).unwrap(), 1).unwrap().0,
     ] {
         assert!(mesh.local_numbering().is_none());
     }
-    assert!(BarMesh::uniform_bar(1.0, 500).unwrap().local_numbering().is_none());
+    assert!(Mesh::uniform_bar(1.0, 500).unwrap().local_numbering().is_none());
 }
 
 /// A shuffled square of 40×40 cells: levels are diagonals or rows of at most 41 nodes, and an element spans two of
 /// them.
 #[test]
 fn a_shuffled_mesh_becomes_local() {
-    let mesh = TriangleMesh::rectangle(1.0, 1.0, 40, 40).unwrap();
+    let mesh = Mesh::rectangle(1.0, 1.0, 40, 40).unwrap();
     let (mesh, _) = renumbered(&mesh, 2).unwrap();
     let problem = TriangleProblem::builder(mesh).material(aluminium()).build().unwrap();
     let numbering = problem.mesh().local_numbering().unwrap();
@@ -198,13 +196,13 @@ fn a_shuffled_mesh_becomes_local() {
 /// Parts follow each other, each in one piece.
 #[test]
 fn parts_are_numbered_one_after_the_other() {
-    let left = TriangleMesh::rectangle(1.0, 1.0, 25, 25).unwrap();
+    let left = Mesh::rectangle(1.0, 1.0, 25, 25).unwrap();
     let count = left.node_count();
-    let mut points = left.points().to_vec();
-    points.extend(left.points().iter().map(|p| [p[0] + 2.0, p[1]]));
-    let cells = left.cells().iter().map(|cell| cell.map(NodeId::index));
+    let mut points = left.points_in::<2>().to_vec();
+    points.extend(left.points_in::<2>().iter().map(|p| [p[0] + 2.0, p[1]]));
+    let cells = left.nodes_of::<3>().iter().map(|cell| cell.map(NodeId::index));
     let cells: Vec<_> = cells.clone().chain(cells.map(|cell| cell.map(|n| n + count))).collect();
-    let both = TriangleMesh::new(points, &cells, &Default::default(), &Default::default()).unwrap();
+    let both = Mesh::new(points, &cells, &Default::default(), &Default::default()).unwrap();
     let (both, new) = renumbered(&both, 9).unwrap();
     let numbering = both.local_numbering().unwrap();
     let is_left: Vec<_> = numbering.nodes().iter().map(|node| new.node[..count].contains(&node.index())).collect();

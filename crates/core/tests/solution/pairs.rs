@@ -4,7 +4,7 @@ use crate::solution::run::{Run, aluminium, difference, largest, run};
 use percute_core::contact::{Interface, Obstacle};
 use percute_core::dynamics::critical_time_step;
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::problem::{BarProblem, Cause, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::{translated, upside_down};
@@ -12,15 +12,15 @@ use percute_testkit::{translated, upside_down};
 const GAP: f64 = 50e-6;
 
 /// A block of 40 × 25 mm on y ≥ 0.
-fn block() -> TriangleMesh {
-    TriangleMesh::rectangle(0.04, 0.025, 8, 6).unwrap()
+fn block() -> Mesh {
+    Mesh::rectangle(0.04, 0.025, 8, 6).unwrap()
 }
 
 /// The block above its mirror image, 2 GAP apart, with one velocity (m/s) for each.
 fn blocks(velocities: [[f64; 2]; 2], friction: f64, materials: [Elastic; 2]) -> TriangleProblem {
     let upper = translated(&block(), [0.0, GAP]).unwrap();
     let lower = translated(&upside_down(&block()).unwrap(), [0.0, -GAP]).unwrap();
-    let mesh = TriangleMesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap();
+    let mesh = Mesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap();
     let half = upper.node_count();
     let velocity = (0..mesh.node_count()).map(|i| velocities[usize::from(i >= half)]).collect();
     TriangleProblem::builder(mesh)
@@ -139,9 +139,9 @@ fn a_common_velocity_changes_nothing() {
 #[test]
 fn equal_bars_exchange_their_velocities() {
     for count in [20, 80] {
-        let bar = |start: f64| BarMesh::uniform_bar(0.3, count).unwrap().mapped(|p| [p[0] + start]).unwrap();
+        let bar = |start: f64| Mesh::uniform_bar(0.3, count).unwrap().mapped(|p| [p[0] + start]).unwrap();
         let (left, right) = (bar(-0.3), bar(1e-4));
-        let mesh = BarMesh::joined(&[("left", &left), ("right", &right)]).unwrap();
+        let mesh = Mesh::joined(&[("left", &left), ("right", &right)]).unwrap();
         let velocity = (0..mesh.node_count()).map(|i| [if i <= count { 10.0 } else { 0.0 }]).collect();
         let problem = BarProblem::builder(mesh)
             .material(Elastic::bar(70e9, 2700.0, 1e-4).unwrap())
@@ -169,9 +169,9 @@ fn equal_bars_exchange_their_velocities() {
 #[test]
 fn wrong_interfaces_are_refused() {
     let refusal = |first: &str, second: &str, shift: [f64; 2], nx: usize| {
-        let lower = upside_down(&TriangleMesh::rectangle(0.04, 0.025, nx, 6).unwrap()).unwrap();
+        let lower = upside_down(&Mesh::rectangle(0.04, 0.025, nx, 6).unwrap()).unwrap();
         let lower = translated(&lower, [shift[0], -GAP + shift[1]]).unwrap();
-        let mesh = TriangleMesh::joined(&[("upper", &block()), ("lower", &lower)]).unwrap();
+        let mesh = Mesh::joined(&[("upper", &block()), ("lower", &lower)]).unwrap();
         let problem = TriangleProblem::builder(mesh)
             .material(aluminium())
             .interface(Interface::matching(2, first, second, 0.2).unwrap())

@@ -5,7 +5,7 @@ use percute_core::history::{History, StepSource};
 use percute_core::ids::NodeId;
 use percute_core::load::{BodyForce, Support, Table};
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -120,7 +120,7 @@ pub(crate) fn gravity<const D: usize>(density: f64, g: [f64; D]) -> BodyForce {
 }
 
 /// Rollers on all four sides of a rectangle.
-pub(crate) fn on_rollers(mesh: TriangleMesh, material: Elastic) -> percute_core::problem::Builder<2, 3> {
+pub(crate) fn on_rollers(mesh: Mesh, material: Elastic) -> percute_core::problem::Builder<2, 3> {
     TriangleProblem::builder(mesh)
         .material(material)
         .support(fixed("left", [true, false]))
@@ -130,9 +130,9 @@ pub(crate) fn on_rollers(mesh: TriangleMesh, material: Elastic) -> percute_core:
 }
 
 /// Nodes of a group of facets.
-pub(crate) fn nodes_of(mesh: &TriangleMesh, group: &str) -> Vec<usize> {
+pub(crate) fn nodes_of(mesh: &Mesh, group: &str) -> Vec<usize> {
     let facets = mesh.facet_groups()[group].iter();
-    let mut nodes: Vec<usize> = facets.flat_map(|f| mesh.facets()[f.index()].nodes).map(NodeId::index).collect();
+    let mut nodes: Vec<usize> = facets.flat_map(|f| mesh.facet_nodes::<2>(*f)).map(NodeId::index).collect();
     nodes.sort_unstable();
     nodes.dedup();
     nodes

@@ -5,16 +5,16 @@ use crate::solution::run::{aluminium, run};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::Support;
-use percute_core::mesh::{ElementGroups, FacetGroups, TriangleMesh};
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::random_rectangle;
 
 /// The mesh and its mirror image in x = 0, on which its left side lies.
-fn doubled(half: &TriangleMesh) -> TriangleMesh {
-    let mut points = half.points().to_vec();
+fn doubled(half: &Mesh) -> Mesh {
+    let mut points = half.points_in::<2>().to_vec();
     let image: Vec<usize> = half
-        .points()
+        .points_in::<2>()
         .iter()
         .enumerate()
         .map(|(i, p)| {
@@ -25,12 +25,12 @@ fn doubled(half: &TriangleMesh) -> TriangleMesh {
             points.len() - 1
         })
         .collect();
-    let cells = half.cells().iter().map(|c| c.map(|n| n.index()));
+    let cells = half.nodes_of::<3>().iter().map(|c| c.map(|n| n.index()));
     let cells: Vec<_> = cells.clone().chain(cells.map(|c| c.map(|n| image[n]))).collect();
-    TriangleMesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new()).unwrap()
+    Mesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new()).unwrap()
 }
 
-fn dropped(mesh: TriangleMesh, guide: bool) -> TriangleProblem {
+fn dropped(mesh: Mesh, guide: bool) -> TriangleProblem {
     let builder = TriangleProblem::builder(mesh)
         .material(aluminium())
         .initial_velocity(Initial::Uniform([0.0, -100.0]))

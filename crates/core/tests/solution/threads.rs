@@ -6,7 +6,7 @@ use percute_core::contact::Obstacle;
 use percute_core::dynamics::{Balancing, Simulation, replay, simulate, simulate_threaded};
 use percute_core::history::History;
 use percute_core::load::{BodyForce, Support, Table};
-use percute_core::mesh::{Strips, TriangleMesh};
+use percute_core::mesh::{Mesh, Strips};
 use percute_core::observer::{Progress, Unobserved};
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -15,8 +15,8 @@ use std::ops::ControlFlow;
 /// A block of 22 000 elements that strikes a plane with friction, held at its left and pulled down: every kind of
 /// force.
 fn block() -> (TriangleProblem, TimeGrid) {
-    let mesh = TriangleMesh::rectangle(0.05, 0.04, 110, 100).unwrap();
-    assert!(Strips::new(mesh.cells()).count() > 8);
+    let mesh = Mesh::rectangle(0.05, 0.04, 110, 100).unwrap();
+    assert!(Strips::new(mesh.nodes_of::<3>()).count() > 8);
     // Some 0.9 of the critical step of legs of 0.4 mm; the plane is met in the second one.
     let step = 5e-8;
     let problem = TriangleProblem::builder(mesh)

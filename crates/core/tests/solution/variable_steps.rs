@@ -6,7 +6,7 @@ use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
 use percute_core::history::Discard;
 use percute_core::load::{BodyForce, Table};
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{BarProblem, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -65,14 +65,14 @@ fn a_standing_wave_converges() {
     };
     let end = 1.2 * TAU / mode.angular_frequency();
     let errors = [10, 20, 40].map(|n| {
-        let mesh = TriangleMesh::rectangle(0.05, 0.04, n, n * 4 / 5).unwrap();
+        let mesh = Mesh::rectangle(0.05, 0.04, n, n * 4 / 5).unwrap();
         let still =
             |p: &[f64; 2], u: [f64; 2]| [0, 1].map(|c| if p[c] == 0.0 || p[c] == mode.sides[c] { 0.0 } else { u[c] });
-        let start = mesh.points().iter().map(|p| still(p, mode.displacement(*p, 0.0))).collect();
+        let start = mesh.points_in::<2>().iter().map(|p| still(p, mode.displacement(*p, 0.0))).collect();
         let problem = on_rollers(mesh, aluminium()).initial_displacement(Initial::Nodal(start)).build().unwrap();
         let run = run(&problem, &swinging_steps(critical_time_step(&problem), end, 3.0));
         let reached = run.time(run.last());
-        let exact: Vec<_> = problem.mesh().points().iter().map(|p| mode.displacement(*p, reached)).collect();
+        let exact: Vec<_> = problem.mesh().points_in::<2>().iter().map(|p| mode.displacement(*p, reached)).collect();
         difference(run.displacement(run.last()), &exact) / mode.amplitude
     });
     let order = mean_rate(&errors);
@@ -85,7 +85,7 @@ fn a_standing_wave_converges() {
 #[test]
 fn a_bar_stays_on_the_plane_and_rebounds() {
     let exact = BarImpact { length: 0.1, young: 70e9, density: 2700.0, section: 0.02, speed: 400.0, gap: 1e-4 };
-    let problem = BarProblem::builder(BarMesh::uniform_bar(0.1, 200).unwrap())
+    let problem = BarProblem::builder(Mesh::uniform_bar(0.1, 200).unwrap())
         .material(Elastic::bar(exact.young, exact.density, exact.section).unwrap())
         .initial_velocity(Initial::Uniform([-exact.speed]))
         .obstacle(Obstacle::plane([-exact.gap], [1.0], 0.0, None).unwrap())
@@ -116,7 +116,7 @@ fn a_bar_stays_on_the_plane_and_rebounds() {
 /// 1993): the run ends with the error, and steps of the same lengths that change smoothly go through.
 #[test]
 fn jumping_steps_can_be_unstable_below_the_critical_step() {
-    let problem = BarProblem::builder(BarMesh::uniform_bar(0.1, 100).unwrap())
+    let problem = BarProblem::builder(Mesh::uniform_bar(0.1, 100).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Nodal((0..=100).map(|i| [f64::from(i % 7) - 3.0]).collect()))
         .build()

@@ -4,7 +4,7 @@ use super::NarrowHat;
 use crate::direction::{along, tangent};
 use percute_core::contact::ContactFacet;
 use percute_core::problem::Problem;
-use percute_core::simplex::Shape;
+use percute_core::simplex::facet_mean;
 
 /// A density on one facet.
 #[derive(Clone, Copy, Debug)]
@@ -51,10 +51,8 @@ fn misfit_power<const D: usize, const N: usize>(
     density: &[[f64; D]; D],
     velocity: &[[f64; D]; D],
 ) -> f64 {
-    let simplex = problem.mesh().simplex();
-    match simplex.shape() {
-        Shape::Bar => return 0.0,
-        Shape::Triangle => {}
+    if D == 1 {
+        return 0.0;
     }
     if density.iter().flatten().all(|f| *f == 0.0) {
         return 0.0;
@@ -66,7 +64,7 @@ fn misfit_power<const D: usize, const N: usize>(
     let sliding = velocity.map(|v| along(&v, &tangent));
     let power =
         |weights: &[f64; D]| law.misfit(along(weights, &normal), along(weights, &tangential), along(weights, &sliding));
-    facet.area * simplex.facet_mean(&sliding, &power)
+    facet.area * facet_mean(&sliding, power)
 }
 
 /// The same of a hat (W).

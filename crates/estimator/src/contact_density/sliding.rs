@@ -21,6 +21,7 @@ pub(crate) use facets::SlidingFacets;
 use load::Load;
 use percute_core::contact::{Coupling, SlidingSurfaces};
 use percute_core::problem::Problem;
+use percute_core::simplex::facet_mean;
 pub(crate) use slave_hat::SlaveHat;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -230,14 +231,13 @@ impl<const D: usize> SlidingDensity<D> {
 
     /// The power of the misfit of Coulomb's law, μF_n|w_t| + w_t·F_t, half of it on each of the facets of a piece (W).
     /// `slip` has the tangential velocity of the nodes of slave and master (m/s).
-    pub(crate) fn friction_power<const N: usize>(
+    pub(crate) fn friction_power(
         &self,
-        problem: &Problem<D, N>,
         sliding: &SlidingSurfaces<D>,
         slip: &[Vec<f64>; 2],
         mut add: impl FnMut(&Piece, f64),
     ) {
-        let (law, simplex) = (sliding.law(), problem.mesh().simplex());
+        let law = sliding.law();
         let (normal, tangent) = (sliding.frame().normal(), sliding.tangent());
         let breaks = self.breaks();
         for piece in pieces(sliding, &self.coupling).flat_map(|piece| piece.cut(&breaks)) {
@@ -250,7 +250,7 @@ impl<const D: usize> SlidingDensity<D> {
             let power = |weights: &[f64; D]| {
                 law.misfit(along(weights, &press), along(weights, &drag), along(weights, &sliding))
             };
-            add(&piece, piece.length * simplex.facet_mean(&sliding, &power));
+            add(&piece, piece.length * facet_mean(&sliding, power));
         }
     }
 }

@@ -50,7 +50,7 @@ impl<const D: usize> BalanceFields<D> {
         let rest = BalanceNode { point: zero, start: zero, displacement: none, acceleration: none, skew: none };
         self.nodes.resize(nodes.len(), rest);
         for (record, &node) in self.nodes.iter_mut().zip(nodes) {
-            record.point = problem.mesh().points()[node as usize];
+            record.point = problem.mesh().points_in::<D>()[node as usize];
             record.start = problem.initial_velocity()[node as usize];
         }
         gather(

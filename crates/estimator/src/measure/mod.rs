@@ -23,6 +23,7 @@ pub(crate) use element_error::ElementError;
 use percute_core::ids::ElementId;
 use percute_core::material::{Elastic, Law, LinearLaw};
 use percute_core::problem::Problem;
+use percute_core::simplex::simplex;
 
 /// Elastic energy (J per unit of section or thickness) of the stress of hats beside that of the stress that balances a
 /// loading. Young's inequality bounds the products of several nodes.
@@ -59,7 +60,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         choice: Acceleration,
     ) -> Self {
         let start = element.gather(problem.initial_velocity());
-        Self::with((problem, element, id), choice, &problem.mesh().cell_points(id), start)
+        Self::with((problem, element, id), choice, &problem.mesh().corners::<D, N>(id), start)
     }
 
     /// The maps of an element whose nodes are at hand.
@@ -103,7 +104,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
 
     /// The stress that balances a loading.
     fn stress_map(&self) -> StressMap {
-        StressMap::new(self.problem.mesh().simplex(), &self.problem.mesh().cell_points(self.id), self.law)
+        StressMap::new(simplex(), &self.problem.mesh().corners::<D, N>(self.id), self.law)
     }
 
     /// The fields of one level that tractions and Γ_DA are made of. `contact` gives the contact node at each local

@@ -35,14 +35,14 @@ fn errors_are_energies_of_differences_and_sums() {
     let problem = TriangleProblem::builder(random_rectangle(1.0, 0.8, 3, 1).unwrap()).material(law).build().unwrap();
     let mut random = Random::new(7);
     for (e, element) in elements(&problem).iter().enumerate() {
-        let (id, points) = (ElementId::new(e), problem.mesh().cell_points(ElementId::new(e)));
+        let (id, points) = (ElementId::new(e), problem.mesh().corners::<2, 3>(ElementId::new(e)));
         let measure = ElementMeasure::new(&problem, element, id, Acceleration::Closest);
         let balanced = random_balance(&measure, &mut random);
         assert!(measure.resultant_residual(&balanced, 0.0) < 1e-13);
         let mut nodal = || [(); 3].map(|()| [(); 2].map(|()| random.between(-1.0, 1.0)));
         let (increment, displacement, velocity) = (nodal(), nodal(), nodal());
         let motion = ElementMotion::any(displacement, velocity);
-        let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
+        let mut forms = EnergyForms::new(problem.mesh().shape());
         let [lane, ..] = forms.prepare(&problem, std::iter::once((id, points)));
         let stress = measure.stress(&forms.of(&problem, id, &points, lane), &balanced);
         let found = measure.error(&stress, &increment, &motion, 0.0);

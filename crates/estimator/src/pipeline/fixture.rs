@@ -22,7 +22,7 @@ fn steps(problem: &TriangleProblem) -> TimeGrid {
 
 /// A block thrown on a plane, with rollers on these sides.
 fn thrown(velocity: [f64; 2], friction: f64, rollers: &[&str]) -> (TriangleProblem, TimeGrid) {
-    let mut builder = Problem::builder(random_rectangle(0.05, 0.04, 5, 1).unwrap())
+    let mut builder = Problem::<2, 3>::builder(random_rectangle(0.05, 0.04, 5, 1).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform(velocity))
         .obstacle(Obstacle::plane([0.0, -6e-4], [0.0, 1.0], friction, Some("bottom".to_string())).unwrap());
@@ -54,7 +54,7 @@ pub(super) fn guided() -> (TriangleProblem, TimeGrid) {
 pub(super) fn driven() -> (TriangleProblem, TimeGrid) {
     let velocity = Table::new(vec![0.0, 5e-6], vec![[0.0, -100.0], [0.0, 30.0]]).unwrap();
     let top = Support { group: "top".to_string(), components: [false, true, false], velocity: Some(velocity) };
-    let problem = Problem::builder(random_rectangle(0.05, 0.04, 5, 2).unwrap())
+    let problem = Problem::<2, 3>::builder(random_rectangle(0.05, 0.04, 5, 2).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([0.0, -100.0]))
         .support(top)

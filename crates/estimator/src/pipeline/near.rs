@@ -66,7 +66,7 @@ pub(super) struct NearElement<const D: usize, const N: usize> {
 pub(super) fn near_count<const D: usize, const N: usize>(problem: &Problem<D, N>) -> usize {
     let mut touches = vec![false; problem.mesh().node_count()];
     problem.surface().nodes().iter().for_each(|contact| touches[contact.node.index()] = true);
-    problem.mesh().cells().iter().filter(|cell| cell.iter().any(|node| touches[node.index()])).count()
+    problem.mesh().nodes_of::<N>().iter().filter(|cell| cell.iter().any(|node| touches[node.index()])).count()
 }
 
 /// All such elements, by number.
@@ -78,10 +78,10 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
     }
     let mut facets = vec![Vec::new(); mesh.element_count()];
     for (f, facet) in problem.surface().facets().iter().enumerate() {
-        facets[mesh.facets()[facet.facet.index()].owner.index()].push(f);
+        facets[mesh.facet(facet.facet).owner.index()].push(f);
     }
     let near = |(e, facets): (usize, Vec<usize>)| {
-        let contact = mesh.cells()[e].map(|n| of_node[n.index()]);
+        let contact = mesh.nodes_of::<N>()[e].map(|n| of_node[n.index()]);
         contact.iter().any(Option::is_some).then(|| NearElement {
             element: ElementId::new(e),
             form: KeptForm::new(problem, ElementId::new(e)),

@@ -10,6 +10,7 @@ use crate::partition::{Break, pieces};
 use crate::scratch_file::{ScratchError, ScratchFile};
 use percute_core::contact::{Coupling, SlidingSurfaces};
 use percute_core::problem::Problem;
+use percute_core::simplex::facet_mean;
 use percute_core::time::TimeGrid;
 use std::sync::Arc;
 
@@ -84,7 +85,7 @@ impl SlidingMisfit {
                     let [a, b] = ends.map(|end| density(sliding, &coupling, |place| pressures[place][end][which]));
                     if ends[0] == ends[1] { a } else { SlidingDensity::mean(&a, &b, &coupling) }
                 });
-                measure((problem, sliding), &self.facets[index], (&coupling, instant), &densities, shown);
+                measure(sliding, &self.facets[index], (&coupling, instant), &densities, shown);
             }
         }
         Ok(())
@@ -143,8 +144,8 @@ fn density<const D: usize>(
 }
 
 /// Adds ∫F_n gap and ∫F_n|ẋ| at an instant, of the densities of F_DA and of the reactions.
-fn measure<const D: usize, const N: usize>(
-    (problem, sliding): (&Problem<D, N>, &SlidingSurfaces<D>),
+fn measure<const D: usize>(
+    sliding: &SlidingSurfaces<D>,
     facets: &SlidingFacets,
     (coupling, instant): (&Coupling, &SlidingInstant),
     densities: &[SlidingDensity<1>; 2],
@@ -164,7 +165,7 @@ fn measure<const D: usize, const N: usize>(
         let [own, other] = [piece.slave_values(|node| own[node]), piece.master_values(|node| other[node])];
         let (force, speed) = (at_ends(sudden), at_ends([0, 1].map(|end| own[end] + other[end])));
         let power = |weights: &[f64; D]| along(weights, &force) * along(weights, &speed).abs();
-        let power = piece.length * problem.mesh().simplex().facet_mean(&speed, &power);
+        let power = piece.length * facet_mean(&speed, power);
         for facet in facets.of(&piece) {
             sums[facet][0] += 0.5 * energy;
             sums[facet][1] += 0.5 * power;

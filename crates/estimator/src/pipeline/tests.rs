@@ -7,14 +7,14 @@ use crate::scratch_file::ScratchFile;
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::observer::{Progress, StopFlag, Unobserved};
 use percute_core::problem::{Initial, TriangleProblem};
 use std::ops::ControlFlow;
 
 /// A low, wide block that strikes a plane and flies off: most nodes never touch again.
 fn rebound() -> TriangleProblem {
-    Problem::builder(TriangleMesh::rectangle(0.04, 0.001, 40, 1).unwrap())
+    Problem::<2, 3>::builder(Mesh::rectangle(0.04, 0.001, 40, 1).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([2.0, -10.0]))
         .obstacle(Obstacle::plane([0.0, -1e-5], [0.0, 1.0], 0.2, Some("bottom".to_string())).unwrap())

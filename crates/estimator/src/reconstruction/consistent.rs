@@ -49,7 +49,7 @@ impl BoundaryMass {
             for &k in &facet.nodes {
                 mass.diagonal[k] += 2.0 * share;
             }
-            match problem.mesh().simplex().shape() {
+            match problem.mesh().shape() {
                 Shape::Bar => {}
                 Shape::Triangle => mass.upper[facet.nodes[0].min(facet.nodes[1])] += share,
             }

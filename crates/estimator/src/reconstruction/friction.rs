@@ -67,7 +67,7 @@ pub(super) fn add_sliding<const D: usize, const N: usize>(
         let both = |field: &[[f64; D]]| [sliding.slave(), sliding.master()].map(|side| tangential(field, side));
         let [from, to] = [now.now.motion.velocity(), next.now.velocity()].map(both);
         let mut add = |density: &SlidingDensity<D>, slip: &[Vec<f64>; 2], parts: [f64; 2]| {
-            density.friction_power(problem, sliding, slip, |piece, power| {
+            density.friction_power(sliding, slip, |piece, power| {
                 for facet in facets.of(piece) {
                     (0..2).for_each(|k| friction[facet][k] += 0.5 * parts[k] * power);
                 }

@@ -32,7 +32,7 @@ struct End {
 impl<'p, const D: usize, const N: usize> Published<'p, D, N> {
     pub(super) fn new(problem: &'p Problem<D, N>) -> Self {
         let facets = problem.surface().facets();
-        let normals: Vec<_> = facets.iter().map(|f| problem.mesh().facet_normal(f.facet).0).collect();
+        let normals: Vec<_> = facets.iter().map(|f| problem.mesh().normal_in::<D>(f.facet).0).collect();
         let mut around = vec![Vec::new(); problem.surface().nodes().len()];
         for (f, facet) in facets.iter().enumerate() {
             facet.nodes.iter().for_each(|&node| around[node].push(f));

@@ -6,12 +6,12 @@ use crate::options::Reconstruction::{self, Consistent, Corrected, Published};
 use crate::residual::Residuals;
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::TriangleProblem;
 
 /// Four edges along the bottom of a block, μ = 0.2.
 fn problem() -> TriangleProblem {
-    Problem::builder(TriangleMesh::rectangle(0.04, 0.02, 4, 2).unwrap())
+    Problem::<2, 3>::builder(Mesh::rectangle(0.04, 0.02, 4, 2).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .obstacle(Obstacle::plane([0.0, -1e-4], [0.0, 1.0], 0.2, None).unwrap())
         .build()
@@ -232,8 +232,8 @@ fn consistent_is_statically_equivalent() {
 fn kinked(slope: f64) -> (TriangleProblem, [usize; 3]) {
     let rise = slope.tan();
     let points = vec![[-1.0, rise], [0.0, 0.0], [1.0, rise], [0.0, 2.0]];
-    let mesh = TriangleMesh::new(points, &[[0, 1, 3], [1, 2, 3]], &Default::default(), &Default::default()).unwrap();
-    let problem = Problem::builder(mesh)
+    let mesh = Mesh::new(points, &[[0, 1, 3], [1, 2, 3]], &Default::default(), &Default::default()).unwrap();
+    let problem = Problem::<2, 3>::builder(mesh)
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .obstacle(Obstacle::plane([0.0, -1e-4], [0.0, 1.0], 0.2, None).unwrap())
         .build()

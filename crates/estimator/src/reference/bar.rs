@@ -46,7 +46,7 @@ pub fn bar_impact_error<'p>(
 /// The exact solution must be that of this bar.
 fn check(problem: &BarProblem, exact: &BarImpact) -> Result<(), ReferenceError> {
     let mesh = problem.mesh();
-    let low = mesh.points().iter().fold(f64::INFINITY, |m, p| m.min(p[0]));
+    let low = mesh.points_in::<1>().iter().fold(f64::INFINITY, |m, p| m.min(p[0]));
     let mut pairs = vec![("length", mesh.size(), exact.length), ("start + length", low + mesh.size(), exact.length)];
     for law in problem.materials() {
         pairs.push(("density", law.density(), exact.density));
@@ -72,8 +72,8 @@ fn add_element(
     v: &[f64],
     sample: &mut TrueErrorSample,
 ) {
-    let nodes = problem.mesh().cells()[element.index()].map(|n| n.index());
-    let [x0, x1] = problem.mesh().cell_points(element).map(|p| p[0]);
+    let nodes = problem.mesh().nodes_of::<2>()[element.index()].map(|n| n.index());
+    let [x0, x1] = problem.mesh().corners::<1, 2>(element).map(|p| p[0]);
     let ([u0, u1], [v0, v1]) = (nodes.map(|n| u[n]), nodes.map(|n| v[n]));
     let law = problem.material(element);
     let force = law.extent() * law.stress(&[[(u1 - u0) / (x1 - x0)]])[0][0];
@@ -98,14 +98,14 @@ fn add_element(
 mod tests {
     use super::*;
     use percute_core::material::Elastic;
-    use percute_core::mesh::BarMesh;
+    use percute_core::mesh::Mesh;
     use percute_core::problem::{Initial, Problem};
 
     /// c = 3 m/s, t_c = 0.5 s, ρScv₀ = 1.2 N.
     const BAR: BarImpact = BarImpact { length: 6.0, young: 18.0, density: 2.0, section: 0.1, speed: 2.0, gap: 1.0 };
 
     fn problem(section: f64) -> BarProblem {
-        Problem::builder(BarMesh::uniform_bar(6.0, 3).unwrap())
+        Problem::<1, 2>::builder(Mesh::uniform_bar(6.0, 3).unwrap())
             .material(Elastic::bar(18.0, 2.0, section).unwrap())
             .initial_velocity(Initial::Uniform([-2.0]))
             .obstacle(Obstacle::plane([-1.0], [1.0], 0.0, None).unwrap())

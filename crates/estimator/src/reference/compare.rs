@@ -88,7 +88,7 @@ struct Finer<'p, const D: usize, const N: usize> {
 struct Coarse<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     motion: &'p Motion,
-    transfer: Transfer<N>,
+    transfer: Transfer,
     samples: Vec<TrueErrorSample>,
 }
 
@@ -162,14 +162,14 @@ impl<const D: usize, const N: usize> Coarse<'_, D, N> {
         }
         let reference =
             before.displacement.iter().zip(&now.displacement).map(|(a, b)| between(a, b)).collect::<Vec<_>>();
-        let own = gradients(mesh, vectors(&self.motion.displacement[n]));
+        let own = gradients::<D, N>(mesh, vectors(&self.motion.displacement[n]));
         let mut sample = TrueErrorSample { time: self.motion.times[n], ..Default::default() };
         for (e, coarse) in self.transfer.elements().iter().enumerate() {
             let (id, law) = (ElementId::new(e), fine.material(ElementId::new(e)));
-            let mut gradient = displacement_gradient(fine.mesh(), id, &reference);
+            let mut gradient = displacement_gradient::<D, N>(fine.mesh(), id, &reference);
             let own = &own[coarse.index()];
             (0..D).for_each(|a| (0..D).for_each(|b| gradient[a][b] -= own[a][b]));
-            let nodal = fine.mesh().cells()[e].map(|node| velocity[node.index()]);
+            let nodal: [[f64; D]; N] = fine.mesh().nodes_of::<N>()[e].map(|node| velocity[node.index()]);
             let volume = fine.volume(id);
             sample.kinetic += 0.5 * mass_product(law.density() * volume, &nodal, &nodal);
             sample.elastic += volume * law.strain_energy(&gradient);
@@ -179,8 +179,8 @@ impl<const D: usize, const N: usize> Coarse<'_, D, N> {
 }
 
 /// ∂u/∂x of each element.
-fn gradients<const D: usize, const N: usize>(mesh: &Mesh<D, N>, displacement: &[[f64; D]]) -> Vec<Tensor<D>> {
-    (0..mesh.element_count()).map(|e| displacement_gradient(mesh, ElementId::new(e), displacement)).collect()
+fn gradients<const D: usize, const N: usize>(mesh: &Mesh, displacement: &[[f64; D]]) -> Vec<Tensor<D>> {
+    (0..mesh.element_count()).map(|e| displacement_gradient::<D, N>(mesh, ElementId::new(e), displacement)).collect()
 }
 
 #[cfg(test)]

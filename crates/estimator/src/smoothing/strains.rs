@@ -74,17 +74,17 @@ impl SmoothedStrains {
             |x| like.load(&x),
         );
         let mut smooth = [like.zero(); COMPONENTS];
-        for facet in mesh.cell_facets()[element.index()] {
+        for facet in mesh.facets_of::<N>()[element.index()] {
             let other = Smoothing::beyond(problem, element, facet);
             let beyond = elements[other.index()].volume;
-            let weight = smoothing.edge_weight(mesh.cells()[element.index()][0], volume + beyond);
+            let weight = smoothing.edge_weight(mesh.nodes_of::<N>()[element.index()][0], volume + beyond);
             let (mine, beyond) = (weight * volume, weight * beyond);
             for c in 0..COMPONENTS {
                 smooth[c] += own[c] * mine + like.load(&self.strains[other.index()][c]) * beyond;
             }
         }
         let material = problem.element_material()[element.index()];
-        for node in &mesh.cells()[element.index()] {
+        for node in &mesh.nodes_of::<N>()[element.index()] {
             let patch = &self.patches[smoothing.patch(*node, material)];
             for c in 0..COMPONENTS {
                 smooth[c] += like.load(&patch[c]);

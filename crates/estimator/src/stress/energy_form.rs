@@ -25,7 +25,7 @@ use nalgebra::Matrix2;
 use percute_core::ids::ElementId;
 use percute_core::material::LinearLaw;
 use percute_core::problem::Problem;
-use percute_core::simplex::Shape;
+use percute_core::simplex::{Shape, simplex};
 
 /// Numbers that make up a fluctuation of a triangle: two for each edge, then two for each node.
 const LOADS: usize = 12;
@@ -93,7 +93,7 @@ impl EnergyForms {
     ) -> EnergyForm<'_> {
         match self {
             Self::Bars => {
-                EnergyForm::Bar(BarStress::new(problem.mesh().simplex().signed_volume(points), problem.material(id)))
+                EnergyForm::Bar(BarStress::new(simplex::<D, N>().signed_volume(points), problem.material(id)))
             }
             Self::Triangles(forms) => EnergyForm::Triangle(forms.of(lane, &corners(points))),
         }

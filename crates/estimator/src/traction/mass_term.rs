@@ -47,7 +47,7 @@ mod tests {
     /// acceleration of the skew one.
     #[test]
     fn stars_sum_up_to_the_lumped_mass() {
-        let problem = Problem::builder(random_rectangle(0.05, 0.04, 4, 1).unwrap())
+        let problem = Problem::<2, 3>::builder(random_rectangle(0.05, 0.04, 4, 1).unwrap())
             .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 0.3).unwrap())
             .build()
             .unwrap();
@@ -70,7 +70,7 @@ mod tests {
         let mut sums = vec![[0.0; 2]; nodes];
         for (e, element) in elements.iter().enumerate() {
             let id = ElementId::new(e);
-            let (arms, w) = (arms(&mesh.cell_points(id)), element.gather(&lumped));
+            let (arms, w) = (arms(&mesh.corners::<2, 3>(id)), element.gather(&lumped));
             let mut symmetric = [[0.0; 2]; 2];
             let density = problem.material(id).density();
             add_lumping_stress(density, &arms, &w, &mut symmetric);

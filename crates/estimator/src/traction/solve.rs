@@ -344,7 +344,7 @@ impl<const D: usize> StarFields<D> {
             };
             let mut stress = hooke(law, &gradient);
             if split {
-                let arms = arms(&all.problem.mesh().cell_points(id));
+                let arms = arms(&all.problem.mesh().corners::<D, N>(id));
                 add_lumping_stress(law.density(), &arms, &self.lumped.of(like, local), &mut stress);
             }
             let mut stored = [[Lanes::ZERO; D]; D];

@@ -8,7 +8,7 @@ use hand::Bar;
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::simulate;
 use percute_core::material::Elastic;
-use percute_core::mesh::BarMesh;
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{BarProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
@@ -36,7 +36,7 @@ fn bar(elements: usize, courant: f64, fraction: f64) -> Bar {
 }
 
 fn problem(bar: &Bar) -> BarProblem {
-    Problem::builder(BarMesh::uniform_bar(bar.length, bar.elements).unwrap())
+    Problem::<1, 2>::builder(Mesh::uniform_bar(bar.length, bar.elements).unwrap())
         .material(Elastic::bar(bar.young, bar.density, bar.section).unwrap())
         .initial_velocity(Initial::Uniform([-bar.speed]))
         .obstacle(Obstacle::plane([-bar.gap], [1.0], 0.0, None).unwrap())

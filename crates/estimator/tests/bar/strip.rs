@@ -5,7 +5,7 @@ use percute_core::dynamics::simulate;
 use percute_core::history::History;
 use percute_core::load::Support;
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -31,10 +31,10 @@ fn bar(elements: usize) -> BarProblem {
 /// The same bar as a strip of `rows` rows of cells of height hy = aspect·hx.
 fn strip(elements: usize, rows: usize, aspect: f64) -> TriangleProblem {
     let height = aspect * MODE.length / elements as f64 * rows as f64;
-    let mesh = TriangleMesh::rectangle(MODE.length, height, elements, rows).unwrap();
-    let displacement = mesh.points().iter().map(|p| [MODE.displacement(p[0], 0.0), 0.0]).collect();
+    let mesh = Mesh::rectangle(MODE.length, height, elements, rows).unwrap();
+    let displacement = mesh.points_in::<2>().iter().map(|p| [MODE.displacement(p[0], 0.0), 0.0]).collect();
     let law = Elastic::plane_stress(MODE.young, 0.0, MODE.density, MODE.section / height).unwrap();
-    let mut builder = Problem::builder(mesh).material(law).initial_displacement(Initial::Nodal(displacement));
+    let mut builder = Problem::<2, 3>::builder(mesh).material(law).initial_displacement(Initial::Nodal(displacement));
     for group in ["left", "right"] {
         builder = builder.support(Support { group: group.into(), components: [true, false, false], velocity: None });
     }

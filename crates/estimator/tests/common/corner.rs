@@ -2,7 +2,7 @@
 
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_testkit::rotated;
 
@@ -38,7 +38,7 @@ impl Corner {
         let (sin, cos) = self.opening.to_radians().sin_cos();
         // At a right angle cos is 6e-17: the planes are exactly orthogonal only if it is 0.
         let cos = if self.opening == 90.0 { 0.0 } else { cos };
-        let mesh = TriangleMesh::rectangle(0.05, 0.04, self.cells[0], self.cells[1]).unwrap();
+        let mesh = Mesh::rectangle(0.05, 0.04, self.cells[0], self.cells[1]).unwrap();
         let mesh = mesh.mapped(|[x, y]| [x + y * cos, y * sin]).unwrap();
         let plane = |normal: [f64; 2], gap: f64, friction: f64, group: &str| {
             let normal = self.turned(normal);
@@ -56,7 +56,7 @@ impl Corner {
 
 /// A rectangle that is turned against the floor, whose wall leans back by 30°.
 pub(crate) fn open_corner(tilt: f64, speed: f64, cells: [usize; 2]) -> TriangleProblem {
-    let mesh = TriangleMesh::rectangle(0.05, 0.04, cells[0], cells[1]).unwrap();
+    let mesh = Mesh::rectangle(0.05, 0.04, cells[0], cells[1]).unwrap();
     let plane = |angle: f64, gap: f64, group: &str| {
         let normal = [(angle - tilt).cos(), (angle - tilt).sin()];
         Obstacle::plane(normal.map(|n| -gap * n), normal, 0.2, Some(group.to_string())).unwrap()

@@ -7,14 +7,14 @@ pub(crate) mod finer;
 use percute_core::contact::Obstacle;
 use percute_core::load::Support;
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
 use percute_exact::BarMode;
 
 /// The block of §7.2 of the paper: aluminium, 50 × 40 mm, μ = 0.2, plane stress, v = (400, −400)
 /// m/s, at `gap` (m) from a plane below it.
 pub(crate) fn block(cells: [usize; 2], gap: f64) -> TriangleProblem {
-    Problem::builder(TriangleMesh::rectangle(0.05, 0.04, cells[0], cells[1]).unwrap())
+    Problem::<2, 3>::builder(Mesh::rectangle(0.05, 0.04, cells[0], cells[1]).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([400.0, -400.0]))
         .obstacle(Obstacle::plane([0.0, -gap], [0.0, 1.0], 0.2, None).unwrap())
@@ -24,9 +24,9 @@ pub(crate) fn block(cells: [usize; 2], gap: f64) -> TriangleProblem {
 
 /// A bar of equal elements let go from its mode, with these ends fixed.
 pub(crate) fn bar_in_mode(mode: &BarMode, elements: usize, fixed: &[&str]) -> BarProblem {
-    let mesh = BarMesh::uniform_bar(mode.length, elements).unwrap();
-    let displacement = mesh.points().iter().map(|p| [mode.displacement(p[0], 0.0)]).collect();
-    let mut builder = Problem::builder(mesh)
+    let mesh = Mesh::uniform_bar(mode.length, elements).unwrap();
+    let displacement = mesh.points_in::<1>().iter().map(|p| [mode.displacement(p[0], 0.0)]).collect();
+    let mut builder = Problem::<1, 2>::builder(mesh)
         .material(Elastic::bar(mode.young, mode.density, mode.section).unwrap())
         .initial_displacement(Initial::Nodal(displacement));
     for group in fixed {

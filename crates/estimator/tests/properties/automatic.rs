@@ -3,14 +3,14 @@
 use crate::properties::bodies::{plane_below, steps, thrown};
 use crate::properties::estimating::{estimate, estimate_with_maps, history};
 use percute_core::history::History;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Options, Reconstruction, Request, Sampling};
 
 /// A block of so many columns that strikes a plane.
 fn block(columns: usize, tilt: f64) -> TriangleProblem {
-    let mesh = TriangleMesh::rectangle(0.05, 0.04, columns, columns * 4 / 5).unwrap();
+    let mesh = Mesh::rectangle(0.05, 0.04, columns, columns * 4 / 5).unwrap();
     let plane = plane_below(&mesh, tilt, 2e-4, 0.2, None);
     thrown(mesh, [400.0, -400.0], plane).build().unwrap()
 }

@@ -1,12 +1,13 @@
 //! Bodies and what acts on them.
 
+use percute_core::border::Vector;
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
+use percute_core::ids::ElementId;
 use percute_core::load::{BodyForce, Support, Table};
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, Mesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::problem::{BarProblem, Builder, Initial, Problem, TriangleProblem};
-use percute_core::simplex::{Element, Simplex};
 use percute_core::time::TimeGrid;
 use std::f64::consts::TAU;
 
@@ -16,21 +17,21 @@ pub(crate) fn aluminium() -> Elastic {
 }
 
 /// The plane with the normal turned by `tilt` (rad) from e_y, `gap` (m) from the nearest node.
-pub(crate) fn plane_below(mesh: &TriangleMesh, tilt: f64, gap: f64, friction: f64, group: Option<&str>) -> Obstacle<2> {
+pub(crate) fn plane_below(mesh: &Mesh, tilt: f64, gap: f64, friction: f64, group: Option<&str>) -> Obstacle<2> {
     let normal = [-tilt.sin(), tilt.cos()];
     let height = |p: &[f64; 2]| p[0] * normal[0] + p[1] * normal[1];
-    let lowest = mesh.points().iter().map(height).fold(f64::INFINITY, f64::min);
+    let lowest = mesh.points_in::<2>().iter().map(height).fold(f64::INFINITY, f64::min);
     Obstacle::plane(normal.map(|n| (lowest - gap) * n), normal, friction, group.map(String::from)).unwrap()
 }
 
 /// A body of aluminium with a velocity and a plane.
-pub(crate) fn thrown(mesh: TriangleMesh, velocity: [f64; 2], plane: Obstacle<2>) -> Builder<2, 3> {
+pub(crate) fn thrown(mesh: Mesh, velocity: [f64; 2], plane: Obstacle<2>) -> Builder<2, 3> {
     TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Uniform(velocity)).obstacle(plane)
 }
 
 /// A bar of aluminium that a body force presses on a plane at its start again and again.
-pub(crate) fn bouncing_bar(mesh: BarMesh) -> BarProblem {
-    Problem::builder(mesh)
+pub(crate) fn bouncing_bar(mesh: Mesh) -> BarProblem {
+    Problem::<1, 2>::builder(mesh)
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-20.0]))
         .body_force(gravity([-2e6]))
@@ -64,19 +65,13 @@ pub(crate) fn gravity<const D: usize>(g: [f64; D]) -> BodyForce {
 
 /// The same mesh with the elements whose centroid satisfies a condition in the group `first`, the
 /// others in `second`.
-pub(crate) fn in_two_groups<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
-    first: impl Fn([f64; D]) -> bool,
-) -> Mesh<D, N>
-where
-    Element<D, N>: Simplex<D, N>,
-{
-    let cells: Vec<_> = mesh.cells().iter().map(|c| c.map(|n| n.index())).collect();
-    let nodes = |f: &percute_core::ids::FacetId| mesh.facets()[f.index()].nodes.map(|n| n.index());
-    let facets = mesh.facet_groups().iter().map(|(name, f)| (name.clone(), f.iter().map(nodes).collect())).collect();
-    let centroid =
-        |c: &[usize; N]| std::array::from_fn(|d| c.map(|n| mesh.points()[n][d]).iter().sum::<f64>() / N as f64);
-    let (one, other) = (0..cells.len()).partition(|&e| first(centroid(&cells[e])));
-    let groups = [("first".to_string(), one), ("second".to_string(), other)].into();
-    Mesh::new(mesh.points().to_vec(), &cells, &facets, &groups).unwrap()
+pub(crate) fn in_two_groups(mesh: &Mesh, first: impl Fn(Vector) -> bool) -> Mesh {
+    let cells: Vec<_> = mesh.cell_rows().iter().map(|node| node.index()).collect();
+    let nodes = |f: &percute_core::ids::FacetId| mesh.facet(*f).nodes.iter().map(|node| node.index());
+    let facets = mesh.facet_groups().iter();
+    let facets = facets.map(|(name, f)| (name.clone(), f.iter().flat_map(nodes).collect())).collect();
+    let (one, other) = mesh.elements().partition::<Vec<_>, _>(|&e| first(mesh.centroid(e)));
+    let numbers = |of: Vec<ElementId>| of.into_iter().map(ElementId::index).collect();
+    let groups = [("first".to_string(), numbers(one)), ("second".to_string(), numbers(other))].into();
+    Mesh::from_rows(mesh.dimension(), mesh.points(), &cells, (&facets, &groups)).unwrap()
 }

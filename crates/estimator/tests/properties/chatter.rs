@@ -2,7 +2,7 @@
 use crate::properties::bodies::{aluminium, bouncing_bar, gravity, plane_below, steps, thrown};
 use crate::properties::estimating::check;
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, Problem};
 use percute_testkit::{disc, random_rectangle};
 
@@ -22,7 +22,7 @@ fn small_steps() {
 #[test]
 fn bounces() {
     let meshes = [
-        ("block", TriangleMesh::rectangle(0.05, 0.04, 4, 3).unwrap()),
+        ("block", Mesh::rectangle(0.05, 0.04, 4, 3).unwrap()),
         ("unstructured block", random_rectangle(0.05, 0.04, 4, 2).unwrap()),
         ("disc", disc(0.02, 0.008).unwrap()),
     ];
@@ -42,7 +42,7 @@ fn bounces() {
 fn slow_bodies() {
     for speed in [1e-2, 1e-4, 1e-6] {
         let mesh = random_rectangle(0.05, 0.04, 4, 5).unwrap();
-        let free = Problem::builder(mesh.clone()).material(aluminium()).build().unwrap();
+        let free = Problem::<2, 3>::builder(mesh.clone()).material(aluminium()).build().unwrap();
         let times = steps(&free, 0.3, 101);
         let plane = plane_below(&mesh, 0.0, 1.4 * speed * times.step(0), 0.2, None);
         let problem = thrown(mesh, [0.0, -speed], plane).build().unwrap();
@@ -54,10 +54,10 @@ fn slow_bodies() {
 #[test]
 fn thin_strips() {
     for nx in [3, 9] {
-        let mesh = TriangleMesh::rectangle(0.05, 0.002, nx, 1).unwrap();
+        let mesh = Mesh::rectangle(0.05, 0.002, nx, 1).unwrap();
         let plane = plane_below(&mesh, 0.01, 1e-4, 0.5, None);
         let soft = Elastic::plane_stress(1e7, 0.45, 1200.0, 0.01).unwrap();
-        let problem = Problem::builder(mesh)
+        let problem = Problem::<2, 3>::builder(mesh)
             .material(soft)
             .initial_velocity(Initial::Uniform([3.0, -5.0]))
             .obstacle(plane)
@@ -74,7 +74,7 @@ fn a_bouncing_bar() {
         let points: Vec<_> = (0..=12).map(|i| [0.1 * (f64::from(i) / 12.0).powf(1.3)]).collect();
         let cells: Vec<_> = (0..12).map(|e| [e, e + 1]).collect();
         let groups = [("start".to_string(), vec![[0]])].into();
-        let mesh = BarMesh::new(points, &cells, &groups, &Default::default()).unwrap();
+        let mesh = Mesh::new(points, &cells, &groups, &Default::default()).unwrap();
         let problem = bouncing_bar(mesh);
         assert!(check(&format!("bar, {courant}"), &problem, &steps(&problem, courant, 307)) > 3);
     }

@@ -4,7 +4,7 @@ use crate::common::beside::run;
 use crate::properties::bodies::{bouncing_bar, gravity, plane_below, steps, thrown};
 use crate::properties::estimating::{estimate, estimate_with_maps, history, reactions};
 use percute_core::history::Discard;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -117,7 +117,7 @@ fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, ti
 
 #[test]
 fn bar() {
-    let problem = bouncing_bar(BarMesh::uniform_bar(0.1, 40).unwrap());
+    let problem = bouncing_bar(Mesh::uniform_bar(0.1, 40).unwrap());
     check("bar", &problem, &steps(&problem, 0.9, 200));
 }
 
@@ -134,7 +134,7 @@ fn block() {
 /// More elements than two parts, so that the work goes from part to part.
 #[test]
 fn parts() {
-    let mesh = TriangleMesh::rectangle(0.05, 0.08, 48, 200).unwrap();
+    let mesh = Mesh::rectangle(0.05, 0.08, 48, 200).unwrap();
     assert!(mesh.element_count() > 2 * 8192);
     let plane = plane_below(&mesh, 0.01, 1e-5, 0.2, None);
     let problem = thrown(mesh, [400.0, -400.0], plane).build().unwrap();

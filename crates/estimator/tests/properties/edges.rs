@@ -6,7 +6,7 @@ use crate::properties::estimating::{all_choices, assert_admissible, check, estim
 use percute_core::contact::Obstacle;
 use percute_core::history::History;
 use percute_core::load::{Support, Table};
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::observer::Progress;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -14,7 +14,7 @@ use percute_estimator::{Estimate, Options, Reconstruction, Request};
 use percute_testkit::{random_rectangle, rotated};
 use std::ops::ControlFlow;
 
-fn block() -> TriangleMesh {
+fn block() -> Mesh {
     random_rectangle(0.05, 0.04, 5, 1).unwrap()
 }
 
@@ -28,7 +28,7 @@ fn impact() -> TriangleProblem {
 /// touches; `corrected` concentrates it at the node and pays for the edges beside it, which are off the plane.
 #[test]
 fn a_node_that_touches_alone() {
-    let mesh = rotated(&TriangleMesh::rectangle(0.04, 0.04, 5, 5).unwrap(), std::f64::consts::FRAC_PI_4).unwrap();
+    let mesh = rotated(&Mesh::rectangle(0.04, 0.04, 5, 5).unwrap(), std::f64::consts::FRAC_PI_4).unwrap();
     let plane = plane_below(&mesh, 0.0, 6e-4, 0.2, None);
     let problem = thrown(mesh, [0.0, -300.0], plane).build().unwrap();
     let times = steps(&problem, 0.9, 12);
@@ -85,8 +85,8 @@ fn a_single_step() {
 
 #[test]
 fn a_single_element() {
-    let mesh = BarMesh::uniform_bar(0.1, 1).unwrap();
-    let problem = Problem::builder(mesh)
+    let mesh = Mesh::uniform_bar(0.1, 1).unwrap();
+    let problem = Problem::<1, 2>::builder(mesh)
         .material(percute_core::material::Elastic::bar(70e9, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([-10.0]))
         .obstacle(Obstacle::plane([-2e-4], [1.0], 0.0, None).unwrap())

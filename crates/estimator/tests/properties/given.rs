@@ -105,7 +105,7 @@ fn other_velocities_are_admissible_and_worse() {
         let shifted = |n: usize, v: &Field| -> Field {
             let wave = 30.0 * (PI * times.instants()[n] / times.end()).sin();
             let place = |p: &[f64; 2]| [wave * (60.0 * p[1]).cos(), wave * (60.0 * p[0]).sin()];
-            v.iter().zip(problem.mesh().points().iter().flat_map(place)).map(|(v, place)| v + place).collect()
+            v.iter().zip(problem.mesh().points_in::<2>().iter().flat_map(place)).map(|(v, place)| v + place).collect()
         };
         let changes: [(&str, Change<'_>); 2] = [("scaled", &scaled), ("shifted", &shifted)];
         for (what, change) in changes {

@@ -6,7 +6,7 @@ use percute_core::border::vectors;
 use percute_core::history::History;
 use percute_core::load::{Profile, Table, Traction};
 use percute_core::material::Law;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{
@@ -77,7 +77,7 @@ fn elements_add_up_at_every_instant() {
 
 #[test]
 fn elements_of_a_bar_add_up() {
-    let problem = bouncing_bar(BarMesh::uniform_bar(0.1, 20).unwrap());
+    let problem = bouncing_bar(Mesh::uniform_bar(0.1, 20).unwrap());
     check(&problem, &steps(&problem, 0.9, 120));
 }
 
@@ -92,7 +92,7 @@ fn accumulated_is_the_integral() {
     let mut by_hand = vec![0.0; problem.mesh().element_count()];
     // Away from contact both sides of an instant are one.
     let near: Vec<_> = problem.surface().nodes().iter().map(|c| c.node).collect();
-    let far = |e: &usize| problem.mesh().cells()[*e].iter().all(|n| !near.contains(n));
+    let far = |e: &usize| problem.mesh().nodes_of::<3>()[*e].iter().all(|n| !near.contains(n));
     for pair in estimate.maps.windows(2) {
         let (before, after) = (pair[0].total(), pair[1].total());
         for e in (0..by_hand.len()).filter(far) {
@@ -155,9 +155,9 @@ fn a_uniform_stress_is_reproduced() {
     ];
     let mesh = random_rectangle(0.05, 0.04, 5, 3).unwrap();
     let product = |m: [[f64; 2]; 2], x: [f64; 2]| [0, 1].map(|a| m[a][0] * x[0] + m[a][1] * x[1]);
-    let displacement: Vec<_> = mesh.points().iter().map(|p| product(strain, *p)).collect();
+    let displacement: Vec<_> = mesh.points_in::<2>().iter().map(|p| product(strain, *p)).collect();
     let mut builder =
-        Problem::builder(mesh).material(aluminium()).initial_displacement(Initial::Nodal(displacement.clone()));
+        Problem::<2, 3>::builder(mesh).material(aluminium()).initial_displacement(Initial::Nodal(displacement.clone()));
     for (group, normal) in [("left", [-1.0, 0.0]), ("right", [1.0, 0.0]), ("bottom", [0.0, -1.0]), ("top", [0.0, 1.0])]
     {
         let value = Table::constant(product(given, normal));
@@ -192,7 +192,7 @@ fn accelerations_balance_the_loads() {
     let mesh = random_rectangle(0.05, 0.04, 5, 4).unwrap();
     let end = 1e-5;
     let value = Table::new(vec![0.0, end], vec![[1e8, 0.0], [3e8, -2e8]]).unwrap();
-    let problem = Problem::builder(mesh)
+    let problem = Problem::<2, 3>::builder(mesh)
         .material(aluminium())
         .traction(Traction { group: "top".to_string(), value: value.clone(), profile: Profile::UNIFORM })
         .body_force(gravity([2e6, -1e6]))
@@ -241,7 +241,7 @@ fn impossible_requests_are_refused() {
 /// More bytes than there are addresses, 2⁴⁷: 9 numbers of each of 1e6 elements at 4e6 steps are 2.9e14.
 #[test]
 fn more_maps_than_memory_are_refused() {
-    let problem = Problem::builder(BarMesh::uniform_bar(1.0, 1_000_000).unwrap())
+    let problem = Problem::<1, 2>::builder(Mesh::uniform_bar(1.0, 1_000_000).unwrap())
         .material(percute_core::material::Elastic::bar(1.0, 1.0, 1.0).unwrap())
         .build()
         .unwrap();
@@ -296,8 +296,8 @@ fn steps_are_spread_evenly() {
     let uneven = TimeGrid::from_steps(&[1.0, 0.25, 0.25, 0.25, 0.25]).unwrap();
     assert_eq!(Request::evenly(&uneven, 3, 1).steps, [0, 1, 5]);
     assert_eq!(Request::evenly(&uneven, 5, 1).steps, [0, 1, 3, 5]);
-    let mesh = TriangleMesh::rectangle(1.0, 1.0, 1, 1).unwrap();
-    let problem = Problem::builder(mesh).material(aluminium()).build().unwrap();
+    let mesh = Mesh::rectangle(1.0, 1.0, 1, 1).unwrap();
+    let problem = Problem::<2, 3>::builder(mesh).material(aluminium()).build().unwrap();
     for (count, every) in [(1, 1), (3, 1), (7, 3), (50, 7), (99, 1), (1000, 13)] {
         let request = Request::evenly(&times, count, every);
         let options = Options { every: Sampling::Every(every), ..Options::default() };

@@ -5,7 +5,7 @@ use crate::properties::estimating::{all_choices, assert_admissible, check, estim
 use percute_core::border::vectors;
 use percute_core::contact::{Interface, Obstacle};
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::problem::{BarProblem, Builder, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Options, Request, Sampling};
@@ -14,14 +14,14 @@ use percute_testkit::{random_rectangle, rotated, translated, upside_down};
 const GAP: f64 = 50e-6;
 
 /// The mesh with the height of each point changed.
-fn raised(mesh: &TriangleMesh, by: impl Fn(f64) -> f64) -> TriangleMesh {
+fn raised(mesh: &Mesh, by: impl Fn(f64) -> f64) -> Mesh {
     mesh.mapped(|p| [p[0], p[1] + by(p[0])]).unwrap()
 }
 
 /// A block and its mirror image below it, with a velocity (m/s) and a material for each; `raise` changes the heights of
 /// the upper one, from the lower edge on. Turned by an angle (rad).
 struct Blocks {
-    block: TriangleMesh,
+    block: Mesh,
     raise: fn(f64) -> f64,
     velocities: [[f64; 2]; 2],
     friction: f64,
@@ -32,7 +32,7 @@ struct Blocks {
 impl Blocks {
     fn head_on() -> Self {
         Self {
-            block: TriangleMesh::rectangle(0.04, 0.025, 6, 4).unwrap(),
+            block: Mesh::rectangle(0.04, 0.025, 6, 4).unwrap(),
             raise: |_| 0.0,
             velocities: [[0.0, -20.0], [0.0, 20.0]],
             friction: 0.0,
@@ -41,10 +41,10 @@ impl Blocks {
         }
     }
 
-    fn mesh(&self) -> TriangleMesh {
+    fn mesh(&self) -> Mesh {
         let upper = translated(&raised(&self.block, self.raise), [0.0, GAP]).unwrap();
         let lower = translated(&upside_down(&self.block).unwrap(), [0.0, -GAP]).unwrap();
-        rotated(&TriangleMesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap(), self.angle).unwrap()
+        rotated(&Mesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap(), self.angle).unwrap()
     }
 
     fn builder(&self) -> Builder<2, 3> {
@@ -80,7 +80,7 @@ fn mirrored_blocks_have_twice_the_error_of_one() {
         let block = raised(&blocks.block, raise);
         let upper = translated(&block, [0.0, GAP]).unwrap();
         let lower = translated(&upside_down(&block).unwrap(), [0.0, -GAP]).unwrap();
-        let mesh = TriangleMesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap();
+        let mesh = Mesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap();
         let half = upper.node_count();
         let velocity = (0..mesh.node_count()).map(|i| blocks.velocities[usize::from(i >= half)]).collect();
         let both = TriangleProblem::builder(mesh)
@@ -215,10 +215,10 @@ fn a_heavy_body_is_a_rigid_plane() {
 fn bars_are_admissible() {
     for (lengths, sections) in [([0.3, 0.3], [1e-4, 1e-4]), ([0.3, 0.6], [1e-4, 0.25e-4])] {
         let bar = |start: f64, length: f64| {
-            BarMesh::uniform_bar(length, (length / 0.015).round() as usize).unwrap().mapped(|p| [p[0] + start]).unwrap()
+            Mesh::uniform_bar(length, (length / 0.015).round() as usize).unwrap().mapped(|p| [p[0] + start]).unwrap()
         };
         let (left, right) = (bar(-lengths[0], lengths[0]), bar(1e-4, lengths[1]));
-        let mesh = BarMesh::joined(&[("left", &left), ("right", &right)]).unwrap();
+        let mesh = Mesh::joined(&[("left", &left), ("right", &right)]).unwrap();
         let first = left.node_count();
         let velocity = (0..mesh.node_count()).map(|i| [if i < first { 10.0 } else { 0.0 }]).collect();
         let law = |section: f64| Elastic::bar(70e9, 2700.0, section).unwrap();

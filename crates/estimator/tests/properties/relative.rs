@@ -4,7 +4,7 @@ use crate::properties::bodies::{aluminium, plane_below, thrown};
 use crate::properties::estimating::{all_choices, estimate, history};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
-use percute_core::mesh::{ElementGroups, FacetGroups, TriangleMesh};
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{ErrorMeasures, Options, Sampling};
@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1e-8;
 /// by 0.5 % from 5 steps of flight to 45, and by another 0.06 % to 100.
 const OF_FLIGHT: f64 = 0.01;
 
-fn block() -> TriangleMesh {
+fn block() -> Mesh {
     random_rectangle(0.05, 0.04, 6, 4).unwrap()
 }
 
@@ -74,14 +74,15 @@ fn a_body_that_flies_by_changes_no_relative_error() {
             if !with {
                 return thrown(mesh, [0.0, -20.0], plane).build().unwrap();
             }
-            let points = far.points().iter().map(|[x, y]| [x + 1.0, y + 1.0]).collect();
-            let cells: Vec<_> = far.cells().iter().map(|cell| cell.map(|node| node.index())).collect();
-            let far = TriangleMesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new()).unwrap();
-            let joined = TriangleMesh::joined(&[("near", &mesh), ("far", &far)]).unwrap();
-            let velocity = joined.points().iter().map(|[x, _]| if *x > 0.5 { [600.0, 50.0] } else { [0.0, -20.0] });
+            let points = far.points_in::<2>().iter().map(|[x, y]| [x + 1.0, y + 1.0]).collect();
+            let cells: Vec<_> = far.nodes_of::<3>().iter().map(|cell| cell.map(|node| node.index())).collect();
+            let far = Mesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new()).unwrap();
+            let joined = Mesh::joined(&[("near", &mesh), ("far", &far)]).unwrap();
+            let velocity =
+                joined.points_in::<2>().iter().map(|[x, _]| if *x > 0.5 { [600.0, 50.0] } else { [0.0, -20.0] });
             let plane =
                 Obstacle::plane(*plane.as_plane().unwrap().point(), [0.0, 1.0], 0.0, Some("near.bottom".into()));
-            Problem::builder(joined.clone())
+            Problem::<2, 3>::builder(joined.clone())
                 .material(aluminium())
                 .initial_velocity(Initial::Nodal(velocity.collect()))
                 .obstacle(plane.unwrap())

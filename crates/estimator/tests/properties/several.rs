@@ -3,7 +3,7 @@
 use crate::properties::bodies::{aluminium, steps};
 use crate::properties::estimating::{assert_admissible, estimate, history};
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Between, Contact, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Options, Sampling};
@@ -34,7 +34,7 @@ impl Three {
     fn problem(&self) -> TriangleProblem {
         let width = 0.02 - 0.5 * SLIT;
         let block = |k: usize, width: f64, at: [f64; 2]| {
-            let mesh = TriangleMesh::rectangle(width, HEIGHT, self.cells[k][0], self.cells[k][1]).unwrap();
+            let mesh = Mesh::rectangle(width, HEIGHT, self.cells[k][0], self.cells[k][1]).unwrap();
             translated(&mesh, at).unwrap()
         };
         let blocks = [
@@ -42,13 +42,13 @@ impl Three {
             block(1, width + self.aside, [0.0, 0.0]),
             block(2, width - self.aside, [width + self.aside + SLIT, 0.0]),
         ];
-        let named: Vec<(&str, &TriangleMesh)> = ["upper", "left", "right"].into_iter().zip(&blocks).collect();
+        let named: Vec<(&str, &Mesh)> = ["upper", "left", "right"].into_iter().zip(&blocks).collect();
         let velocity = (0..3).flat_map(|k| vec![self.velocities[k]; blocks[k].node_count()]).collect();
         let contact = |below: &str| {
             let groups = Between::Groups(["upper.bottom".to_string(), below.to_string()]);
             Contact::new(2, groups, self.friction, None).unwrap()
         };
-        TriangleProblem::builder(TriangleMesh::joined(&named).unwrap())
+        TriangleProblem::builder(Mesh::joined(&named).unwrap())
             .material_of("upper", aluminium())
             .material_of("left", aluminium())
             .material_of("right", self.right)

@@ -4,7 +4,7 @@ use crate::properties::bodies::{aluminium, plane_below, steps, swinging, thrown}
 use crate::properties::estimating::{assert_admissible, check, estimate, history, reactions};
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, Problem};
 use percute_estimator::Options;
 use percute_testkit::{Random, disc, random_rectangle, rotated};
@@ -13,7 +13,7 @@ use percute_testkit::{Random, disc, random_rectangle, rotated};
 /// 5 µs at most: nearer starts are refused.
 const GAP: f64 = 6e-4;
 
-fn impact(what: &str, mesh: TriangleMesh, tilt: f64, friction: f64, count: usize) {
+fn impact(what: &str, mesh: Mesh, tilt: f64, friction: f64, count: usize) {
     let plane = plane_below(&mesh, tilt, GAP, friction, None);
     // 400 m/s into the plane and as fast along it.
     let (sin, cos) = tilt.sin_cos();
@@ -27,7 +27,7 @@ fn impact(what: &str, mesh: TriangleMesh, tilt: f64, friction: f64, count: usize
 fn structured_blocks() {
     for (nx, ny) in [(1, 1), (2, 1), (5, 4), (10, 8)] {
         for friction in [0.0, 0.2, 2.0] {
-            let mesh = TriangleMesh::rectangle(0.05, 0.04, nx, ny).unwrap();
+            let mesh = Mesh::rectangle(0.05, 0.04, nx, ny).unwrap();
             impact(&format!("{nx} × {ny}, μ = {friction}"), mesh, 0.0, friction, 37);
         }
     }
@@ -67,9 +67,9 @@ fn almost_incompressible_blocks() {
     for aspect in [1.0, 1e1, 1e2, 1e3, 1e4] {
         for ratio in [0.3, 0.49, 0.4999, 0.499_99, 0.499_999, 0.499_999_99] {
             for tilt in [0.0, 0.1_f64] {
-                let mesh = TriangleMesh::rectangle(0.01 * aspect, 0.0075, 4, 3).unwrap();
+                let mesh = Mesh::rectangle(0.01 * aspect, 0.0075, 4, 3).unwrap();
                 let build = |plane: Option<Obstacle<2>>| {
-                    let builder = Problem::builder(mesh.clone())
+                    let builder = Problem::<2, 3>::builder(mesh.clone())
                         .material(Elastic::plane_strain(70e9, ratio, 2700.0, 1.0).unwrap())
                         .initial_velocity(Initial::Uniform([4.0, -4.0]));
                     plane.into_iter().fold(builder, percute_core::problem::Builder::obstacle).build().unwrap()
@@ -108,7 +108,8 @@ fn steps_that_change_all_the_time() {
 #[test]
 fn initial_fields() {
     let mesh = random_rectangle(0.05, 0.04, 6, 11).unwrap();
-    let field = |f: &mut dyn FnMut(&[f64; 2]) -> [f64; 2]| Initial::Nodal(mesh.points().iter().map(f).collect());
+    let field =
+        |f: &mut dyn FnMut(&[f64; 2]) -> [f64; 2]| Initial::Nodal(mesh.points_in::<2>().iter().map(f).collect());
     let mut random = Random::new(5);
     let fields = [
         ("turning", field(&mut |p| [-8e3 * (p[1] - 0.02), 8e3 * (p[0] - 0.025) - 200.0])),
@@ -117,7 +118,7 @@ fn initial_fields() {
     ];
     for (what, velocity) in fields {
         for prestrain in [0.0, 1e-3] {
-            let problem = Problem::builder(mesh.clone())
+            let problem = Problem::<2, 3>::builder(mesh.clone())
                 .material(aluminium())
                 .initial_velocity(velocity.clone())
                 .initial_displacement(field(&mut |p| [prestrain * p[0] * p[1] / 0.05, -prestrain * p[0]]))

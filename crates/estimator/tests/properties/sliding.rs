@@ -5,7 +5,7 @@ use crate::properties::estimating::{assert_admissible, estimate, estimate_with_m
 use percute_core::border::vectors;
 use percute_core::contact::{Interface, Side};
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{EstimateError, Estimator, Options, Reconstruction, Request, Sampling, SurfaceEstimate};
@@ -46,13 +46,12 @@ impl Blocks {
         }
     }
 
-    fn mesh(&self) -> TriangleMesh {
-        let block =
-            |k: usize| TriangleMesh::rectangle(self.widths[k], HEIGHT, self.cells[k][0], self.cells[k][1]).unwrap();
+    fn mesh(&self) -> Mesh {
+        let block = |k: usize| Mesh::rectangle(self.widths[k], HEIGHT, self.cells[k][0], self.cells[k][1]).unwrap();
         let upper = rotated(&block(0), self.tilt).unwrap();
-        let low = upper.points().iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
+        let low = upper.points_in::<2>().iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
         let upper = translated(&upper, [self.aside, HEIGHT + GAP - low]).unwrap();
-        let both = TriangleMesh::joined(&[("upper", &upper), ("lower", &block(1))]).unwrap();
+        let both = Mesh::joined(&[("upper", &upper), ("lower", &block(1))]).unwrap();
         rotated(&both, self.angle).unwrap()
     }
 
@@ -86,8 +85,8 @@ fn steel() -> Elastic {
 fn on_matching_surfaces_multipliers_are_pairs() {
     let strain = Elastic::plane_strain(70e9, 0.3, 2700.0, 2.0).unwrap();
     for material in [aluminium(), strain] {
-        let block = translated(&TriangleMesh::rectangle(0.04, HEIGHT, 10, 8).unwrap(), [0.0, GAP]).unwrap();
-        let mesh = TriangleMesh::joined(&[("upper", &block), ("lower", &upside_down(&block).unwrap())]).unwrap();
+        let block = translated(&Mesh::rectangle(0.04, HEIGHT, 10, 8).unwrap(), [0.0, GAP]).unwrap();
+        let mesh = Mesh::joined(&[("upper", &block), ("lower", &upside_down(&block).unwrap())]).unwrap();
         let half = block.node_count();
         let velocity: Vec<_> = (0..2 * half).map(|node| [0.0, if node < half { -20.0 } else { 20.0 }]).collect();
         let between = |interface: Interface| {
@@ -235,7 +234,7 @@ fn the_frame_and_the_order_do_not_matter() {
 
 /// A regular polygon of ten sides around the origin in three rings, with one node at this angle (rad). The group `tip`
 /// has both edges at that node.
-fn decagon(radius: f64, angle: f64) -> TriangleMesh {
+fn decagon(radius: f64, angle: f64) -> Mesh {
     const SIDES: usize = 10;
     let node = |ring: usize, side: usize| 1 + (ring - 1) * SIDES + side % SIDES;
     let (mut points, mut cells) = (vec![[0.0; 2]], Vec::new());
@@ -253,14 +252,14 @@ fn decagon(radius: f64, angle: f64) -> TriangleMesh {
         }
     }
     let tip = [[node(3, SIDES - 1), node(3, 0)], [node(3, 0), node(3, 1)]];
-    TriangleMesh::new(points, &cells, &[("tip".to_string(), tip.to_vec())].into(), &BTreeMap::new()).unwrap()
+    Mesh::new(points, &cells, &[("tip".to_string(), tip.to_vec())].into(), &BTreeMap::new()).unwrap()
 }
 
 /// Estimates of a body that falls on another one agree with those of its mirror image and of a turned one. The groups
 /// `tip` and `top` may touch.
-fn check_images(name: &str, [upper, lower]: [&TriangleMesh; 2], [tip, top]: [&str; 2], count: usize) {
-    let mesh = TriangleMesh::joined(&[("upper", upper), ("lower", lower)]).unwrap();
-    let problem = |mesh: TriangleMesh, down: [f64; 2]| {
+fn check_images(name: &str, [upper, lower]: [&Mesh; 2], [tip, top]: [&str; 2], count: usize) {
+    let mesh = Mesh::joined(&[("upper", upper), ("lower", lower)]).unwrap();
+    let problem = |mesh: Mesh, down: [f64; 2]| {
         let velocity = |node: usize| if node < upper.node_count() { down.map(|part| 20.0 * part) } else { [0.0; 2] };
         TriangleProblem::builder(mesh.clone())
             .material(aluminium())
@@ -296,10 +295,10 @@ fn coaxial_polygons_have_images() {
 /// differed by up to 2 % between images.
 #[test]
 fn any_place_on_an_edge_has_images() {
-    let plate = TriangleMesh::rectangle(0.04, 0.02, 8, 4).unwrap();
+    let plate = Mesh::rectangle(0.04, 0.02, 8, 4).unwrap();
     for part in [0.5, 0.5001, 0.4999, 0.25, 1.0 / 64.0, 1.0 / 128.0] {
-        let block = |width: f64, cells: usize| TriangleMesh::rectangle(width, 0.01, cells, 4).unwrap();
-        let at = |mesh: &TriangleMesh, x: f64| translated(mesh, [x + 0.005 * part, 0.02001]).unwrap();
+        let block = |width: f64, cells: usize| Mesh::rectangle(width, 0.01, cells, 4).unwrap();
+        let at = |mesh: &Mesh, x: f64| translated(mesh, [x + 0.005 * part, 0.02001]).unwrap();
         let roof = block(0.02, 4).mapped(|p| [p[0], p[1] + 0.1 * (p[0] - 0.01).abs() * (1.0 - p[1] / 0.01)]).unwrap();
         for (name, upper) in [("roof", at(&roof, 0.005)), ("corner", at(&block(0.015, 6), 0.01))] {
             check_images(&format!("{name} at {part}"), [&upper, &plate], ["upper.bottom", "lower.top"], 20);

@@ -2,7 +2,7 @@
 
 use crate::properties::bodies::{aluminium, bouncing_bar, plane_below, steps, thrown};
 use crate::properties::estimating::{estimate, history};
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_estimator::{Ablation, Estimate, Options, Reconstruction, Sampling, Separation};
 use percute_testkit::random_rectangle;
@@ -32,7 +32,7 @@ fn check(what: &str, estimate: &Estimate) {
 
 #[test]
 fn they_add_up_to_the_error() {
-    let bar = bouncing_bar(BarMesh::uniform_bar(0.1, 20).unwrap());
+    let bar = bouncing_bar(Mesh::uniform_bar(0.1, 20).unwrap());
     let of_bar = history(&bar, &steps(&bar, 0.9, 200));
     for every in [1, 4] {
         let options = Options { every: Sampling::Every(every), threads: Some(1), ..Options::default() };
@@ -62,10 +62,13 @@ fn they_need_an_auxiliary_solution() {
 /// Without contact, nothing comes from the surface.
 #[test]
 fn a_free_body_has_neither_surface_nor_front() {
-    let mesh = TriangleMesh::rectangle(1.0, 1.0, 6, 6).unwrap();
-    let velocity = mesh.points().iter().map(|[x, y]| [(3.0 * x).cos() * (3.0 * y).sin(), x * y]).collect();
-    let problem =
-        Problem::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity)).build().unwrap();
+    let mesh = Mesh::rectangle(1.0, 1.0, 6, 6).unwrap();
+    let velocity = mesh.points_in::<2>().iter().map(|[x, y]| [(3.0 * x).cos() * (3.0 * y).sin(), x * y]).collect();
+    let problem = Problem::<2, 3>::builder(mesh)
+        .material(aluminium())
+        .initial_velocity(Initial::Nodal(velocity))
+        .build()
+        .unwrap();
     let estimate = estimate(&problem, &history(&problem, &steps(&problem, 0.9, 40)), Options::default());
     check("free", &estimate);
     let Separation { mean, at_sup, .. } = *separation(&estimate);
@@ -76,7 +79,7 @@ fn a_free_body_has_neither_surface_nor_front() {
 /// An auxiliary solution that takes the steps of the simulation differs by its contact forces alone.
 #[test]
 fn dispersion_is_that_of_equal_forces() {
-    let (block, bar) = (block(0.2), bouncing_bar(BarMesh::uniform_bar(0.1, 20).unwrap()));
+    let (block, bar) = (block(0.2), bouncing_bar(Mesh::uniform_bar(0.1, 20).unwrap()));
     let options = Options { ablation: Ablation::Correction, ..Options::default() };
     let of_block = estimate(&block, &history(&block, &steps(&block, 0.4, 121)), options);
     let of_bar = estimate(&bar, &history(&bar, &steps(&bar, 0.3, 200)), options);

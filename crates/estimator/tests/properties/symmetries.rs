@@ -10,7 +10,7 @@ use percute_core::contact::Obstacle;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::load::{Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
-use percute_core::mesh::{Numbering, TriangleMesh};
+use percute_core::mesh::{Mesh, Numbering};
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::strategy::{angle, rectangle};
@@ -26,7 +26,7 @@ fn few() -> ProptestConfig {
 /// A block above a rough plane, pulled on top or driven there and pulled at its right.
 #[derive(Clone, Debug)]
 struct Throw {
-    mesh: TriangleMesh,
+    mesh: Mesh,
     material: Elastic,
     velocity: [f64; 2],
     friction: f64,
@@ -37,8 +37,8 @@ struct Throw {
 }
 
 impl Throw {
-    fn new(mesh: TriangleMesh, along: f64, speed: f64, friction: f64, driven: bool) -> Self {
-        let free = Problem::builder(mesh.clone()).material(aluminium()).build().unwrap();
+    fn new(mesh: Mesh, along: f64, speed: f64, friction: f64, driven: bool) -> Self {
+        let free = Problem::<2, 3>::builder(mesh.clone()).material(aluminium()).build().unwrap();
         let times = steps(&free, 0.85, 50);
         let (velocity, gap) = ([along, -speed], 2.4 * speed * times.step(0));
         // Some 1 % of the stress of the impact, ρ c v.
@@ -52,7 +52,7 @@ impl Throw {
         let value = vec![map([self.pull, 1.5 * self.pull]), map([-self.pull, 0.5 * self.pull])];
         let value = Table::new(vec![0.0, self.times.end()], value).unwrap();
         let bottom = Some("bottom".to_string());
-        let builder = Problem::builder(self.mesh.clone())
+        let builder = Problem::<2, 3>::builder(self.mesh.clone())
             .material(self.material)
             .initial_velocity(Initial::Uniform(map(self.velocity)))
             .obstacle(Obstacle::plane(map([0.0, -self.gap]), map([0.0, 1.0]), self.friction, bottom).unwrap());
@@ -210,11 +210,11 @@ proptest! {
 #[test]
 fn a_symmetric_disc() {
     for speed in [4.0, 100.0] {
-        let mesh = TriangleMesh::disc(0.025, 4).unwrap().refined().unwrap();
-        let times = steps(&Problem::builder(mesh.clone()).material(aluminium()).build().unwrap(), 0.85, 100);
+        let mesh = Mesh::disc(0.025, 4).unwrap().refined().unwrap();
+        let times = steps(&Problem::<2, 3>::builder(mesh.clone()).material(aluminium()).build().unwrap(), 0.85, 100);
         let gap = 2.4 * speed * times.step(0);
-        let problem = |mesh: TriangleMesh, map: &dyn Fn([f64; 2]) -> [f64; 2]| {
-            Problem::builder(mesh)
+        let problem = |mesh: Mesh, map: &dyn Fn([f64; 2]) -> [f64; 2]| {
+            Problem::<2, 3>::builder(mesh)
                 .material(aluminium())
                 .initial_velocity(Initial::Uniform(map([0.0, -speed])))
                 .obstacle(Obstacle::plane(map([0.0, -0.025 - gap]), map([0.0, 1.0]), 0.2, None).unwrap())

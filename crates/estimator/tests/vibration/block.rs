@@ -5,7 +5,7 @@ use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::ids::ElementId;
 use percute_core::load::Support;
 use percute_core::material::{Elastic, Law};
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -34,10 +34,10 @@ fn mode(wave: Wave) -> BlockMode {
 }
 
 fn problem(mode: &BlockMode, cells: usize) -> TriangleProblem {
-    let mesh = TriangleMesh::rectangle(SIDES[0], SIDES[1], 5 * cells, 4 * cells).unwrap();
-    let displacement = mesh.points().iter().map(|p| mode.displacement(*p, 0.0)).collect();
+    let mesh = Mesh::rectangle(SIDES[0], SIDES[1], 5 * cells, 4 * cells).unwrap();
+    let displacement = mesh.points_in::<2>().iter().map(|p| mode.displacement(*p, 0.0)).collect();
     let law = Elastic::plane_stress(YOUNG, POISSON, mode.density, mode.thickness).unwrap();
-    let mut builder = Problem::builder(mesh).material(law).initial_displacement(Initial::Nodal(displacement));
+    let mut builder = Problem::<2, 3>::builder(mesh).material(law).initial_displacement(Initial::Nodal(displacement));
     for (group, components) in
         [("left", [true, false]), ("right", [true, false]), ("bottom", [false, true]), ("top", [false, true])]
     {
@@ -63,8 +63,8 @@ fn square(problem: &TriangleProblem, exact: impl Fn([f64; 2]) -> Exact, u: &[[f6
     let mesh = problem.mesh();
     let mut sum = 0.0;
     for e in (0..mesh.element_count()).map(ElementId::new) {
-        let (law, geometry, nodes) = (problem.material(e), mesh.cell_geometry(e), mesh.cells()[e.index()]);
-        let (points, v) = (mesh.cell_points(e), nodes.map(|n| v[n.index()]));
+        let (law, geometry, nodes) = (problem.material(e), mesh.geometry::<2, 3>(e), mesh.nodes_of::<3>()[e.index()]);
+        let (points, v) = (mesh.corners::<2, 3>(e), nodes.map(|n| v[n.index()]));
         let mut gradient = [[0.0; 2]; 2];
         for (node, shape) in nodes.iter().zip(&geometry.gradients) {
             (0..4).for_each(|k| gradient[k / 2][k % 2] += u[node.index()][k / 2] * shape[k % 2]);

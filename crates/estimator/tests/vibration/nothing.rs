@@ -3,7 +3,7 @@
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
 use percute_core::material::{Elastic, Law};
-use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, TriangleMesh};
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
@@ -28,7 +28,7 @@ fn assert_no_error<const D: usize, const N: usize>(problem: &Problem<D, N>, ener
 
 /// A rectangle of 2 × 1 m in 6 × 4 cells whose inner nodes were moved by up to a quarter of a cell,
 /// so that no two elements are alike.
-fn distorted() -> TriangleMesh {
+fn distorted() -> Mesh {
     let (nx, ny) = (6, 4);
     let id = |i: usize, j: usize| j * (nx + 1) + i;
     let mut points = Vec::new();
@@ -52,7 +52,7 @@ fn distorted() -> TriangleMesh {
         ("left".to_string(), (0..ny).map(|j| [id(0, j), id(0, j + 1)]).collect()),
         ("right".to_string(), (0..ny).map(|j| [id(nx, j), id(nx, j + 1)]).collect()),
     ]);
-    TriangleMesh::new(points, &cells, &groups, &ElementGroups::new()).unwrap()
+    Mesh::new(points, &cells, &groups, &ElementGroups::new()).unwrap()
 }
 
 fn law() -> Elastic {
@@ -72,10 +72,11 @@ fn kinetic(volume: f64) -> f64 {
 #[test]
 fn rigid_translation() {
     let velocity = Initial::Uniform([0.8 * SPEED, -0.6 * SPEED]);
-    let block = Problem::builder(distorted()).material(law()).initial_velocity(velocity).build().unwrap();
+    let block = Problem::<2, 3>::builder(distorted()).material(law()).initial_velocity(velocity).build().unwrap();
     assert_no_error(&block, kinetic(0.2));
-    let bar = BarMesh::uniform_bar(1.0, 9).unwrap();
-    let bar = Problem::builder(bar).material(bar_law()).initial_velocity(Initial::Uniform([-SPEED])).build().unwrap();
+    let bar = Mesh::uniform_bar(1.0, 9).unwrap();
+    let bar =
+        Problem::<1, 2>::builder(bar).material(bar_law()).initial_velocity(Initial::Uniform([-SPEED])).build().unwrap();
     assert_no_error(&bar, kinetic(0.02));
 }
 
@@ -87,10 +88,10 @@ fn free_flight_under_gravity() {
     let weight = |g: f64| 2700.0 * g;
     let force = BodyForce { group: None, value: Table::constant([weight(1e5), weight(-1e6)]) };
     let velocity = Initial::Uniform([0.8 * SPEED, 0.6 * SPEED]);
-    let block = Problem::builder(distorted()).material(law()).initial_velocity(velocity).body_force(force);
+    let block = Problem::<2, 3>::builder(distorted()).material(law()).initial_velocity(velocity).body_force(force);
     assert_no_error(&block.build().unwrap(), kinetic(0.2));
     let force = BodyForce { group: None, value: Table::constant([weight(-1e6)]) };
-    let bar = Problem::builder(BarMesh::uniform_bar(1.0, 9).unwrap()).material(bar_law()).body_force(force);
+    let bar = Problem::<1, 2>::builder(Mesh::uniform_bar(1.0, 9).unwrap()).material(bar_law()).body_force(force);
     let bar = bar.initial_velocity(Initial::Uniform([SPEED])).build().unwrap();
     assert_no_error(&bar, kinetic(0.02));
 }
@@ -102,8 +103,8 @@ fn uniform_stress() {
     let gradient = [[1e-3, 4e-4], [-2e-4, -5e-4]];
     let stress = law().stress(&gradient);
     let mesh = distorted();
-    let displacement = mesh.points().iter().map(|p| gradient.map(|g| g[0] * p[0] + g[1] * p[1])).collect();
-    let free = Problem::builder(mesh).material(law()).initial_displacement(Initial::Nodal(displacement));
+    let displacement = mesh.points_in::<2>().iter().map(|p| gradient.map(|g| g[0] * p[0] + g[1] * p[1])).collect();
+    let free = Problem::<2, 3>::builder(mesh).material(law()).initial_displacement(Initial::Nodal(displacement));
     for held in [None, Some("left"), Some("top")] {
         let mut builder = free.clone();
         let sides = [("left", [-1.0, 0.0]), ("right", [1.0, 0.0]), ("bottom", [0.0, -1.0]), ("top", [0.0, 1.0])];
@@ -118,9 +119,9 @@ fn uniform_stress() {
         assert_no_error(&builder.build().unwrap(), 0.2 * law().complementary_energy(&stress));
     }
 
-    let mesh = BarMesh::uniform_bar(1.0, 9).unwrap();
-    let displacement = mesh.points().iter().map(|p| [1e-3 * p[0]]).collect();
-    let bar = Problem::builder(mesh)
+    let mesh = Mesh::uniform_bar(1.0, 9).unwrap();
+    let displacement = mesh.points_in::<1>().iter().map(|p| [1e-3 * p[0]]).collect();
+    let bar = Problem::<1, 2>::builder(mesh)
         .material(bar_law())
         .initial_displacement(Initial::Nodal(displacement))
         .support(Support { group: "start".into(), components: [true, false, false], velocity: None })

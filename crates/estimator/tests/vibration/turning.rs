@@ -3,7 +3,7 @@
 use crate::vibration::block::true_error;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -38,10 +38,10 @@ fn on_rollers(point: [f64; 2]) -> [f64; 2] {
 }
 
 /// A free body in plane strain with this velocity at its nodes.
-fn thrown(mesh: TriangleMesh, velocity: impl Fn([f64; 2]) -> [f64; 2]) -> TriangleProblem {
-    let velocity = mesh.points().iter().map(|p| velocity(*p)).collect();
+fn thrown(mesh: Mesh, velocity: impl Fn([f64; 2]) -> [f64; 2]) -> TriangleProblem {
+    let velocity = mesh.points_in::<2>().iter().map(|p| velocity(*p)).collect();
     let law = Elastic::plane_strain(YOUNG, POISSON, DENSITY, 1.0).unwrap();
-    Problem::builder(mesh).material(law).initial_velocity(Initial::Nodal(velocity)).build().unwrap()
+    Problem::<2, 3>::builder(mesh).material(law).initial_velocity(Initial::Nodal(velocity)).build().unwrap()
 }
 
 /// Steps of at most 0.9 Δt_c to an instant.
@@ -69,7 +69,7 @@ fn effectivities(estimates: &[Estimate; 2], sup: f64, mean: f64) -> [[f64; 2]; 2
 }
 
 /// Of half a period of Lamé's mode.
-fn lame(mesh: TriangleMesh) -> [[f64; 2]; 2] {
+fn lame(mesh: Mesh) -> [[f64; 2]; 2] {
     let problem = thrown(mesh, |p| LAME.velocity(on_rollers(p), 0.0));
     let (motion, estimates) = run(&problem, &grid(&problem, PI / LAME.angular_frequency()));
     let exact = |p: [f64; 2], t: f64| (LAME.stress(on_rollers(p), t), LAME.velocity(on_rollers(p), t));
@@ -89,7 +89,7 @@ fn bending(level: usize) -> [[f64; 2]; 2] {
     };
     let frequency = root * root * height * (YOUNG / (12.0 * DENSITY * (1.0 - POISSON * POISSON))).sqrt();
     let problem = |level: usize| {
-        let mesh = TriangleMesh::rectangle(length, height, 10 << level, 2 << level).unwrap();
+        let mesh = Mesh::rectangle(length, height, 10 << level, 2 << level).unwrap();
         thrown(mesh, velocity)
     };
     let (problem, fine) = (problem(level), problem(level + 2));
@@ -117,7 +117,7 @@ fn assert_steady(name: &str, meshes: &[[[f64; 2]; 2]], range: [f64; 2]) {
 #[test]
 fn lame_mode() {
     const CELLS: [usize; 4] = [6, 12, 24, 48];
-    let structured = CELLS.map(|n| lame(TriangleMesh::rectangle(SIDE, SIDE, n, n).unwrap()));
+    let structured = CELLS.map(|n| lame(Mesh::rectangle(SIDE, SIDE, n, n).unwrap()));
     assert_steady("structured", &structured, [0.95, 1.35]);
     // The mean on the coarsest of five such meshes is up to 1.42.
     let unstructured = CELLS.map(|n| lame(random_rectangle(SIDE, SIDE, n, 1).unwrap()));

@@ -7,7 +7,7 @@ use crate::kind::Kind;
 use crate::mesh;
 use crate::read::{Data, Opened, Part, reading};
 use crate::write::{Case, Provenance};
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_estimator::{Parts, Sample};
 use std::path::Path;
 
@@ -31,7 +31,7 @@ pub struct EstimateFile {
     /// Number of elements.
     pub elements: usize,
     /// The mesh.
-    pub mesh: AnyMesh,
+    pub mesh: Mesh,
     /// Instants of the maps (s).
     pub instants: Vec<f64>,
     /// Whether the maps hold admissible fields.

@@ -11,7 +11,7 @@ pub use series::{Format, UnknownFormat};
 
 use crate::create::Overwrite;
 use crate::error::FileError;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use series::Series;
 use std::path::{Path, PathBuf};
 use vtkhdf::Single;
@@ -42,7 +42,7 @@ pub struct ExportField {
 #[derive(Clone, Copy, Debug)]
 pub struct Contents<'a> {
     /// The mesh.
-    pub mesh: &'a AnyMesh,
+    pub mesh: &'a Mesh,
     /// The fields.
     pub fields: &'a [ExportField],
     /// Steps and times (s), ascending.

@@ -6,8 +6,8 @@ use super::groups::Sorted;
 use super::nodes::{Kept, Nodes};
 use super::raw::{Element, Raw};
 use super::{MeshFile, import_warnings};
-use percute_core::mesh::{AnyMesh, Mesh, MeshError};
-use percute_core::simplex::{self, Simplex};
+use percute_core::mesh::{Mesh, MeshError};
+use percute_core::simplex::simplex;
 use std::mem::take;
 
 /// Builds the mesh of a file: triangles if there are any, otherwise bars.
@@ -35,15 +35,11 @@ fn assemble<const D: usize, const N: usize>(
     facets: Vec<Element<D>>,
     points: Option<&Sorted<1>>,
     scale: f64,
-) -> Result<MeshFile, Fault>
-where
-    simplex::Element<D, N>: Simplex<D, N>,
-    AnyMesh: From<Mesh<D, N>>,
-{
+) -> Result<MeshFile, Fault> {
     let Sorted { elements, doubled, members } = raw.sorted(cells)?;
     let located = nodes.located(&elements)?;
     let kept = nodes.keep(&located, scale);
-    let shape = simplex::Element::<D, N>.shape();
+    let shape = simplex::<D, N>().shape();
     let places = kept.flat(shape)?;
     let cells = kept.numbered(&located);
     let Boundary { groups, inner } = boundary(raw, nodes, &kept, &cells, &raw.sorted(facets)?, shape)?;
@@ -59,7 +55,7 @@ where
     let element_tags = elements.iter().map(|element| element.tag).collect();
     let large = import_warnings::large(mesh.size(), scale);
     let mesh = mesh.with_import_warnings(reported.into_iter().chain([large]).flatten().collect());
-    Ok(MeshFile { mesh: mesh.into(), node_tags: kept.tags, element_tags })
+    Ok(MeshFile { mesh, node_tags: kept.tags, element_tags })
 }
 
 /// A mesh error in the tags of the file, with the place of the element.

@@ -31,7 +31,7 @@ pub use write::{Format, write};
 use crate::error::FileCause;
 use cursor::{Cursor, Form};
 use percute_core::memory::can_be_had;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use std::io::ErrorKind;
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -47,7 +47,7 @@ const RAW: u64 = 6;
 #[derive(Clone, Debug)]
 pub struct MeshFile {
     /// The mesh: nodes and elements in the order of their tags in the file.
-    pub mesh: AnyMesh,
+    pub mesh: Mesh,
     /// The tag of each node in the file.
     pub node_tags: Vec<u64>,
     /// The tag of each element in the file.

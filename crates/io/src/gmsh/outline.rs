@@ -1,7 +1,8 @@
 //! The outline of a plane mesh as a geometry of Gmsh (`.geo`): polygons of straight lines, to be meshed again.
 
 use percute_core::ids::{ElementId, FacetId};
-use percute_core::mesh::{AnyMesh, TriangleMesh};
+use percute_core::mesh::{Facet, Mesh};
+use percute_core::simplex::Shape;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
@@ -28,8 +29,10 @@ struct Region {
 /// their places bit by bit, and nodes inside straight lines are left out. None for a bar, and where regions meet in a
 /// node alone.
 #[must_use]
-pub fn outline(mesh: &AnyMesh) -> Option<String> {
-    let AnyMesh::D2(mesh) = mesh else { return None };
+pub fn outline(mesh: &Mesh) -> Option<String> {
+    if mesh.shape() != Shape::Triangle {
+        return None;
+    }
     let (region, regions) = regions(mesh);
     let edges = edges(mesh, &region);
     let curves = curves(mesh, &edges);
@@ -76,8 +79,8 @@ pub fn outline(mesh: &AnyMesh) -> Option<String> {
     Some(text)
 }
 
-fn place(mesh: &TriangleMesh, node: usize) -> [f64; 2] {
-    mesh.points()[node]
+fn place(mesh: &Mesh, node: usize) -> [f64; 2] {
+    mesh.points_in()[node]
 }
 
 fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
@@ -85,7 +88,7 @@ fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
 }
 
 /// The region of each element, and the regions.
-fn regions(mesh: &TriangleMesh) -> (Vec<usize>, Vec<Region>) {
+fn regions(mesh: &Mesh) -> (Vec<usize>, Vec<Region>) {
     let mut groups = vec![BTreeSet::new(); mesh.element_count()];
     for (name, members) in mesh.element_groups() {
         members.iter().for_each(|element| _ = groups[element.index()].insert(name.clone()));
@@ -99,8 +102,8 @@ fn regions(mesh: &TriangleMesh) -> (Vec<usize>, Vec<Region>) {
         let mut waiting = vec![first];
         region[first] = found.len();
         while let Some(element) = waiting.pop() {
-            for facet in mesh.cell_facets()[element] {
-                let other = mesh.facets()[facet.index()].across(ElementId::new(element)).map(ElementId::index);
+            for &facet in mesh.cell_facets(ElementId::new(element)) {
+                let other = mesh.facet(facet).across(ElementId::new(element)).map(ElementId::index);
                 if let Some(other) =
                     other.filter(|&other| region[other] == usize::MAX && groups[other] == groups[first])
                 {
@@ -111,9 +114,9 @@ fn regions(mesh: &TriangleMesh) -> (Vec<usize>, Vec<Region>) {
         }
         found.push(Region { groups: groups[first].clone(), edges: Vec::new() });
     }
-    for (element, cell) in mesh.cells().iter().enumerate() {
-        for (k, facet) in mesh.cell_facets()[element].iter().enumerate() {
-            let other = mesh.facets()[facet.index()].across(ElementId::new(element));
+    for (element, cell) in mesh.cells().enumerate() {
+        for (k, &facet) in mesh.cell_facets(ElementId::new(element)).iter().enumerate() {
+            let other = mesh.facet(facet).across(ElementId::new(element));
             if other.is_none_or(|other| region[other.index()] != region[element]) {
                 found[region[element]].edges.push([1, 2].map(|p| cell[(k + p) % 3].index()));
             }
@@ -123,23 +126,23 @@ fn regions(mesh: &TriangleMesh) -> (Vec<usize>, Vec<Region>) {
 }
 
 /// The edges of the boundary and between regions.
-fn edges(mesh: &TriangleMesh, region: &[usize]) -> Vec<Edge> {
+fn edges(mesh: &Mesh, region: &[usize]) -> Vec<Edge> {
     let mut names: BTreeMap<FacetId, BTreeSet<String>> = BTreeMap::new();
     for (name, facets) in mesh.facet_groups() {
         facets.iter().for_each(|facet| _ = names.entry(*facet).or_default().insert(name.clone()));
     }
-    let edge = |(number, facet): (usize, &percute_core::mesh::Facet<2>)| {
+    let edge = |(number, facet): (usize, Facet<'_>)| {
         let beside = [Some(facet.owner), facet.neighbour].into_iter().flatten().map(|e| region[e.index()]);
         let beside: BTreeSet<usize> = beside.collect();
         let groups = names.get(&FacetId::new(number)).cloned().unwrap_or_default();
         let nodes = [facet.nodes[0].index(), facet.nodes[1].index()];
         (facet.neighbour.is_none() || beside.len() > 1).then(|| Edge { nodes: sorted(nodes), kind: (beside, groups) })
     };
-    mesh.facets().iter().enumerate().filter_map(edge).collect()
+    mesh.facets().enumerate().filter_map(edge).collect()
 }
 
 /// The nodes of each straight curve of edges of one kind.
-fn curves(mesh: &TriangleMesh, edges: &[Edge]) -> Vec<Vec<usize>> {
+fn curves(mesh: &Mesh, edges: &[Edge]) -> Vec<Vec<usize>> {
     let mut at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (number, edge) in edges.iter().enumerate() {
         edge.nodes.iter().for_each(|node| at.entry(*node).or_default().push(number));
@@ -176,7 +179,7 @@ fn curves(mesh: &TriangleMesh, edges: &[Edge]) -> Vec<Vec<usize>> {
 }
 
 /// The closed polygons of a region, the outer one first; none where it touches itself in a node.
-fn polygons(mesh: &TriangleMesh, region: &Region) -> Option<Vec<Vec<usize>>> {
+fn polygons(mesh: &Mesh, region: &Region) -> Option<Vec<Vec<usize>>> {
     let mut next: BTreeMap<usize, usize> = BTreeMap::new();
     for [from, to] in &region.edges {
         if next.insert(*from, *to).is_some() {
@@ -216,7 +219,7 @@ fn lines(nodes: &[usize], of_edge: &BTreeMap<[usize; 2], i64>) -> Option<String>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::mesh::{BarMesh, ElementGroups, FacetGroups, TriangleMesh};
+    use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
 
     fn count(text: &str, start: &str) -> usize {
         text.lines().filter(|line| line.starts_with(start)).count()
@@ -224,29 +227,29 @@ mod tests {
 
     #[test]
     fn a_rectangle_has_four_lines_with_its_groups() {
-        let text = outline(&TriangleMesh::rectangle(0.05, 0.04, 5, 4).unwrap().into()).unwrap();
+        let text = outline(&Mesh::rectangle(0.05, 0.04, 5, 4).unwrap()).unwrap();
         assert_eq!(["Point", "Line", "Curve Loop", "Plane"].map(|start| count(&text, start)), [4, 4, 1, 1]);
         assert_eq!(["Physical Curve", "Physical Surface(\"body\")"].map(|start| count(&text, start)), [4, 1]);
         assert!(text.contains("Point(6) = {0.05, 0.0, 0};"), "{text}");
-        assert!(outline(&BarMesh::uniform_bar(1.0, 4).unwrap().into()).is_none());
+        assert!(outline(&Mesh::uniform_bar(1.0, 4).unwrap()).is_none());
     }
 
     /// A frame in two materials: the boundary between them is one line of both, and the hole is a loop of its own or,
     /// where the materials share it, part of both outer ones.
     #[test]
     fn materials_share_their_lines() {
-        let whole = TriangleMesh::rectangle(6.0, 5.0, 6, 5).unwrap();
+        let whole = Mesh::rectangle(6.0, 5.0, 6, 5).unwrap();
         let middle = |e: usize| {
-            let p = whole.cell_points(ElementId::new(e));
+            let p = whole.corners::<2, 3>(ElementId::new(e));
             [0, 1].map(|c| p.iter().map(|p| p[c]).sum::<f64>() / 3.0)
         };
         let kept = |e: &usize| !((1.0..5.0).contains(&middle(*e)[0]) && (1.0..2.0).contains(&middle(*e)[1]));
         let elements: Vec<usize> = (0..whole.element_count()).filter(kept).collect();
-        let cells: Vec<_> = elements.iter().map(|e| whole.cells()[*e].map(|n| n.index())).collect();
+        let cells: Vec<_> = elements.iter().map(|e| whole.nodes_of::<3>()[*e].map(|n| n.index())).collect();
         let upper = (0..cells.len()).filter(|k| middle(elements[*k])[1] > 3.0).collect();
         let groups = ElementGroups::from([("upper".to_string(), upper)]);
-        let mesh = TriangleMesh::new(whole.points().to_vec(), &cells, &FacetGroups::new(), &groups).unwrap();
-        let text = outline(&mesh.into()).unwrap();
+        let mesh = Mesh::new(whole.points_in::<2>().to_vec(), &cells, &FacetGroups::new(), &groups).unwrap();
+        let text = outline(&mesh).unwrap();
         // The outer corners, both ends of the boundary between the materials, the hole.
         assert_eq!(["Point", "Line", "Curve Loop", "Plane"].map(|start| count(&text, start)), [10, 11, 3, 2]);
         assert!(text.contains("Physical Surface(\"upper\")") && text.contains("Physical Surface(\"body\")"));

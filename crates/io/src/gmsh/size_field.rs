@@ -2,7 +2,7 @@
 
 use super::{GmshCause, GmshError};
 use crate::create::{Overwrite, whole};
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -14,13 +14,7 @@ const EDGE: f64 = 1.519_671_371_303_185_5;
 ///
 /// # Errors
 /// A file that cannot be created or exists already.
-pub fn write_sizes(
-    path: &Path,
-    overwrite: Overwrite,
-    mesh: &AnyMesh,
-    size: &[f64],
-    scale: f64,
-) -> Result<(), GmshError> {
+pub fn write_sizes(path: &Path, overwrite: Overwrite, mesh: &Mesh, size: &[f64], scale: f64) -> Result<(), GmshError> {
     let mut text = String::from("View \"size\" {\n");
     let is_bar = mesh.dimension() == 1;
     let edge = if is_bar { 1.0 } else { EDGE };
@@ -38,14 +32,13 @@ pub fn write_sizes(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::mesh::TriangleMesh;
+    use percute_core::mesh::Mesh;
 
     /// An equilateral triangle of area A has edges 1.52 √A; millimetres.
     #[test]
     fn sizes_are_lengths_of_edges() {
         let folder = tempfile::tempdir().unwrap();
-        let (file, mesh) =
-            (folder.path().join("h.pos"), AnyMesh::from(TriangleMesh::rectangle(0.05, 0.04, 1, 1).unwrap()));
+        let (file, mesh) = (folder.path().join("h.pos"), Mesh::rectangle(0.05, 0.04, 1, 1).unwrap());
         let edge: f64 = 3e-3;
         let size = (3.0_f64.sqrt() / 4.0).sqrt() * edge;
         write_sizes(&file, Overwrite::allowed(false), &mesh, &[size; 4], 1e-3).unwrap();

@@ -9,7 +9,7 @@ use crate::error::{FileCause, FileError};
 use crate::mesh::vectors;
 use crate::read::{Data, Opened, reading};
 use crate::write::{Case, Provenance};
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_core::time::TimeGrid;
 use percute_system::is_at;
 use std::fs::File;
@@ -46,7 +46,7 @@ pub(super) struct Contents {
     pub(super) path: PathBuf,
     pub(super) identity: Identity,
     pub(super) bytes: u64,
-    pub(super) mesh: AnyMesh,
+    pub(super) mesh: Arc<Mesh>,
     pub(super) statement: String,
     pub(super) case: Option<Case>,
     pub(super) provenance: Provenance,
@@ -104,7 +104,7 @@ impl HistoryFile {
 
     /// The mesh.
     #[must_use]
-    pub fn mesh(&self) -> &AnyMesh {
+    pub fn mesh(&self) -> &Arc<Mesh> {
         &self.contents.mesh
     }
 

@@ -14,6 +14,7 @@ use crate::read::{Data, Opened, Part, reading};
 use crate::write::{Case, Provenance};
 use percute_core::time::TimeGrid;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Opens a history.
 ///
@@ -48,7 +49,7 @@ fn has_checksums(ours: &Part<'_>, instants: usize) -> Result<bool, FileCause> {
 pub(super) fn contents(path: &Path, identity: Identity, opened: &Opened) -> Result<HistoryFile, FileCause> {
     let (root, d) = (opened.root(), dimension(opened)?);
     let (vtk, ours) = (root.group("VTKHDF")?, root.group("percute")?);
-    let mesh = read(opened, d)?;
+    let mesh = Arc::new(read(opened, d)?);
     let nodes = mesh.node_count();
     let times = times(&vtk, &ours)?;
     let instants = times.instants().len();

@@ -6,13 +6,13 @@ use crate::checksum::Checksum;
 use crate::error::FileCause;
 use crate::read::{Opened, Part};
 use crate::write::Case;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use std::ops::Range;
 
 /// The checksum of all that does not change in time: mesh, initial velocity, texts (statement, case and origin),
 /// instants and contact nodes. `run` has all instants of the run of a thinned history, and is empty for others.
 pub(super) fn fixed_part(
-    mesh: &AnyMesh,
+    mesh: &Mesh,
     initial_velocity: &[f64],
     (statement, case, elsewhere): (&str, Option<&Case>, Option<&Elsewhere>),
     [times, run]: [&[f64]; 2],

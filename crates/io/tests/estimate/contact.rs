@@ -7,7 +7,7 @@ use percute_core::contact::{ContactRecorder, ContactResults, Status};
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::{History, StepSource};
 use percute_core::material::Elastic;
-use percute_core::mesh::BarMesh;
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{AnyProblem, BarProblem, Initial};
 use percute_core::time::TimeGrid;
@@ -30,7 +30,7 @@ fn replayed(problem: &AnyProblem, source: &dyn StepSource) -> ContactResults {
 }
 
 fn bar() -> AnyProblem {
-    BarProblem::builder(BarMesh::uniform_bar(0.1, 20).unwrap())
+    BarProblem::builder(Mesh::uniform_bar(0.1, 20).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-20.0]))
         .obstacle(Obstacle::plane([-1e-5], [1.0], 0.0, None).unwrap())

@@ -1,10 +1,10 @@
 //! Files to read, and meshes to compare.
 
-use percute_core::mesh::{AnyMesh, BarMesh, Mesh, TriangleMesh};
+use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::mesh::Mesh;
 use percute_io::gmsh::{GmshError, MeshFile, parse};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 pub(crate) const FORMATS: [&str; 4] = ["4.1", "4.1-binary", "2.2", "2.2-binary"];
 
@@ -59,23 +59,16 @@ pub(crate) fn of_bytes(bytes: &[u8]) -> Result<MeshFile, GmshError> {
     parse("a.msh".as_ref(), bytes, 1.0)
 }
 
-/// A mesh of one dimension that was read, with the tags of the file.
-pub(crate) struct Read<M> {
-    pub(crate) mesh: Arc<M>,
-    pub(crate) node_tags: Vec<u64>,
-    pub(crate) element_tags: Vec<u64>,
+/// A file of triangles.
+pub(crate) fn plane(file: MeshFile) -> MeshFile {
+    assert_eq!(file.mesh.dimension(), 2, "triangles were to be read");
+    file
 }
 
-pub(crate) fn plane(file: MeshFile) -> Read<TriangleMesh> {
-    let MeshFile { mesh, node_tags, element_tags } = file;
-    let AnyMesh::D2(mesh) = mesh else { panic!("triangles were to be read") };
-    Read { mesh, node_tags, element_tags }
-}
-
-pub(crate) fn bar(file: MeshFile) -> Read<BarMesh> {
-    let MeshFile { mesh, node_tags, element_tags } = file;
-    let AnyMesh::D1(mesh) = mesh else { panic!("bars were to be read") };
-    Read { mesh, node_tags, element_tags }
+/// A file of bars.
+pub(crate) fn bar(file: MeshFile) -> MeshFile {
+    assert_eq!(file.mesh.dimension(), 1, "bars were to be read");
+    file
 }
 
 /// Everything of a mesh but its numbers: elements and facets by the bits of their corners, in an order of their own.
@@ -87,39 +80,37 @@ pub(crate) struct Shape {
 
 impl Shape {
     /// Of coordinates that `of` may round.
-    pub(crate) fn of<const D: usize, const N: usize>(mesh: &Mesh<D, N>, of: fn(f64) -> f64) -> Self {
-        let bits = |node: usize| mesh.points()[node].iter().map(|&x| of(x).to_bits()).collect::<Vec<_>>();
-        let cell = |cell: usize| {
-            let mut corners: Vec<_> = mesh.cells()[cell].iter().map(|node| bits(node.index())).collect();
-            let first = (0..N).min_by_key(|&k| corners[k].clone()).unwrap();
+    pub(crate) fn of(mesh: &Mesh, of: fn(f64) -> f64) -> Self {
+        let bits = |node: NodeId| mesh.point(node).iter().map(|&x| of(x).to_bits()).collect::<Vec<_>>();
+        let cell = |cell: ElementId| {
+            let mut corners: Vec<_> = mesh.cell(cell).iter().map(|node| bits(*node)).collect();
+            let first = (0..corners.len()).min_by_key(|&k| corners[k].clone()).unwrap();
             corners.rotate_left(first);
             corners
         };
-        let facet = |facet: usize| {
-            let mut corners: Vec<_> = mesh.facets()[facet].nodes.iter().map(|node| bits(node.index())).collect();
+        let facet = |facet: FacetId| {
+            let mut corners: Vec<_> = mesh.facet(facet).nodes.iter().map(|node| bits(*node)).collect();
             corners.sort();
             corners
         };
         let facets = mesh.facet_groups().iter();
-        let facets =
-            facets.map(|(name, all)| (format!("facets {name}"), all.iter().map(|f| facet(f.index())).collect()));
+        let facets = facets.map(|(name, all)| (format!("facets {name}"), all.iter().map(|f| facet(*f)).collect()));
         let elements = mesh.element_groups().iter();
-        let elements =
-            elements.map(|(name, all)| (format!("cells {name}"), all.iter().map(|e| cell(e.index())).collect()));
-        Self { cells: (0..mesh.element_count()).map(cell).collect(), groups: facets.chain(elements).collect() }
+        let elements = elements.map(|(name, all)| (format!("cells {name}"), all.iter().map(|e| cell(*e)).collect()));
+        Self { cells: mesh.elements().map(cell).collect(), groups: facets.chain(elements).collect() }
     }
 }
 
 /// The same bits in everything that a mesh is.
-pub(crate) fn assert_same<const D: usize, const N: usize>(a: &Mesh<D, N>, b: &Mesh<D, N>) {
-    let bits = |mesh: &Mesh<D, N>| mesh.points().iter().map(|p| p.map(f64::to_bits)).collect::<Vec<_>>();
+pub(crate) fn assert_same(a: &Mesh, b: &Mesh) {
+    let bits = |mesh: &Mesh| mesh.points().iter().map(|x| x.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(a), bits(b));
-    assert_eq!(a.cells(), b.cells());
+    assert!(a.cell_rows() == b.cell_rows());
     assert_eq!(a.facet_groups(), b.facet_groups());
     assert_eq!(a.element_groups(), b.element_groups());
 }
 
 /// Area of a group of elements.
-pub(crate) fn area(mesh: &TriangleMesh, group: &str) -> f64 {
-    mesh.element_groups()[group].iter().map(|&element| mesh.cell_geometry(element).volume).sum()
+pub(crate) fn area(mesh: &Mesh, group: &str) -> f64 {
+    mesh.element_groups()[group].iter().map(|&element| mesh.geometry::<2, 3>(element).volume).sum()
 }

@@ -38,10 +38,10 @@ fn groups_of_curves_are_where_the_script_puts_them() {
             [("bottom", 25.0, 1, 0.0), ("right side", 20.0, 0, 25.0), ("Dach, außen", 25.0, 1, 20.0)]
         {
             let members = &mesh.facet_groups()[group];
-            let total: f64 = members.iter().map(|&facet| mesh.facet_normal(facet).1).sum();
+            let total: f64 = members.iter().map(|&facet| mesh.normal_in::<2>(facet).1).sum();
             assert!((total - length).abs() <= 1e-13 * length, "{format}: {group} has {total}");
-            for node in members.iter().flat_map(|facet| mesh.facets()[facet.index()].nodes) {
-                assert_eq!(mesh.points()[node.index()][axis], value, "{format}: {group}");
+            for node in members.iter().flat_map(|facet| mesh.facet_nodes::<2>(*facet)) {
+                assert_eq!(mesh.points_in::<2>()[node.index()][axis], value, "{format}: {group}");
             }
         }
         let reported: Vec<_> = mesh.import_warnings().iter().map(|n| (n.name, names(&n.groups))).collect();
@@ -83,7 +83,7 @@ fn tags_are_those_of_the_file() {
     // In the file, node 276 is (0, 0, 5) and node 227 is (9.999999999984821, 0, 5).
     for (tag, place) in [(276, [0.0, 0.0]), (227, [9.999_999_999_984_821, 0.0])] {
         let at = read.node_tags.iter().position(|&t| t == tag).unwrap();
-        assert_eq!(read.mesh.points()[at], place);
+        assert_eq!(read.mesh.points_in::<2>()[at], place);
     }
     assert!(read.element_tags.iter().all(|tag| tag % 11 == 0));
     assert!(!read.node_tags.contains(&234), "a node of no triangle");
@@ -95,12 +95,12 @@ fn a_bar_is_read_from_every_format() {
         let mesh = bar(read(&file(&format!("bar-{format}.msh")), 1.0).unwrap()).mesh;
         let place = |group: &str| {
             let facet = mesh.facet_groups()[group][0];
-            mesh.points()[mesh.facets()[facet.index()].nodes[0].index()]
+            mesh.points_in::<1>()[mesh.facet_nodes::<1>(facet)[0].index()]
         };
         assert_eq!((place("start"), place("end")), ([0.02], [0.12]), "{format}");
         let length = |group: &str| {
             let members = &mesh.element_groups()[group];
-            members.iter().map(|&element| mesh.cell_geometry(element).volume).sum::<f64>()
+            members.iter().map(|&element| mesh.geometry::<1, 2>(element).volume).sum::<f64>()
         };
         // Differences of coordinates up to 0.12 m round to about 1e-17 m.
         assert!((length("left") - 0.04).abs() < 1e-15 && (length("right") - 0.06).abs() < 1e-15, "{format}");

@@ -73,13 +73,13 @@ fn nodes_and_elements_come_in_the_order_of_their_tags() {
     let read = plane(of_bytes(SQUARE.as_bytes()).unwrap());
     assert_eq!(read.node_tags, [2, 4, 9, 30]);
     assert_eq!(read.element_tags, [50, 90]);
-    assert_eq!(read.mesh.points(), [[0.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.0, 0.0]]);
-    let cells: Vec<_> = read.mesh.cells().iter().map(|cell| cell.map(|node| node.index())).collect();
+    assert_eq!(read.mesh.points_in::<2>(), [[0.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.0, 0.0]]);
+    let cells: Vec<_> = read.mesh.nodes_of::<3>().iter().map(|cell| cell.map(|node| node.index())).collect();
     // 50 is (2, 9, 4) in the file, clockwise.
     assert_eq!(cells, [[0, 1, 2], [0, 3, 1]]);
     assert_eq!(read.mesh.element_groups()["upper"][0].index(), 0);
     let foot = read.mesh.facet_groups()["foot"][0];
-    assert_eq!(read.mesh.facets()[foot.index()].nodes.map(|node| node.index()), [0, 3]);
+    assert_eq!(read.mesh.facet_nodes::<2>(foot).map(|node| node.index()), [0, 3]);
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn parametric_nodes_are_read() {
     let old = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$ParametricNodes\n3\n1 0 0 0 0 1\n2 1 0 0 1 4 0.5\n3 0 1 0 2 4 \
         0.5 0.5\n\
                $EndParametricNodes\n$Elements\n1\n1 2 2 0 1 1 2 3\n$EndElements\n";
-    assert_eq!(plane(of_bytes(old.as_bytes()).unwrap()).mesh.points(), [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
+    assert_eq!(plane(of_bytes(old.as_bytes()).unwrap()).mesh.points_in::<2>(), [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
 }
 
 /// Version 2.2 has an element once for each of its groups; twice in one group or surface is worth a word.
@@ -164,7 +164,7 @@ fn elements_of_version_4_on_the_same_nodes_are_one() {
     assert_eq!((numbers("lower"), numbers("upper")), (vec![0], vec![0, 1]));
     for foot in ["foot", "2"] {
         let facet = read.mesh.facet_groups()[foot][0];
-        assert_eq!(read.mesh.facets()[facet.index()].nodes.map(|node| node.index()), [0, 3]);
+        assert_eq!(read.mesh.facet_nodes::<2>(facet).map(|node| node.index()), [0, 3]);
     }
     let import_warning =
         read.mesh.import_warnings().iter().find(|import_warning| import_warning.name == "duplicate_elements").unwrap();

@@ -103,7 +103,7 @@ fn a_plane_that_is_not_x_y_is_told_how_to_turn() {
         assert!(message.contains(axis) && message.contains("Rotate"), "{message}");
     }
     let raised = SQUARE.replace(places, "0 0 5\n1 0 5\n1 1 5\n0 1 5\n");
-    assert_eq!(plane(of_bytes(raised.as_bytes()).unwrap()).mesh.points()[3], [1.0, 0.0]);
+    assert_eq!(plane(of_bytes(raised.as_bytes()).unwrap()).mesh.points_in::<2>()[3], [1.0, 0.0]);
 }
 
 #[test]

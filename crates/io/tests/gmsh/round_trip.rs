@@ -1,7 +1,7 @@
 //! What is written is read again, bit by bit.
 
 use crate::gmsh::common::*;
-use percute_core::mesh::{AnyMesh, BarMesh, ElementGroups, FacetGroups, Mesh, TriangleMesh};
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
 use percute_io::gmsh::{Format, GmshCause, MeshFile, Version, read, write};
 use percute_io::{FileCause, Overwrite};
 use percute_testkit::{random_rectangle, rotated};
@@ -11,7 +11,7 @@ fn formats() -> impl Iterator<Item = Format> {
     [Version::V22, Version::V41].into_iter().flat_map(|version| [false, true].map(|binary| Format { version, binary }))
 }
 
-fn again(mesh: impl Into<AnyMesh>, format: Format) -> MeshFile {
+fn again(mesh: impl Into<Mesh>, format: Format) -> MeshFile {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.msh");
     write(&path, Overwrite::Refuse, &mesh.into(), format).unwrap();
@@ -19,7 +19,7 @@ fn again(mesh: impl Into<AnyMesh>, format: Format) -> MeshFile {
 }
 
 /// The same mesh with groups of elements that overlap, one of them empty, and groups of edges that share some.
-fn grouped(mesh: &TriangleMesh) -> TriangleMesh {
+fn grouped(mesh: &Mesh) -> Mesh {
     let count = mesh.element_count();
     let elements = ElementGroups::from([
         ("all".to_string(), (0..count).collect()),
@@ -27,14 +27,14 @@ fn grouped(mesh: &TriangleMesh) -> TriangleMesh {
         ("none".to_string(), vec![]),
         ("3".to_string(), vec![count - 1]),
     ]);
-    let boundary: Vec<_> = mesh.boundary().map(|f| mesh.facets()[f.index()].nodes.map(|node| node.index())).collect();
+    let boundary: Vec<_> = mesh.boundary().map(|f| mesh.facet_nodes::<2>(f).map(|node| node.index())).collect();
     let facets = FacetGroups::from([
         ("all".to_string(), boundary.clone()),
         ("a = b, µ".to_string(), boundary.into_iter().step_by(2).collect()),
         ("nothing".to_string(), vec![]),
     ]);
-    let cells: Vec<_> = mesh.cells().iter().map(|cell| cell.map(|node| node.index())).collect();
-    Mesh::new(mesh.points().to_vec(), &cells, &facets, &elements).unwrap()
+    let cells: Vec<_> = mesh.nodes_of::<3>().iter().map(|cell| cell.map(|node| node.index())).collect();
+    Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &facets, &elements).unwrap()
 }
 
 proptest! {
@@ -54,7 +54,7 @@ proptest! {
 #[test]
 fn extreme_coordinates_come_back_bit_by_bit() {
     let points = vec![[-0.0, f64::MIN_POSITIVE], [0.1 + 0.2, 5e-324], [1.0 / 3.0, 1e3]];
-    let mesh = TriangleMesh::new(points, &[[0, 1, 2]], &FacetGroups::new(), &ElementGroups::new()).unwrap();
+    let mesh = Mesh::new(points, &[[0, 1, 2]], &FacetGroups::new(), &ElementGroups::new()).unwrap();
     formats().for_each(|format| assert_same(&plane(again(mesh.clone(), format)).mesh, &mesh));
 }
 
@@ -64,7 +64,7 @@ fn bars_come_back_bit_by_bit() {
     let points = (0..8).map(|i| [0.3 + 0.1 * f64::from(i)]).collect();
     let facets = FacetGroups::from([("ends".to_string(), vec![[0], [7]]), ("end".to_string(), vec![[7]])]);
     let elements = ElementGroups::from([("left".to_string(), vec![0, 1, 2])]);
-    let mesh = BarMesh::new(points, &cells, &facets, &elements).unwrap();
+    let mesh = Mesh::new(points, &cells, &facets, &elements).unwrap();
     formats().for_each(|format| assert_same(&bar(again(mesh.clone(), format)).mesh, &mesh));
 }
 
@@ -72,7 +72,7 @@ fn bars_come_back_bit_by_bit() {
 fn no_file_is_lost() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.msh");
-    let [one, two] = [1, 2].map(|n| AnyMesh::from(TriangleMesh::rectangle(1.0, 1.0, n, n).unwrap()));
+    let [one, two] = [1, 2].map(|n| Mesh::rectangle(1.0, 1.0, n, n).unwrap());
     write(&path, Overwrite::Refuse, &one, Format::default()).unwrap();
     let error = write(&path, Overwrite::Refuse, &two, Format::default()).unwrap_err();
     assert!(matches!(error.cause, GmshCause::File(FileCause::Exists)), "{error}");
@@ -89,7 +89,7 @@ fn names_that_the_format_cannot_hold_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["a \"b\"", "a\nb"] {
         let groups = FacetGroups::from([(name.to_string(), vec![[0]])]);
-        let mesh = BarMesh::new(vec![[0.0], [1.0]], &[[0, 1]], &groups, &ElementGroups::new()).unwrap().into();
+        let mesh = Mesh::new(vec![[0.0], [1.0]], &[[0, 1]], &groups, &ElementGroups::new()).unwrap();
         let error = write(&folder.path().join("a.msh"), Overwrite::Refuse, &mesh, Format::default()).unwrap_err();
         assert!(error.to_string().contains("no quotes and no line breaks"), "{error}");
     }

@@ -4,7 +4,7 @@ use percute_core::contact::Obstacle;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::{History, StepSource};
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{AnyProblem, BarProblem, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -25,8 +25,8 @@ pub(crate) fn case() -> Case {
 }
 
 /// A body on its way to a plane two steps below its lowest point.
-pub(crate) fn plane_problem(mesh: TriangleMesh, initial: Option<Vec<[f64; 2]>>) -> AnyProblem {
-    let lowest = mesh.points().iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
+pub(crate) fn plane_problem(mesh: Mesh, initial: Option<Vec<[f64; 2]>>) -> AnyProblem {
+    let lowest = mesh.points_in::<2>().iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
     let gap = 0.02 * mesh.size();
     let nodes = mesh.node_count();
     TriangleProblem::builder(mesh)
@@ -40,11 +40,11 @@ pub(crate) fn plane_problem(mesh: TriangleMesh, initial: Option<Vec<[f64; 2]>>) 
 }
 
 pub(crate) fn block(nx: usize, ny: usize) -> AnyProblem {
-    plane_problem(TriangleMesh::rectangle(0.05, 0.04, nx, ny).unwrap(), None)
+    plane_problem(Mesh::rectangle(0.05, 0.04, nx, ny).unwrap(), None)
 }
 
 pub(crate) fn bar(elements: usize) -> AnyProblem {
-    BarProblem::builder(BarMesh::uniform_bar(0.1, elements).unwrap())
+    BarProblem::builder(Mesh::uniform_bar(0.1, elements).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-20.0]))
         .obstacle(Obstacle::plane([-1e-5], [1.0], 0.0, None).unwrap())

@@ -6,7 +6,7 @@ use percute_core::border::vectors;
 use percute_core::dynamics::{Balancing, replay, simulate};
 use percute_core::history::{Discard, History, Step, StepSource};
 use percute_core::ids::FacetId;
-use percute_core::mesh::{AnyMesh, ElementGroups, FacetGroups, TriangleMesh};
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
 use percute_core::observer::Unobserved;
 use percute_core::problem::{AnyProblem, Initial, Statement, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -23,14 +23,14 @@ use std::path::Path;
 /// Nodes of the facets of each group, and elements of each group.
 type Groups = (Vec<(String, Vec<Vec<usize>>)>, Vec<(String, Vec<usize>)>);
 
-fn groups(mesh: &AnyMesh) -> Groups {
+fn groups(mesh: &Mesh) -> Groups {
     let of = |&f: &FacetId| mesh.facet(f).nodes.iter().map(|n| n.index()).collect();
     let facets = mesh.facet_groups().iter().map(|(name, f)| (name.clone(), f.iter().map(of).collect()));
     let elements = mesh.element_groups().iter().map(|(n, e)| (n.clone(), e.iter().map(|e| e.index()).collect()));
     (facets.collect(), elements.collect())
 }
 
-fn assert_same_mesh(one: &AnyMesh, other: &AnyMesh) {
+fn assert_same_mesh(one: &Mesh, other: &Mesh) {
     assert_eq!(bits(one.points()), bits(other.points()));
     assert_eq!((one.cell_rows(), one.facet_count()), (other.cell_rows(), other.facet_count()));
     (0..one.facet_count()).map(FacetId::new).for_each(|f| assert_eq!(one.facet(f), other.facet(f)));
@@ -82,15 +82,16 @@ proptest! {
         mesh in rectangle(6), seed in 0..1_000_000_u64, count in 1..9_usize, v in any::<bool>(), a in any::<bool>(),
         name in "[%/.A-Za-zé ]{0,6}",
     ) {
-        let cells: Vec<_> = mesh.cells().iter().map(|c| c.map(|n| n.index())).collect();
-        let (facets, _) = groups(&mesh.clone().into());
+        let cells: Vec<_> = mesh.nodes_of::<3>().iter().map(|c| c.map(|n| n.index())).collect();
+        let (facets, _) = groups(&mesh.clone());
         let facets: FacetGroups<2> =
             facets.into_iter().map(|(n, f)| (format!("{n}{name}"), f.iter().map(|f| [f[1], f[0]]).collect())).collect();
         let elements = ElementGroups::from([(name.clone(), vec![0, 2]), ("none".to_string(), vec![])]);
-        let mesh = TriangleMesh::new(mesh.points().to_vec(), &cells, &facets, &elements).unwrap();
+        let mesh = Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &facets, &elements).unwrap();
         let mut random = Random::new(seed);
         let size = mesh.size();
-        let start = mesh.points().iter().map(|_| [0; 2].map(|_| 1e-6 * size * random.between(-1.0, 1.0))).collect();
+        let mut anywhere = || 1e-6 * size * random.between(-1.0, 1.0);
+        let start = mesh.points_in::<2>().iter().map(|_| [anywhere(), anywhere()]).collect();
         let problem = plane_problem(mesh, Some(start));
         let history = any_steps(&problem, count, [v, a], seed);
         let folder = folder();
@@ -174,7 +175,7 @@ fn bars() {
 fn without_contact() {
     let folder = folder();
     let path = folder.path().join("free.vtkhdf");
-    let mesh = TriangleMesh::rectangle(1.0, 1.0, 2, 2).unwrap();
+    let mesh = Mesh::rectangle(1.0, 1.0, 2, 2).unwrap();
     let material = percute_core::material::Elastic::plane_strain(1.0, 0.3, 1.0, 1.0).unwrap();
     let problem = TriangleProblem::builder(mesh).material(material).initial_velocity(Initial::Uniform([1.0, 0.0]));
     let problem = problem.build().unwrap().into();
@@ -231,10 +232,10 @@ fn size_is_foretold() {
         drop(plan.create(folder.path().join(&name), Overwrite::Refuse).unwrap());
         check(&name, plan.bytes(), 4);
     }
-    let mut mesh = TriangleMesh::rectangle(0.05, 0.04, 20, 16).unwrap();
+    let mut mesh = Mesh::rectangle(0.05, 0.04, 20, 16).unwrap();
     let many: ElementGroups = (0..200).map(|g| (format!("a name of some length {g}"), vec![g])).collect();
-    let cells: Vec<_> = mesh.cells().iter().map(|c| c.map(|n| n.index())).collect();
-    mesh = TriangleMesh::new(mesh.points().to_vec(), &cells, &FacetGroups::new(), &many).unwrap();
+    let cells: Vec<_> = mesh.nodes_of::<3>().iter().map(|c| c.map(|n| n.index())).collect();
+    mesh = Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &FacetGroups::new(), &many).unwrap();
     let problem = plane_problem(mesh, None);
     let times = steps(&problem, 5);
     let plan = Plan::new(&problem, &times, &"x".repeat(100_000), None);

@@ -74,7 +74,7 @@ pub fn page(contents: &Contents<'_>, folder: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::mesh::TriangleMesh;
+    use percute_core::mesh::Mesh;
     use percute_io::Case;
 
     /// The page of a document on a mesh of two triangles.
@@ -84,9 +84,8 @@ mod tests {
 
     fn shown_about(about: &About, document: &str, case: Option<&Case>) -> String {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-        let mesh =
-            TriangleMesh::new(points, &[[0, 1, 2], [0, 2, 3]], &Default::default(), &Default::default()).unwrap();
-        let (document, body) = (Document::parse(document).unwrap(), Body::new(&mesh.into()));
+        let mesh = Mesh::new(points, &[[0, 1, 2], [0, 2, 3]], &Default::default(), &Default::default()).unwrap();
+        let (document, body) = (Document::parse(document).unwrap(), Body::new(&mesh));
         page(&Contents { about, document: &document, body: &body, statement: "", case, surfaces: &[] }, Path::new(""))
     }
 

@@ -3,7 +3,8 @@
 use crate::failure::Failure;
 use crate::plan::{Basis, Branch, Plan, Wanted, sizes};
 use percute_core::ids::ElementId;
-use percute_core::mesh::{AnyBisection, AnyMesh};
+use percute_core::mesh::{Bisection, Mesh};
+use std::sync::Arc;
 
 /// An element is cut if its size is above so many times the wanted one: from the first, with which sizes differ least
 /// from the wanted ones, until the mesh has the planned error.
@@ -18,32 +19,32 @@ const ABOVE: f64 = 1.02;
 /// Cuts the first mesh, so that elements also become larger than those of the run, until it has `most` elements at
 /// most. Returns the mesh and the mean error that is expected on it, over that of the run.
 pub(super) fn bisected(
-    first: &AnyBisection,
-    run: &AnyMesh,
+    first: &Bisection,
+    run: &Mesh,
     (basis, plan): (&Basis, &Plan),
     most: usize,
-) -> Result<(AnyMesh, f64), Failure> {
+) -> Result<(Arc<Mesh>, f64), Failure> {
     let (wanted, mut bisection) = (Wanted::new(run, basis, plan), first.clone());
     let mut predicted = f64::INFINITY;
     for tolerance in TOLERANCES {
         for _ in 0..ROUNDS {
-            let chosen = wanted.too_large(&bisection.mesh(), (1.0 + ROUNDING) * tolerance);
+            let chosen = wanted.too_large(bisection.mesh(), (1.0 + ROUNDING) * tolerance);
             if !chosen.contains(&true) || chosen.len() > most {
                 break;
             }
             let cut = bisection.cut(|e| chosen[e.index()]);
             cut.map_err(|error| Failure::Argument(format!("the mesh cannot be refined: {error}")))?;
         }
-        predicted = expected(&wanted, &bisection.mesh(), basis, plan);
+        predicted = expected(&wanted, bisection.mesh(), basis, plan);
         if predicted * predicted <= ABOVE * plan.predicted * plan.predicted {
             break;
         }
     }
-    Ok((bisection.mesh(), predicted))
+    Ok((bisection.mesh().clone(), predicted))
 }
 
 /// The mean error that is expected on a mesh, over that of the run.
-pub(super) fn expected(wanted: &Wanted<'_>, mesh: &AnyMesh, basis: &Basis, plan: &Plan) -> f64 {
+pub(super) fn expected(wanted: &Wanted<'_>, mesh: &Mesh, basis: &Basis, plan: &Plan) -> f64 {
     let count = basis.size().len();
     let (mut volume, mut parts, mut least) = (vec![0.0; count], vec![0.0; count], vec![f64::INFINITY; count]);
     let size = sizes(mesh);

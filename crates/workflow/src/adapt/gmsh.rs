@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::message::{counted, short};
 use crate::plan::{Basis, Plan, SizeField};
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_io::{Overwrite, gmsh};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -61,12 +61,12 @@ pub(super) fn check(geometry: &Geometry) -> Result<(), Failure> {
 
 /// Makes the mesh of a plan for the mesh of a run.
 pub(super) fn meshed(
-    first: &AnyMesh,
+    first: &Mesh,
     geometry: &Geometry,
-    run: &AnyMesh,
+    run: &Mesh,
     (basis, plan): (&Basis, &Plan),
     most: usize,
-) -> Result<AnyMesh, Failure> {
+) -> Result<Mesh, Failure> {
     let field = SizeField::new(run, basis, plan, most);
     let field = field.map_err(|error| Failure::Argument(format!("the size field cannot be refined: {error}")))?;
     let failed = |what: String| Failure::Argument(format!("gmsh: {what}"));

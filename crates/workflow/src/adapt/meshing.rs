@@ -5,8 +5,9 @@ use super::gmsh::{self, Geometry};
 use crate::failure::Failure;
 use crate::plan::{Basis, Branch, LARGEST, Plan, Wanted, sizes};
 use percute_core::ids::ElementId;
-use percute_core::mesh::{AnyBisection, AnyLocator, AnyMesh};
+use percute_core::mesh::{Bisection, Locator, Mesh};
 use percute_core::problem::AnyProblem;
+use std::sync::Arc;
 
 /// The way to make meshes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,7 +23,7 @@ pub enum Mesher {
 /// Makes the meshes of an adaptation from the first one.
 #[derive(Clone, Debug)]
 pub(super) struct Meshing {
-    first: AnyBisection,
+    first: Bisection,
     mesher: Mesher,
 }
 
@@ -44,7 +45,7 @@ impl Meshing {
         };
         let refused = told.map(|told| Failure::Argument(format!("{told}; take the mesher \"bisect\"")));
         refused.map_or(Ok(()), Err)?;
-        Ok(Self { first: AnyBisection::new(problem.mesh(), &pairs), mesher })
+        Ok(Self { first: Bisection::new(problem.mesh().clone(), &pairs), mesher })
     }
 
     /// Whether the outline of the first mesh stays.
@@ -56,32 +57,32 @@ impl Meshing {
     /// has about `most` elements at most.
     pub(super) fn next(
         &self,
-        run: &AnyMesh,
+        run: &Mesh,
         (basis, plan): (&Basis, &Plan),
         most: usize,
-    ) -> Result<(AnyMesh, f64), Failure> {
+    ) -> Result<(Arc<Mesh>, f64), Failure> {
         let Mesher::Gmsh(geometry) = &self.mesher else {
             return bisected(&self.first, run, (basis, plan), most);
         };
-        let next = gmsh::meshed(&self.first.mesh(), geometry, run, (basis, plan), most)?;
+        let next = gmsh::meshed(self.first.mesh(), geometry, run, (basis, plan), most)?;
         let expected = expected(&Wanted::new(run, basis, plan), &next, basis, plan);
-        Ok((next, expected))
+        Ok((next.into(), expected))
     }
 
     /// The same by the generator of the first mesh, if all elements become smaller alike.
-    pub(super) fn generated(&self, run: &AnyMesh, plan: &Plan) -> Option<(AnyMesh, f64)> {
+    pub(super) fn generated(&self, run: &Mesh, plan: &Plan) -> Option<(Arc<Mesh>, f64)> {
         if plan.branch != Branch::Uniform || self.mesher != Mesher::Bisection {
             return None;
         }
         let next = run.resized(1.0 / plan.ratio.first()?)?;
         let finer = next.element_count() as f64 / run.element_count() as f64;
-        Some((next, finer.powf(-plan.exponents.far / run.dimension() as f64)))
+        Some((next.into(), finer.powf(-plan.exponents.far / run.dimension() as f64)))
     }
 
     /// How much larger than in a run each of its elements may become: with bisection not larger than in the first mesh.
-    pub(super) fn largest(&self, run: &AnyMesh) -> Vec<f64> {
+    pub(super) fn largest(&self, run: &Mesh) -> Vec<f64> {
         let mesh = self.first.mesh();
-        let (locator, first) = (AnyLocator::new(&mesh), sizes(&mesh));
+        let (locator, first) = (Locator::new(mesh), sizes(mesh));
         let most = if self.mesher == Mesher::Bisection { 1.0 } else { LARGEST };
         let of = |(e, h): (usize, f64)| {
             let in_first = locator.element_near(&run.centroid(ElementId::new(e)));

@@ -7,7 +7,7 @@ use super::{material, mesh};
 use crate::message::{hint, short};
 use percute_core::border::Vector;
 use percute_core::material::Elastic;
-use percute_core::mesh::{AnyMesh, MeshError};
+use percute_core::mesh::{Mesh, MeshError};
 use percute_core::simplex::Shape;
 use std::path::PathBuf;
 
@@ -22,7 +22,7 @@ const INSTEAD: [(&str, &str); 3] =
 
 /// Several bodies as one mesh.
 pub(super) struct Bodies {
-    pub(super) mesh: AnyMesh,
+    pub(super) mesh: Mesh,
     /// The name of each body, which is the group of its elements, and its material.
     pub(super) materials: Vec<(String, Elastic)>,
     /// Initial velocity of each node (m/s), in rows.
@@ -35,7 +35,7 @@ pub(super) struct Bodies {
 struct Stated<'a> {
     table: Table<'a>,
     name: &'a str,
-    mesh: AnyMesh,
+    mesh: Mesh,
 }
 
 /// Reads all bodies; `None` for a case that has one only, with a table `[mesh]`.
@@ -85,7 +85,7 @@ fn joined(root: &Table<'_>, bodies: &[Stated<'_>]) -> Result<Bodies, CaseError> 
         velocity.extend(uniform[..mesh.dimension()].repeat(mesh.node_count()));
     }
     let of_all: Vec<_> = placed.iter().map(|(name, mesh)| (*name, mesh)).collect();
-    let mesh = AnyMesh::joined(&of_all).map_err(|error| apart(root, &of_all, &error))?;
+    let mesh = Mesh::joined(&of_all).map_err(|error| apart(root, &of_all, &error))?;
     let files = bodies.iter().filter_map(|body| mesh::file(&body.table)).collect();
     Ok(Bodies { mesh, materials, velocity, files })
 }
@@ -98,7 +98,7 @@ fn law(table: &Table<'_>, shape: Shape) -> Result<Elastic, CaseError> {
 }
 
 /// The mesh in its place.
-fn placed_mesh(table: &Table<'_>, mesh: &AnyMesh) -> Result<AnyMesh, CaseError> {
+fn placed_mesh(table: &Table<'_>, mesh: &Mesh) -> Result<Mesh, CaseError> {
     if mesh.dimension() == 1 {
         table.refuse("rotation", "does not apply to a bar")?;
     }
@@ -112,7 +112,7 @@ fn placed_mesh(table: &Table<'_>, mesh: &AnyMesh) -> Result<AnyMesh, CaseError> 
 
 /// What is wrong with an origin (m) at which a mesh has no place, if it is too far away for numbers of 64 bits.
 #[must_use]
-pub fn far_origin(mesh: &AnyMesh, origin: &Vector) -> Option<String> {
+pub fn far_origin(mesh: &Mesh, origin: &Vector) -> Option<String> {
     let far = origin.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     (far > FAR * mesh.size()).then(|| {
         format!(
@@ -125,7 +125,7 @@ pub fn far_origin(mesh: &AnyMesh, origin: &Vector) -> Option<String> {
 }
 
 /// The elements of the group that is named, if one is: one of several bodies in a file.
-fn of_group(table: &Table<'_>, mesh: AnyMesh) -> Result<AnyMesh, CaseError> {
+fn of_group(table: &Table<'_>, mesh: Mesh) -> Result<Mesh, CaseError> {
     let Some(value) = table.get("group") else { return Ok(mesh) };
     let group = value.text("a group of elements")?;
     let part = mesh.part_of_group(group).ok_or_else(|| {
@@ -140,8 +140,8 @@ fn of_group(table: &Table<'_>, mesh: AnyMesh) -> Result<AnyMesh, CaseError> {
 }
 
 /// Bodies that overlap, by their names.
-fn apart(root: &Table<'_>, bodies: &[(&str, &AnyMesh)], error: &MeshError) -> CaseError {
+fn apart(root: &Table<'_>, bodies: &[(&str, &Mesh)], error: &MeshError) -> CaseError {
     let tables = root.tables("body").unwrap_or_default();
-    let Some((second, message)) = AnyMesh::overlapping(bodies, error) else { return root.error(error.to_string()) };
+    let Some((second, message)) = Mesh::overlapping(bodies, error) else { return root.error(error.to_string()) };
     tables.get(second).map_or_else(|| root.error(&message), |table| table.error(&message))
 }

@@ -5,7 +5,7 @@ use super::source::CaseError;
 use super::table::Table;
 use super::value::{Value, rows};
 use crate::message::hint;
-use percute_core::mesh::{AnyMesh, Diagonals, ElementGroups, FacetRows, MeshError};
+use percute_core::mesh::{Diagonals, ElementGroups, FacetRows, Mesh, MeshError};
 use percute_io::FileCause;
 use percute_io::gmsh::{self, GmshCause};
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ const GROUPS: &str = "{ bottom = [[0, 1], [1, 2]] }";
 const ELEMENTS: &str = "{ core = [0, 1, 2] }";
 
 /// Reads the mesh from the table and the value of the key that says how it is given.
-type Reader = for<'a> fn(&Table<'a>, &Value<'a>) -> Result<AnyMesh, CaseError>;
+type Reader = for<'a> fn(&Table<'a>, &Value<'a>) -> Result<Mesh, CaseError>;
 
 const WAYS: [(&str, Reader); 5] = [
     ("rectangle", |_, value| rectangle(value)),
@@ -31,13 +31,13 @@ const WAYS: [(&str, Reader); 5] = [
 ];
 
 /// Reads the mesh.
-pub(super) fn read(table: &Table<'_>) -> Result<AnyMesh, CaseError> {
+pub(super) fn read(table: &Table<'_>) -> Result<Mesh, CaseError> {
     table.only(&KEYS)?;
     one_way(table)
 }
 
 /// Reads the mesh of a table that may have other keys too.
-pub(super) fn one_way(table: &Table<'_>) -> Result<AnyMesh, CaseError> {
+pub(super) fn one_way(table: &Table<'_>) -> Result<Mesh, CaseError> {
     let ways: Vec<_> = WAYS.iter().filter_map(|(key, reader)| Some((table.get(key)?, reader))).collect();
     let [(value, reader)] = ways.as_slice() else {
         let message = "needs exactly one of `rectangle`, `disc`, `bar`, `file` and `points` (the last with `cells`)";
@@ -71,7 +71,7 @@ const LARGE: usize = 100_000;
 
 /// The coarsest mesh of the same kind, with the same groups, for checks of other tables before a large mesh is made.
 pub(super) struct Coarsest {
-    pub(super) mesh: AnyMesh,
+    pub(super) mesh: Mesh,
     /// The number of each of its nodes in the large mesh; empty if it is not the same body.
     pub(super) nodes: Vec<usize>,
 }
@@ -94,7 +94,7 @@ pub(super) fn coarsest(table: &Table<'_>) -> Option<Coarsest> {
     // Beyond all that a mesh may have, the large mesh is refused.
     let above = ny.saturating_mul(nx.saturating_add(1));
     let corners = || vec![0, nx, above, above.saturating_add(nx)];
-    let rectangle = |width, height| AnyMesh::rectangle_cut([width, height], [1, 1], Diagonals::default());
+    let rectangle = |width, height| Mesh::rectangle(width, height, 1, 1);
     let (made, nodes) = match ["rectangle", "disc", "bar"].map(|key| table.get(key).is_some()) {
         [true, false, false] => {
             let size = ["width", "height"].map(|side| length("rectangle", &OF_RECTANGLE, side));
@@ -104,10 +104,10 @@ pub(super) fn coarsest(table: &Table<'_>) -> Option<Coarsest> {
             }
         }
         // The outline of the coarsest lies inside that of the disc.
-        [false, true, false] => (AnyMesh::disc(1.0, 1), Vec::new()),
+        [false, true, false] => (Mesh::disc(1.0, 1), Vec::new()),
         [false, false, true] => {
             let size = length("bar", &["length", "elements"], "length");
-            (AnyMesh::uniform_bar(size.unwrap_or(1.0), 1), size.map_or_else(Vec::new, |_| vec![0, elements]))
+            (Mesh::uniform_bar(size.unwrap_or(1.0), 1), size.map_or_else(Vec::new, |_| vec![0, elements]))
         }
         _ => return None,
     };
@@ -126,7 +126,7 @@ pub(super) fn scale(table: &Table<'_>) -> f64 {
 }
 
 /// A mesh in a file of Gmsh, relative to the folder of the case.
-fn from_file(table: &Table<'_>, value: &Value<'_>) -> Result<AnyMesh, CaseError> {
+fn from_file(table: &Table<'_>, value: &Value<'_>) -> Result<Mesh, CaseError> {
     let file = value.source.beside(value.text("the name of a Gmsh file, such as \"block.msh\"")?.as_ref());
     let scale = table
         .get("scale")
@@ -143,13 +143,13 @@ fn from_file(table: &Table<'_>, value: &Value<'_>) -> Result<AnyMesh, CaseError>
     }
 }
 
-fn rectangle(value: &Value<'_>) -> Result<AnyMesh, CaseError> {
+fn rectangle(value: &Value<'_>) -> Result<Mesh, CaseError> {
     let table = value.table(&OF_RECTANGLE, RECTANGLE)?;
     let length = |key| table.require(key, "a length in m")?.number("m");
     let count = |key| table.require(key, "a number of cells")?.count(1);
     let (width, height, nx, ny) = (length("width")?, length("height")?, count("nx")?, count("ny")?);
     let diagonals = table.get("diagonals").map_or(Ok(Diagonals::default()), |value| diagonals(&value))?;
-    AnyMesh::rectangle_cut([width, height], [nx, ny], diagonals).map_err(|error| generator(&table, &error))
+    Mesh::rectangle_cut(width, height, nx, ny, diagonals).map_err(|error| generator(&table, &error))
 }
 
 fn diagonals(value: &Value<'_>) -> Result<Diagonals, CaseError> {
@@ -160,18 +160,18 @@ fn diagonals(value: &Value<'_>) -> Result<Diagonals, CaseError> {
     Diagonals::named(name).ok_or_else(|| value.must_be(format!("{allowed}{}", hint())))
 }
 
-fn disc(value: &Value<'_>) -> Result<AnyMesh, CaseError> {
+fn disc(value: &Value<'_>) -> Result<Mesh, CaseError> {
     let table = value.table(&["radius", "rings"], DISC)?;
     let radius = table.require("radius", "a length in m")?.number("m")?;
     let rings = table.require("rings", "a number of rings")?.count(1)?;
-    AnyMesh::disc(radius, rings).map_err(|error| generator(&table, &error))
+    Mesh::disc(radius, rings).map_err(|error| generator(&table, &error))
 }
 
-fn bar(value: &Value<'_>) -> Result<AnyMesh, CaseError> {
+fn bar(value: &Value<'_>) -> Result<Mesh, CaseError> {
     let table = value.table(&["length", "elements"], BAR)?;
     let length = table.require("length", "a length in m")?.number("m")?;
     let elements = table.require("elements", "a number of elements")?.count(1)?;
-    AnyMesh::uniform_bar(length, elements).map_err(|error| generator(&table, &error))
+    Mesh::uniform_bar(length, elements).map_err(|error| generator(&table, &error))
 }
 
 /// A generator's error, at the key that it names.
@@ -183,14 +183,14 @@ fn generator(table: &Table<'_>, error: &MeshError) -> CaseError {
     value.map_or_else(|| table.error(error.to_string()), |value| value.error(error.to_string()))
 }
 
-fn from_arrays(table: &Table<'_>, points: &Value<'_>) -> Result<AnyMesh, CaseError> {
+fn from_arrays(table: &Table<'_>, points: &Value<'_>) -> Result<Mesh, CaseError> {
     let entries = points.list("points, each its coordinates in m")?;
     let plane = entries.first().is_some_and(|first| first.list("").is_ok_and(|list| list.len() != 1));
     arrays(table, if plane { 2 } else { 1 })
 }
 
 /// A mesh from points, cells, groups of facets and groups of elements.
-fn arrays(table: &Table<'_>, dimension: usize) -> Result<AnyMesh, CaseError> {
+fn arrays(table: &Table<'_>, dimension: usize) -> Result<Mesh, CaseError> {
     let points = table.require("points", "the coordinates of the nodes in m")?.vectors("m", dimension)?;
     let points = rows(points, dimension);
     let cells = table.require("cells", "the node numbers of each element, counted from 0")?;
@@ -209,7 +209,7 @@ fn arrays(table: &Table<'_>, dimension: usize) -> Result<AnyMesh, CaseError> {
             elements.insert(name.to_string(), members.iter().map(|m| m.count(0)).collect::<Result<_, _>>()?);
         }
     }
-    AnyMesh::new(dimension, &points, &cells, (&facets, &elements)).map_err(|error| array_error(table, &error))
+    Mesh::from_rows(dimension, &points, &cells, (&facets, &elements)).map_err(|error| array_error(table, &error))
 }
 
 /// The numbers of so many nodes in each entry, in rows.

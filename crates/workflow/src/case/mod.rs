@@ -69,11 +69,12 @@ use body::Bodies;
 use mesh::Coarsest;
 use percute_core::dynamics::{SimulationError, check_start};
 use percute_core::memory::can_be_had;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{AnyProblem, Place, RefusedStart, cause_of_refused_start};
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use toml::de::DeTable;
 use value::table;
 use value::table::Table;
@@ -148,9 +149,9 @@ pub fn parse(source: Source) -> Result<Case, CaseError> {
     let mesh = root.single("mesh")?.ok_or_else(|| root.error(NO_MESH))?;
     let files = mesh::file(&mesh).into_iter().collect();
     if let Some(Coarsest { mesh, nodes }) = mesh::coarsest(&mesh) {
-        check_tables(&root, &mesh, &nodes)?;
+        check_tables(&root, &mesh.into(), &nodes)?;
     }
-    let body = mesh::read(&mesh)?;
+    let body = mesh::read(&mesh)?.into();
     let case = read(&source, &root, files, || problem::read(&root, &body));
     case.map_err(|error| if body.dimension() == 1 { mesh::of_lines_only(&mesh, error) } else { error })
 }
@@ -172,7 +173,7 @@ fn check_length(source: &Source) -> Result<(), CaseError> {
 }
 
 /// Finds mistakes in all tables but that of the mesh, which may take seconds and gigabytes to make; see [`Coarsest`].
-fn check_tables(root: &Table<'_>, coarsest: &AnyMesh, nodes: &[usize]) -> Result<(), CaseError> {
+fn check_tables(root: &Table<'_>, coarsest: &Arc<Mesh>, nodes: &[usize]) -> Result<(), CaseError> {
     estimate::read(root)?;
     output::read(root)?;
     time::read(root)?;

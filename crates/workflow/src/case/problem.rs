@@ -6,11 +6,12 @@ use super::table::Table;
 use super::value::{Value, rows};
 use super::{contact, load, material, obstacle, place, support};
 use crate::message::hint;
-use percute_core::mesh::{AnyMesh, ImportWarning};
+use percute_core::mesh::{ImportWarning, Mesh};
 use percute_core::problem::{AnyProblem, Cause, InputError, Place, Statement};
+use std::sync::Arc;
 
 /// Reads all that makes the problem on a mesh.
-pub(super) fn read(root: &Table<'_>, mesh: &AnyMesh) -> Result<AnyProblem, CaseError> {
+pub(super) fn read(root: &Table<'_>, mesh: &Arc<Mesh>) -> Result<AnyProblem, CaseError> {
     let stated = Statement { planes_to_be_moved: true, ..with_start(root, mesh)? };
     AnyProblem::new(mesh, &stated).map_err(|error| located(root, &error, mesh.import_warnings()))
 }
@@ -25,13 +26,13 @@ pub(super) fn of_bodies(root: &Table<'_>, bodies: Bodies) -> Result<AnyProblem, 
         planes_to_be_moved: true,
         ..surroundings(root, &mesh)?
     };
-    build(root, &mesh, &stated)
+    build(root, &mesh.into(), &stated)
 }
 
 /// Finds mistakes that do not depend on the size of the mesh, with a small one that has the same groups. A plane that
 /// cuts through the body does so at a corner, too; `nodes` are the numbers of the corners in the large mesh, if it has
 /// the same body.
-pub(super) fn check_coarsest(root: &Table<'_>, mesh: &AnyMesh, nodes: &[usize]) -> Result<(), CaseError> {
+pub(super) fn check_coarsest(root: &Table<'_>, mesh: &Arc<Mesh>, nodes: &[usize]) -> Result<(), CaseError> {
     let built = AnyProblem::new(mesh, &with_start(root, mesh)?);
     let Err(InputError { place, cause }) = built else { return Ok(()) };
     let cause = match (cause, nodes) {
@@ -44,7 +45,7 @@ pub(super) fn check_coarsest(root: &Table<'_>, mesh: &AnyMesh, nodes: &[usize]) 
 }
 
 /// Reads all that makes the problem, and does not check it as a whole.
-fn with_start(root: &Table<'_>, mesh: &AnyMesh) -> Result<Statement, CaseError> {
+fn with_start(root: &Table<'_>, mesh: &Mesh) -> Result<Statement, CaseError> {
     let mut stated = stated(root, mesh)?;
     if let Some(table) = root.single("initial")? {
         table.only(&["velocity", "displacement"])?;
@@ -56,13 +57,13 @@ fn with_start(root: &Table<'_>, mesh: &AnyMesh) -> Result<Statement, CaseError> 
 }
 
 /// Reads materials, planes, contacts of bodies, supports and loads.
-pub(super) fn stated(root: &Table<'_>, mesh: &AnyMesh) -> Result<Statement, CaseError> {
+pub(super) fn stated(root: &Table<'_>, mesh: &Mesh) -> Result<Statement, CaseError> {
     let materials = material::read(root, mesh.shape())?;
     Ok(Statement { materials, ..surroundings(root, mesh)? })
 }
 
 /// Reads planes, contacts of bodies, supports, loads and weight.
-fn surroundings(root: &Table<'_>, mesh: &AnyMesh) -> Result<Statement, CaseError> {
+fn surroundings(root: &Table<'_>, mesh: &Mesh) -> Result<Statement, CaseError> {
     let dimension = mesh.dimension();
     let contacts = contact::read(root, dimension, mesh.parts())?;
     Ok(Statement {
@@ -77,7 +78,7 @@ fn surroundings(root: &Table<'_>, mesh: &AnyMesh) -> Result<Statement, CaseError
 }
 
 /// Has the core check the problem as a whole.
-pub(super) fn build(root: &Table<'_>, mesh: &AnyMesh, stated: &Statement) -> Result<AnyProblem, CaseError> {
+pub(super) fn build(root: &Table<'_>, mesh: &Arc<Mesh>, stated: &Statement) -> Result<AnyProblem, CaseError> {
     AnyProblem::new(mesh, stated).map_err(|error| located(root, &error, &[]))
 }
 

@@ -10,9 +10,10 @@ use percute_core::border::Vector;
 use percute_core::contact::{AnyObstacle, Interface};
 use percute_core::load::{BodyForce, Profile, Support, Table as InTime, Traction};
 use percute_core::material::{Elastic, Hypothesis, Law};
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{AnyProblem, Statement};
 use percute_estimator::{Options, Sampling};
+use std::sync::Arc;
 use thiserror::Error;
 
 /// The tables of a statement.
@@ -89,7 +90,7 @@ pub fn statement(problem: &AnyProblem, options: Option<&Options>) -> Result<Stri
 /// The first thing that is wrong; `[mesh]`, `[initial]`, `[time]` and `[output]`, which are no part of a statement.
 pub fn problem_from(
     source: &Source,
-    mesh: &AnyMesh,
+    mesh: &Arc<Mesh>,
     initial_displacement: Vec<f64>,
     initial_velocity: Vec<f64>,
 ) -> Result<(AnyProblem, Options), CaseError> {

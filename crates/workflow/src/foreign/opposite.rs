@@ -66,15 +66,15 @@ mod tests {
     use crate::foreign::window::vectors_of;
     use percute_core::contact::Interface;
     use percute_core::material::Elastic;
-    use percute_core::mesh::TriangleMesh;
+    use percute_core::mesh::Mesh;
     use percute_core::problem::TriangleProblem;
     use percute_testkit::translated;
 
     /// A block on another one, of which it covers a half.
     fn problem() -> TriangleProblem {
-        let lower = TriangleMesh::rectangle(0.04, 0.025, 8, 2).unwrap();
-        let upper = translated(&TriangleMesh::rectangle(0.04, 0.025, 10, 2).unwrap(), [0.02, 0.026]).unwrap();
-        let mesh = TriangleMesh::joined(&[("lower", &lower), ("upper", &upper)]).unwrap();
+        let lower = Mesh::rectangle(0.04, 0.025, 8, 2).unwrap();
+        let upper = translated(&Mesh::rectangle(0.04, 0.025, 10, 2).unwrap(), [0.02, 0.026]).unwrap();
+        let mesh = Mesh::joined(&[("lower", &lower), ("upper", &upper)]).unwrap();
         let material = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
         let interface = Interface::sliding(2, "lower.top", "upper.bottom", 0.2).unwrap();
         TriangleProblem::builder(mesh).material(material).interface(interface).build().unwrap()

@@ -4,7 +4,7 @@ use super::{Branch, MOST};
 use crate::message::whole_percent;
 use percute_core::contact::ContactResults;
 use percute_core::ids::NodeId;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_estimator::{Estimate, Separation};
 
 /// The elements of a run, their parts of the squared mean error, and its sources.
@@ -29,7 +29,7 @@ pub struct Basis {
 impl Basis {
     /// Of an estimated run; none without sources, or without an error.
     #[must_use]
-    pub fn new(mesh: &AnyMesh, estimate: &Estimate, contact: &ContactResults) -> Option<Self> {
+    pub fn new(mesh: &Mesh, estimate: &Estimate, contact: &ContactResults) -> Option<Self> {
         let sources = estimate.sources.clone()?;
         let squared: Vec<f64> = estimate.by_element.iter().map(|e| e * e).collect();
         let total = sources.mean.total();
@@ -105,6 +105,6 @@ pub(crate) fn shares_told(shares: &[f64; 4]) -> String {
 }
 
 /// h of each element: the root of its area, or its length (m).
-pub(crate) fn sizes(mesh: &AnyMesh) -> Vec<f64> {
+pub(crate) fn sizes(mesh: &Mesh) -> Vec<f64> {
     mesh.volumes().into_iter().map(|volume| volume.powf(1.0 / mesh.dimension() as f64)).collect()
 }

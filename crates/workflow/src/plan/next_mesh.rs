@@ -3,7 +3,7 @@
 use super::{Basis, Branch, Exponents, Plan, shares_told};
 use crate::effort::{Effort, duration};
 use crate::message::{counted, percent, short, trimmed};
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use serde::Serialize;
 
 /// The next mesh for a wanted error, by the estimate of a run.
@@ -42,7 +42,7 @@ pub struct NextMesh {
 impl NextMesh {
     /// For a target beside the relative error of a run. No element becomes larger than in the run.
     #[must_use]
-    pub fn new(mesh: &AnyMesh, basis: &Basis, effort: &Effort, [error, target]: [f64; 2]) -> Self {
+    pub fn new(mesh: &Mesh, basis: &Basis, effort: &Effort, [error, target]: [f64; 2]) -> Self {
         let wanted = (target / error).min(1.0);
         let plan = Plan::new(basis, wanted, &vec![1.0; mesh.element_count()]);
         let whole = Plan::whole(basis, wanted);

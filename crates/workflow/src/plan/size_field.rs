@@ -2,7 +2,7 @@
 
 use super::{Basis, Branch, Plan, Wanted};
 use percute_core::ids::{ElementId, NodeId};
-use percute_core::mesh::{AnyMesh, MeshError};
+use percute_core::mesh::{Mesh, MeshError};
 
 /// Sizes grow by this part of the distance at most.
 const GRADATION: f64 = 0.3;
@@ -15,7 +15,7 @@ const ROUNDS: usize = 40;
 #[derive(Clone, Debug)]
 pub struct SizeField {
     /// The mesh that carries the sizes.
-    pub mesh: AnyMesh,
+    pub mesh: Mesh,
     /// The size at each node (m): the root of the area of an element, or its length.
     pub size: Vec<f64>,
 }
@@ -25,7 +25,7 @@ impl SizeField {
     ///
     /// # Errors
     /// A mesh that cannot be cut as often as needed.
-    pub fn new(run: &AnyMesh, basis: &Basis, plan: &Plan, most: usize) -> Result<Self, MeshError> {
+    pub fn new(run: &Mesh, basis: &Basis, plan: &Plan, most: usize) -> Result<Self, MeshError> {
         if plan.branch == Branch::Uniform {
             let squares: f64 = basis.size.iter().map(|h| h * h).sum();
             let size = plan.ratio.first().copied().unwrap_or(1.0) * (squares / basis.size.len() as f64).sqrt();
@@ -54,7 +54,7 @@ impl SizeField {
 }
 
 /// Makes sizes smaller until none grows faster than it may along an edge.
-fn limit_growth(mesh: &AnyMesh, size: &mut [f64]) {
+fn limit_growth(mesh: &Mesh, size: &mut [f64]) {
     let mut changed = true;
     while changed {
         changed = false;
@@ -77,13 +77,12 @@ fn limit_growth(mesh: &AnyMesh, size: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::mesh::Diagonals;
 
     /// A small size in a corner: elsewhere it grows by 0.3 of the distance along edges, and each size is the least that
     /// some edge allows.
     #[test]
     fn sizes_grow_slowly() {
-        let mesh = AnyMesh::rectangle_cut([1.0; 2], [9; 2], Diagonals::default()).unwrap();
+        let mesh = Mesh::rectangle(1.0, 1.0, 9, 9).unwrap();
         let mut size = vec![f64::INFINITY; mesh.node_count()];
         size[0] = 0.01;
         limit_growth(&mesh, &mut size);

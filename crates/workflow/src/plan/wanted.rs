@@ -3,7 +3,7 @@
 use super::{Basis, Branch, Plan, sizes};
 use percute_core::border::Vector;
 use percute_core::ids::{ElementId, NodeId};
-use percute_core::mesh::{AnyLocator, AnyMesh};
+use percute_core::mesh::{Locator, Mesh};
 use std::collections::BTreeMap;
 
 /// Growth of the size with the distance from a node that touches, in a graded mesh.
@@ -17,8 +17,8 @@ const TOWARDS: f64 = 0.9;
 /// towards nodes that touch it falls to that which is planned there.
 #[derive(Clone, Debug)]
 pub(crate) struct Wanted<'m> {
-    mesh: &'m AnyMesh,
-    locator: AnyLocator<'m>,
+    mesh: &'m Mesh,
+    locator: Locator<'m>,
     size: Vec<f64>,
     /// For each element the nodes that touch in the elements around it, and the planned size there (m).
     near: BTreeMap<ElementId, Vec<(NodeId, f64)>>,
@@ -26,9 +26,9 @@ pub(crate) struct Wanted<'m> {
 
 impl<'m> Wanted<'m> {
     /// Of a plan for the mesh of a run.
-    pub(crate) fn new(mesh: &'m AnyMesh, basis: &Basis, plan: &Plan) -> Self {
+    pub(crate) fn new(mesh: &'m Mesh, basis: &Basis, plan: &Plan) -> Self {
         let planned: Vec<f64> = plan.ratio.iter().zip(&basis.size).map(|(r, h)| r * h).collect();
-        let locator = AnyLocator::new(mesh);
+        let locator = Locator::new(mesh);
         if plan.branch != Branch::Graded {
             return Self { mesh, locator, size: planned, near: BTreeMap::new() };
         }
@@ -55,13 +55,13 @@ impl<'m> Wanted<'m> {
     }
 
     /// Whether each element of a mesh has more than so many times the wanted size.
-    pub(crate) fn too_large(&self, mesh: &AnyMesh, times: f64) -> Vec<bool> {
+    pub(crate) fn too_large(&self, mesh: &Mesh, times: f64) -> Vec<bool> {
         let is_too_large = |(e, size): (usize, f64)| size > times * self.within(mesh, ElementId::new(e));
         sizes(mesh).into_iter().enumerate().map(is_too_large).collect()
     }
 
     /// The smallest size in an element of a mesh (m).
-    fn within(&self, mesh: &AnyMesh, element: ElementId) -> f64 {
+    fn within(&self, mesh: &Mesh, element: ElementId) -> f64 {
         let middle = mesh.centroid(element);
         let towards =
             |corner: &Vector| self.at(&std::array::from_fn(|c| middle[c] + TOWARDS * (corner[c] - middle[c])));
@@ -69,13 +69,13 @@ impl<'m> Wanted<'m> {
     }
 
     /// The element of the mesh of the run that an element of a mesh lies in.
-    pub(crate) fn element_of(&self, mesh: &AnyMesh, element: ElementId) -> ElementId {
+    pub(crate) fn element_of(&self, mesh: &Mesh, element: ElementId) -> ElementId {
         self.locator.element_near(&mesh.centroid(element))
     }
 }
 
 /// The nodes that touch around each element, each with the smallest planned size of its elements.
-fn near(mesh: &AnyMesh, basis: &Basis, planned: &[f64]) -> BTreeMap<ElementId, Vec<(NodeId, f64)>> {
+fn near(mesh: &Mesh, basis: &Basis, planned: &[f64]) -> BTreeMap<ElementId, Vec<(NodeId, f64)>> {
     let mut near: BTreeMap<ElementId, Vec<(NodeId, f64)>> = BTreeMap::new();
     for &node in &basis.nodes {
         let around = mesh.elements_around(node);

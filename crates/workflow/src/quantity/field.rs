@@ -4,7 +4,7 @@ use crate::message::{hint, list};
 use percute_core::border::row;
 use percute_core::element_state::ElementState;
 use percute_core::history::State;
-use percute_core::mesh::AnyAround;
+use percute_core::mesh::Around;
 use percute_core::problem::AnyProblem;
 use std::str::FromStr;
 
@@ -97,10 +97,10 @@ impl Field {
     }
 
     /// Its value at a point, with its sign: the mean of the elements that contain the point, by their shares.
-    pub(super) fn at(self, problem: &AnyProblem, around: &[AnyAround], state: &State<'_>) -> f64 {
+    pub(super) fn at(self, problem: &AnyProblem, around: &[Around], state: &State<'_>) -> f64 {
         let displacement = state.step().displacement;
         let stress = |of: fn(&ElementState) -> f64| -> f64 {
-            let value = |a: &AnyAround| a.share * of(&ElementState::new(problem, a.element, displacement));
+            let value = |a: &Around| a.share * of(&ElementState::new(problem, a.element, displacement));
             around.iter().map(value).sum()
         };
         match self {
@@ -116,9 +116,9 @@ impl Field {
 }
 
 /// The magnitude of a nodal field at a point.
-fn magnitude(problem: &AnyProblem, around: &[AnyAround], field: &[f64]) -> f64 {
+fn magnitude(problem: &AnyProblem, around: &[Around], field: &[f64]) -> f64 {
     let mut mean = [0.0; 3];
-    for AnyAround { element, shapes, share } in around {
+    for Around { element, shapes, share } in around {
         for (node, shape) in problem.mesh().cell(*element).iter().zip(shapes) {
             let value = row(field, node.index(), problem.dimension());
             (0..3).for_each(|c| mean[c] += share * shape * value[c]);

@@ -14,7 +14,7 @@ pub use probe::{Probe, ProbeSink};
 use crate::failure::Failure;
 use crate::message::{hint, percent};
 use crate::report::{ContactResultants, ObstacleSummary, Report};
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::AnyProblem;
 use percute_core::units::Units;
 use std::fmt::{self, Display, Formatter};
@@ -86,7 +86,7 @@ impl Quantity {
 
     /// What may keep it from converging, from the mesh and the report of the finest run.
     #[must_use]
-    pub fn obstruction(&self, mesh: &AnyMesh, report: &Report) -> Option<Obstruction> {
+    pub fn obstruction(&self, mesh: &Mesh, report: &Report) -> Option<Obstruction> {
         match self {
             Self::PeakForce => obstruction::of_force(report),
             Self::Probe(probe) => obstruction::of_probe(probe, mesh),
@@ -164,7 +164,7 @@ impl FromStr for Quantity {
 ///
 /// # Errors
 /// A text that is no probe, one that does not fit the body, one that is given twice.
-pub fn probes(texts: &[String], mesh: &AnyMesh, what: &str) -> Result<Vec<Probe>, Failure> {
+pub fn probes(texts: &[String], mesh: &Mesh, what: &str) -> Result<Vec<Probe>, Failure> {
     let refused = |told: String| Failure::Argument(format!("{what}: {told}"));
     let mut found: Vec<Probe> = Vec::new();
     for text in texts {

@@ -6,7 +6,7 @@ use crate::report::{Report, Touches};
 use percute_core::border::Vector;
 use percute_core::contact::CORNER;
 use percute_core::ids::NodeId;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use std::f64::consts::PI;
 
 /// A corner is near to a probe within so many elements: the error of P1 elements at a singular stress is largest there.
@@ -50,7 +50,7 @@ pub(super) fn of_force(report: &Report) -> Option<Obstruction> {
 }
 
 /// That of the stress at a point.
-pub(super) fn of_probe(probe: &Probe, mesh: &AnyMesh) -> Option<Obstruction> {
+pub(super) fn of_probe(probe: &Probe, mesh: &Mesh) -> Option<Obstruction> {
     let point = probe.place(mesh).filter(|_| probe.field().is_stress())?;
     let away = |node: &NodeId| distance(&mesh.point(*node), &point);
     let corner = mesh.corners_above(PI + CORNER).into_iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
@@ -61,7 +61,7 @@ pub(super) fn of_probe(probe: &Probe, mesh: &AnyMesh) -> Option<Obstruction> {
     (distance <= NEAR * longest_edge(mesh, corner)).then_some(Obstruction::NearReEntrant { corner: place, distance })
 }
 
-fn longest_edge(mesh: &AnyMesh, node: NodeId) -> f64 {
+fn longest_edge(mesh: &Mesh, node: NodeId) -> f64 {
     let nodes = mesh.elements_around(node).iter().flat_map(|element| mesh.cell(*element));
     let lengths = nodes.map(|other| distance(&mesh.point(*other), &mesh.point(node)));
     lengths.fold(0.0, f64::max)

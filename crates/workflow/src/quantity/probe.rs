@@ -4,7 +4,7 @@ use super::field::Field;
 use crate::message::{counted, short, vector};
 use percute_core::border::{Vector, row};
 use percute_core::history::{SinkError, State, StateSink};
-use percute_core::mesh::{AnyAround, AnyMesh};
+use percute_core::mesh::{Around, Mesh};
 use percute_core::problem::AnyProblem;
 use std::fmt::{self, Display, Formatter};
 use std::str::FromStr;
@@ -27,7 +27,7 @@ impl Probe {
     }
 
     /// The point in a mesh; none of another dimension.
-    pub(super) fn place(&self, mesh: &AnyMesh) -> Option<Vector> {
+    pub(super) fn place(&self, mesh: &Mesh) -> Option<Vector> {
         (self.point.len() == mesh.dimension()).then(|| row(&self.point, 0, mesh.dimension()))
     }
 
@@ -47,7 +47,7 @@ impl Probe {
     ///
     /// # Errors
     /// A point of another dimension or outside the body, a field that such bodies do not have.
-    pub fn around(&self, mesh: &AnyMesh) -> Result<Vec<AnyAround>, String> {
+    pub fn around(&self, mesh: &Mesh) -> Result<Vec<Around>, String> {
         let d = mesh.dimension();
         let (body, needed) = if d == 1 { ("a bar", "one coordinate") } else { ("a plane body", "two coordinates") };
         let name = self.field.name();
@@ -113,7 +113,7 @@ impl FromStr for Probe {
 #[derive(Clone, Debug)]
 pub struct ProbeSink<'p> {
     problem: &'p AnyProblem,
-    around: Vec<AnyAround>,
+    around: Vec<Around>,
     field: Field,
     largest: Option<f64>,
 }
@@ -145,7 +145,6 @@ impl StateSink for ProbeSink<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::mesh::Diagonals;
     use proptest::prelude::*;
 
     proptest! {
@@ -172,8 +171,8 @@ mod tests {
 
     #[test]
     fn a_probe_must_fit_the_body() {
-        let plane = AnyMesh::rectangle_cut([0.05, 0.04], [2, 2], Diagonals::default()).unwrap();
-        let bar = AnyMesh::uniform_bar(0.1, 4).unwrap();
+        let plane = Mesh::rectangle(0.05, 0.04, 2, 2).unwrap();
+        let bar = Mesh::uniform_bar(0.1, 4).unwrap();
         let refused = |text: &str, words: &[&str]| {
             let probe = text.parse::<Probe>();
             let told = probe.and_then(|probe| probe.around(&plane).map(drop)).unwrap_err();

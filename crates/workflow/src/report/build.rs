@@ -17,7 +17,7 @@ use percute_core::contact::AnyObstacle;
 use percute_core::dynamics::Balance;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{AnyProblem, PlausibilityWarning, plausibility_warnings};
 use percute_estimator::{Estimate, Options};
 
@@ -210,7 +210,7 @@ pub(crate) fn problem_summary(subject: &Subject<'_>) -> ProblemSummary {
     }
 }
 
-fn worst(mesh: &AnyMesh, estimate: &Estimate) -> Vec<WorstElement> {
+fn worst(mesh: &Mesh, estimate: &Estimate) -> Vec<WorstElement> {
     let named = |(id, error): (ElementId, f64)| {
         let centroid = mesh.centroid(id)[..mesh.dimension()].to_vec();
         WorstElement { element: id.index(), error, centroid }

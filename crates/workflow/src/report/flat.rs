@@ -9,7 +9,7 @@
 use percute_core::border::Vector;
 use percute_core::dynamics::time_step_of_element;
 use percute_core::ids::ElementId;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::AnyProblem;
 use percute_core::simplex::Shape;
 
@@ -68,7 +68,7 @@ impl FlatElements {
 }
 
 /// The elements that share a node with some.
-fn around(mesh: &AnyMesh, some: &[(usize, f64)]) -> Vec<bool> {
+fn around(mesh: &Mesh, some: &[(usize, f64)]) -> Vec<bool> {
     let mut around = vec![false; mesh.element_count()];
     for node in some.iter().flat_map(|(e, _)| mesh.cell(ElementId::new(*e))) {
         mesh.elements_around(*node).iter().for_each(|element| around[element.index()] = true);
@@ -77,7 +77,7 @@ fn around(mesh: &AnyMesh, some: &[(usize, f64)]) -> Vec<bool> {
 }
 
 /// The angles of a triangle (degrees).
-pub(super) fn angles(mesh: &AnyMesh, element: usize) -> [f64; 3] {
+pub(super) fn angles(mesh: &Mesh, element: usize) -> [f64; 3] {
     let (points, n) = (mesh.cell_points(ElementId::new(element)), mesh.nodes_of_element());
     std::array::from_fn(|k| {
         let side = |to: usize| -> Vector { std::array::from_fn(|c| points[(k + to) % n][c] - points[k % n][c]) };

@@ -2,7 +2,7 @@
 
 use super::flat::{self, angles};
 use percute_core::ids::ElementId;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use serde::Serialize;
 
 /// Elements whose longest edge is more than so many times as long as the shortest one are long. The evidence has up to
@@ -29,7 +29,7 @@ pub struct PoorElement {
 }
 
 /// Those with the largest parts of the squared mean error, largest first; `by_element` has the contribution of each.
-pub(super) fn poor_elements(mesh: &AnyMesh, by_element: &[f64]) -> Vec<PoorElement> {
+pub(super) fn poor_elements(mesh: &Mesh, by_element: &[f64]) -> Vec<PoorElement> {
     let total: f64 = by_element.iter().map(|error| error * error).sum();
     if mesh.dimension() != 2 || total <= 0.0 {
         return Vec::new();
@@ -50,7 +50,7 @@ pub(super) fn poor_elements(mesh: &AnyMesh, by_element: &[f64]) -> Vec<PoorEleme
 }
 
 /// The longest edge of an element over its shortest one.
-pub(super) fn aspect(mesh: &AnyMesh, element: usize) -> f64 {
+pub(super) fn aspect(mesh: &Mesh, element: usize) -> f64 {
     let points = mesh.cell_points(ElementId::new(element));
     let between = |a: usize, b: usize| (0..3).map(|c| (points[a][c] - points[b][c]).powi(2)).sum::<f64>().sqrt();
     let count = points.len();

@@ -7,7 +7,7 @@ use super::{LargestResidual, ProblemSummary};
 use crate::flight::NextTouch;
 use crate::foreign::{Checked, Samples};
 use crate::message::{counted, percent, short, trimmed};
-use percute_core::mesh::{AnyMesh, ImportWarning};
+use percute_core::mesh::{ImportWarning, Mesh};
 use percute_core::problem::PlausibilityWarning;
 use percute_estimator::{Reconstruction, Sampling};
 use serde::Serialize;
@@ -220,7 +220,7 @@ pub(crate) fn few_samples(every: Sampling, steps: usize) -> Option<Warning> {
 }
 
 /// What was reported when the mesh was read.
-pub fn reported(mesh: &AnyMesh) -> impl Iterator<Item = Warning> {
+pub fn reported(mesh: &Mesh) -> impl Iterator<Item = Warning> {
     mesh.import_warnings().iter().map(|ImportWarning { name, brief, message, .. }| {
         let (brief, message) = (brief.clone(), message.clone());
         Warning { name, brief, message }

@@ -1,14 +1,14 @@
 //! The first difference between meshes, initial fields, instants and kept steps, in words.
 
 use crate::difference::OF_RUN;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_core::time::TimeGrid;
 use percute_io::history::Kept;
 use std::collections::BTreeMap;
 use std::fmt::{Debug, Display};
 
 /// The first difference between two meshes.
-pub(super) fn of_meshes(case: &AnyMesh, history: &AnyMesh) -> Option<String> {
+pub(super) fn of_meshes(case: &Mesh, history: &Mesh) -> Option<String> {
     if case.dimension() != history.dimension() {
         return Some(told("[mesh], the dimension", case.dimension(), history.dimension()));
     }
@@ -19,8 +19,8 @@ pub(super) fn of_meshes(case: &AnyMesh, history: &AnyMesh) -> Option<String> {
     if let Some((of, one, other)) = counts.into_iter().find(|(_, one, other)| one != other) {
         return Some(told(&format!("[mesh], the number of {of}"), one, other));
     }
-    let points = |mesh: &AnyMesh| of_rows(mesh.points(), mesh.dimension());
-    let cells = |mesh: &AnyMesh| mesh.cells().map(|cell| cell.iter().map(|node| node.index()).collect()).collect();
+    let points = |mesh: &Mesh| of_rows(mesh.points(), mesh.dimension());
+    let cells = |mesh: &Mesh| mesh.cells().map(|cell| cell.iter().map(|node| node.index()).collect()).collect();
     let (one, other): (Vec<Vec<usize>>, Vec<Vec<usize>>) = (cells(case), cells(history));
     of_lists("[mesh], node", "m", &points(case), &points(history))
         .or_else(|| of_lists("[mesh], the list of nodes of element", "", &one, &other))
@@ -97,16 +97,16 @@ fn told(what: &str, case: impl Display, history: impl Display) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::mesh::TriangleMesh;
+    use percute_core::mesh::Mesh;
 
     type Change<'c> = &'c dyn Fn(&mut Vec<[f64; 2]>, &mut Vec<[usize; 3]>, &mut BTreeMap<String, Vec<[usize; 2]>>);
 
-    fn square(change: Change<'_>) -> AnyMesh {
+    fn square(change: Change<'_>) -> Mesh {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let (mut points, mut cells) = (points, vec![[0, 1, 2], [0, 2, 3]]);
         let mut groups = BTreeMap::from([("low".to_string(), vec![[0, 1]])]);
         change(&mut points, &mut cells, &mut groups);
-        TriangleMesh::new(points, &cells, &groups, &BTreeMap::new()).unwrap().into()
+        Mesh::new(points, &cells, &groups, &BTreeMap::new()).unwrap()
     }
 
     #[test]

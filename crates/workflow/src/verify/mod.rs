@@ -70,7 +70,7 @@ pub fn prepare(
         let fine = mesh.refined().map_err(|error| Failure::Argument(format!("the mesh cannot be refined: {error}")))?;
         let initial = [coarse.initial_displacement(), coarse.initial_velocity()].map(|field| mesh.prolonged(field));
         let [displacement, velocity] = initial;
-        let (problem, _) = problem_from(&stated, &fine, displacement, velocity)?;
+        let (problem, _) = problem_from(&stated, &fine.into(), displacement, velocity)?;
         let critical_step = critical_time_step(&problem);
         let times = TimeGrid::with_step(times.end(), courant * critical_step);
         let times = times.map_err(|error| Failure::Argument(error.to_string()))?;

@@ -17,7 +17,7 @@ pub fn stopping_times<const D: usize, const N: usize>(problem: &Problem<D, N>) -
     // ρcℓ.
     let mut impedance = vec![0.0; surface.nodes().len()];
     for facet in surface.facets() {
-        let law = problem.material(mesh.facets()[facet.facet.index()].owner);
+        let law = problem.material(mesh.facet(facet.facet).owner);
         facet.nodes.iter().for_each(|&k| impedance[k] += law.density() * law.wave_speed() * facet.area / D as f64);
     }
     let time = |at: usize| {

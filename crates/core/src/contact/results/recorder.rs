@@ -276,7 +276,7 @@ fn points<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Contac
 fn shortest_edges<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<f64> {
     let (surface, mut shortest) = (problem.surface(), vec![f64::INFINITY; problem.surface().nodes().len()]);
     for facet in surface.facets().iter().filter(|_| D > 1) {
-        let (_, length) = problem.mesh().facet_normal(facet.facet);
+        let (_, length) = problem.mesh().normal_in::<D>(facet.facet);
         let is_of_body = |at: usize| surface.nodes()[at].opposite.is_some() || surface.sliding_of(at).is_some();
         for &at in facet.nodes.iter().filter(|&&at| is_of_body(at)) {
             shortest[at] = shortest[at].min(length);

@@ -60,8 +60,8 @@ pub(in crate::problem) struct Start<'a, const D: usize> {
 
 /// The bodies of a mesh, with these names; `free` says whether an edge may touch, `wave_speed` is that at an edge
 /// (m/s). `line_of` has the line of symmetry on which an edge is.
-pub(in crate::problem) fn outlines<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
+pub(in crate::problem) fn outlines<const D: usize>(
+    mesh: &Mesh,
     names: Vec<String>,
     start: &Start<'_, D>,
     free: impl Fn(FacetId) -> bool,
@@ -71,15 +71,15 @@ pub(in crate::problem) fn outlines<const D: usize, const N: usize>(
     let body_of_node = mesh.part_numbers();
     let mut edges: Vec<Vec<Edge>> = names.iter().map(|_| Vec::new()).collect();
     let place = |node: NodeId| -> [f64; D] {
-        std::array::from_fn(|c| mesh.points()[node.index()][c] + start.displacement[node.index()][c])
+        std::array::from_fn(|c| mesh.points_in::<D>()[node.index()][c] + start.displacement[node.index()][c])
     };
     for facet in mesh.boundary() {
-        let nodes = mesh.facets()[facet.index()].nodes;
+        let nodes = mesh.facet_nodes::<D>(facet);
         let mut ends = [nodes[0], nodes[D - 1]].map(|node| in_plane(&place(node)));
         if D == 1 {
             (ends[0][1], ends[1][1]) = (-1.0, 1.0);
         }
-        let normal = in_plane(&mesh.facet_normal(facet).0);
+        let normal = in_plane(&mesh.normal_in::<D>(facet).0);
         let edge = Edge { facet, nodes: nodes.to_vec(), ends, normal, free: free(facet) };
         edges[body_of_node[nodes[0].index()]].push(edge);
     }

@@ -29,14 +29,14 @@ fn wide(name: &'static str, at: [f64; 2], velocity: [f64; 2]) -> Block {
 fn bodies(blocks: &[Block]) -> Builder<2, 3> {
     let mesh = |block: &Block| {
         let ([width, height], [nx, ny]) = (block.size, block.cells);
-        Mesh::<2, 3>::rectangle(width, height, nx, ny).unwrap().placed(&block.at, 0.0).unwrap()
+        Mesh::rectangle(width, height, nx, ny).unwrap().placed(&block.at, 0.0).unwrap()
     };
     let meshes: Vec<_> = blocks.iter().map(|block| (block.name, mesh(block))).collect();
     let velocity = blocks.iter().zip(&meshes).flat_map(|(block, (_, mesh))| vec![block.velocity; mesh.node_count()]);
     let velocity = Initial::Nodal(velocity.collect());
     let joined = Mesh::joined(&meshes.iter().map(|(name, mesh)| (*name, mesh)).collect::<Vec<_>>()).unwrap();
     let law = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
-    Problem::builder(joined).material(law).initial_velocity(velocity).automatic_contact()
+    Problem::<2, 3>::builder(joined).material(law).initial_velocity(velocity).automatic_contact()
 }
 
 fn all(friction: f64) -> Contact {
@@ -90,8 +90,8 @@ fn surfaces_end_beyond_the_other_body() {
     let edges = |problem: &Problem<2, 3>, group: &str| {
         let facets = problem.mesh().facet_groups()[group].iter();
         let mut ends: Vec<f64> = facets
-            .flat_map(|f| problem.mesh().facets()[f.index()].nodes)
-            .map(|n| mesh.points()[n.index()][0])
+            .flat_map(|f| problem.mesh().facet_nodes::<2>(*f))
+            .map(|n| mesh.points_in::<2>()[n.index()][0])
             .collect();
         ends.sort_by(f64::total_cmp);
         (ends[0], ends[ends.len() - 1])
@@ -140,7 +140,7 @@ fn a_named_contact_has_its_own_friction() {
         .conditions()
         .interfaces
         .iter()
-        .fold(Problem::builder(problem.mesh().clone()), |b, i| b.interface(i.clone()));
+        .fold(Problem::<2, 3>::builder(problem.mesh().clone()), |b, i| b.interface(i.clone()));
     let again =
         again.material(problem.materials()[0]).initial_velocity(Initial::Nodal(problem.initial_velocity().to_vec()));
     assert_eq!(again.build().unwrap().surface().nodes(), problem.surface().nodes());

@@ -30,22 +30,22 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
         let normal = *problem.obstacles()[index].flat_frame().normal();
         let along = tangent(&normal);
         let range = |facet: FacetId| {
-            let nodes = mesh.facets()[facet.index()].nodes.iter();
+            let nodes = mesh.facet_nodes::<D>(facet).into_iter();
             nodes
-                .map(|node| dot(&mesh.points()[node.index()], &along))
+                .map(|node| dot(&mesh.points_in::<D>()[node.index()], &along))
                 .fold(NOTHING, |[low, high], xi| [low.min(xi), high.max(xi)])
         };
         let of = |obstacle: usize| surface.facets().iter().filter(move |facet| facet.obstacle == obstacle);
         let other = of(opposite)
             .map(|facet| range(facet.facet))
             .fold(NOTHING, |[low, high], [from, to]| [low.min(from), high.max(to)]);
-        let own: BTreeSet<NodeId> = of(index).flat_map(|facet| mesh.facets()[facet.facet.index()].nodes).collect();
+        let own: BTreeSet<NodeId> = of(index).flat_map(|facet| mesh.facet_nodes::<D>(facet.facet)).collect();
         for facet in mesh.boundary().filter(|facet| !in_contact.contains(facet)) {
-            let nodes = mesh.facets()[facet.index()].nodes;
+            let nodes = mesh.facet_nodes::<D>(facet);
             let is_across = |node: &NodeId| (0..D).any(|c| normal[c].abs() > ROUNDING && held.contains(&(*node, c)));
             let free = problem.supported(facet) == [false; D] && !loaded.contains(&facet);
             let beside = free && nodes.iter().any(|node| own.contains(node));
-            let faces = -dot(&mesh.facet_normal(facet).0, &normal) >= FACES;
+            let faces = -dot(&mesh.normal_in::<D>(facet).0, &normal) >= FACES;
             let [low, high] = range(facet);
             let common = high.min(other[1]) - low.max(other[0]) > ROUNDING * (high - low);
             if let Some(node) = nodes.iter().find(|node| is_across(node)).filter(|_| beside && faces && common) {

@@ -220,7 +220,7 @@ fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Tim
     if first.time > times.end() {
         never(problem, &first, times.end())
     } else {
-        far(problem, &first, bodies.largest(problem.mesh().points()))
+        far(problem, &first, bodies.largest(problem.mesh().points_in::<D>()))
     }
 }
 

@@ -41,7 +41,7 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
     let size = problem.mesh().size();
     // An import warning of the mesh file names the key that corrects it.
     let reported = problem.mesh().import_warnings().iter().any(|import_warning| import_warning.name == "large_mesh");
-    let broad = narrowest(problem.mesh().points()) > BROAD && D == 2;
+    let broad = narrowest(problem.mesh().points_in::<D>()) > BROAD && D == 2;
     let large = if broad { size_of_body(size, 0.0) } else { size_of_body(size, LARGE) };
     let mut all: Vec<PlausibilityWarning> = large.filter(|_| !reported).into_iter().collect();
     for (index, material) in problem.materials().iter().enumerate() {

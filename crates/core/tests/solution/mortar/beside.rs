@@ -7,8 +7,8 @@ use percute_core::mesh::Mesh;
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
 
-fn block(width: f64, cells: [usize; 2]) -> Mesh<2, 3> {
-    Mesh::<2, 3>::rectangle(width, 0.02, cells[0], cells[1]).unwrap()
+fn block(width: f64, cells: [usize; 2]) -> Mesh {
+    Mesh::rectangle(width, 0.02, cells[0], cells[1]).unwrap()
 }
 
 /// The impulse on the second body (N s) and the energy gained, over that at the start.
@@ -53,7 +53,7 @@ fn a_corner_from_beside_is_pushed_along_the_normal_of_the_face_that_it_strikes()
     assert!(gained < 1e-3, "{gained}");
     // The corner is the lowest node of the second body: it does not enter the upper side of the first one.
     let run = run(&problem, &TimeGrid::with_step(4.5e-4, 0.8 * critical_time_step(&problem)).unwrap());
-    let place = |u: &[[f64; 2]], i: usize| [0, 1].map(|c| problem.mesh().points()[i][c] + u[i][c]);
+    let place = |u: &[[f64; 2]], i: usize| [0, 1].map(|c| problem.mesh().points_in::<2>()[i][c] + u[i][c]);
     let corner = 25;
     for n in 0..=run.last() {
         let u = run.history.step(n).unwrap().displacement();
@@ -70,8 +70,8 @@ fn a_corner_from_beside_is_pushed_along_the_normal_of_the_face_that_it_strikes()
 #[test]
 fn a_corner_that_strikes_a_curve_is_pushed_along_the_normal_of_the_curve() {
     let turned = block(0.03, [6, 4]).placed(&[0.0; 2], -25.0).unwrap();
-    let corner = turned.points().iter().copied().max_by(|a, b| a[0].total_cmp(&b[0])).unwrap();
-    let disc = Mesh::<2, 3>::disc(0.014, 5).unwrap();
+    let corner = turned.points_in::<2>().iter().copied().max_by(|a, b| a[0].total_cmp(&b[0])).unwrap();
+    let disc = Mesh::disc(0.014, 5).unwrap();
     let disc = disc.placed(&[corner[0] + 0.0142, corner[1] - 0.0005], 0.0).unwrap();
     let bodies: [Body<'_>; 2] = [("block", turned, [0.0; 2]), ("disc", disc, [-20.0, 0.0])];
     let problem = problem(&bodies).build().unwrap();

@@ -6,7 +6,7 @@ use percute_core::contact::{ContactRecorder, Interface, Status};
 use percute_core::dynamics::{missed_contact, simulate};
 use percute_core::ids::NodeId;
 use percute_core::load::{Profile, Support, Table, Traction};
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Between, Builder, Contact, Initial, TriangleProblem, plausibility_warnings};
 use percute_testkit::{Roof, translated};
@@ -85,9 +85,9 @@ fn half_of_a_symmetric_model_has_half_of_the_area() {
 /// them touch at the next instant: the block widens and passes some by the rounding of their places.
 #[test]
 fn nodes_in_contact_touch() {
-    let plate = TriangleMesh::rectangle(0.04, 0.01, 40, 2).unwrap();
-    let block = translated(&TriangleMesh::rectangle(0.02, 0.01, 17, 2).unwrap(), [0.01, 0.01001]).unwrap();
-    let mesh = TriangleMesh::joined(&[("plate", &plate), ("block", &block)]).unwrap();
+    let plate = Mesh::rectangle(0.04, 0.01, 40, 2).unwrap();
+    let block = translated(&Mesh::rectangle(0.02, 0.01, 17, 2).unwrap(), [0.01, 0.01001]).unwrap();
+    let mesh = Mesh::joined(&[("plate", &plate), ("block", &block)]).unwrap();
     let velocity = |node: usize| [0.0, if node < plate.node_count() { 0.0 } else { -20.0 }];
     let velocity = Initial::Nodal((0..mesh.node_count()).map(velocity).collect());
     let problem = TriangleProblem::builder(mesh)
@@ -124,14 +124,14 @@ fn lines_of_symmetry_are_found_beside_rounding() {
 }
 
 /// A block of 5 by 2 cells, 20 mm wide, with its lowest side at a height; its lower side rises to the right.
-fn block(height: f64, rise: f64) -> TriangleMesh {
-    let mesh = TriangleMesh::rectangle(0.02, 0.01, 5, 2).unwrap();
+fn block(height: f64, rise: f64) -> Mesh {
+    let mesh = Mesh::rectangle(0.02, 0.01, 5, 2).unwrap();
     mesh.mapped(|p| [p[0], p[1] + height + rise * p[0]]).unwrap()
 }
 
 /// Two bodies of which the second one comes down at 20 m/s, with supports.
-fn falling(lower: &TriangleMesh, upper: &TriangleMesh, supports: &[(&str, [bool; 2])]) -> Builder<2, 3> {
-    let mesh = TriangleMesh::joined(&[("lower", lower), ("upper", upper)]).unwrap();
+fn falling(lower: &Mesh, upper: &Mesh, supports: &[(&str, [bool; 2])]) -> Builder<2, 3> {
+    let mesh = Mesh::joined(&[("lower", lower), ("upper", upper)]).unwrap();
     let velocity = [vec![[0.0; 2]; lower.node_count()], vec![[0.0, -20.0]; upper.node_count()]].concat();
     let builder = TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity));
     supports.iter().fold(builder, |builder, (group, components)| {
@@ -181,7 +181,7 @@ fn found(builder: Builder<2, 3>) -> ([f64; 2], Vec<&'static str>) {
 fn halves_may_be_driven_along_their_line() {
     for rows in [1, 2] {
         let lower = block(-0.01, 0.0).mapped(|p| [p[0], p[1] - 10.0 * (p[1] + 0.01) * p[0]]).unwrap();
-        let plate = TriangleMesh::rectangle(0.02, 0.004, 8, rows).unwrap();
+        let plate = Mesh::rectangle(0.02, 0.004, 8, rows).unwrap();
         let upper = plate.mapped(|p| [p[0], p[1] + 1e-5 + 0.1 * p[0] * (1.0 - p[1] / 0.004)]).unwrap();
         let velocity = Table::new(vec![0.0, 1e-5, 1.0], vec![[0.0, -20.0], [0.0, -25.0], [0.0, -25.0]]).unwrap();
         let press =
@@ -210,12 +210,12 @@ fn a_clamped_side_is_the_end_of_a_body() {
 /// user took it out: by a traction on it, or by names of other edges.
 #[test]
 fn an_edge_beside_a_support_is_left_out() {
-    let lower = TriangleMesh::rectangle(0.045, 0.01, 9, 2).unwrap();
-    let cells: Vec<_> = lower.cells().iter().map(|nodes| nodes.map(NodeId::index)).collect();
+    let lower = Mesh::rectangle(0.045, 0.01, 9, 2).unwrap();
+    let cells: Vec<_> = lower.nodes_of::<3>().iter().map(|nodes| nodes.map(NodeId::index)).collect();
     let top: Vec<_> = (20..29).map(|first| [first, first + 1]).collect();
     let groups = [("left", vec![[0, 10], [10, 20]]), ("first", top[..1].to_vec()), ("others", top[1..].to_vec())];
     let groups = groups.map(|(name, edges)| (name.to_string(), edges)).into();
-    let lower = TriangleMesh::new(lower.points().to_vec(), &cells, &groups, &BTreeMap::new()).unwrap();
+    let lower = Mesh::new(lower.points_in::<2>().to_vec(), &cells, &groups, &BTreeMap::new()).unwrap();
     let bodies = |wide: f64, components: [bool; 2]| {
         let upper = block(0.01001, 0.0).mapped(|p| [p[0] + wide, p[1]]).unwrap();
         falling(&lower, &upper, &[("lower.left", components)])

@@ -85,7 +85,7 @@ fn check_multipliers(run: &Run<'_, 2, 3>, n: usize, sliding: &SlidingSurfaces<2>
     let coupling = sliding.coupling(surface, &predicted(run, n));
     let multipliers = sliding.multipliers(&coupling, step.reaction());
     let velocity = run.half_velocity(n);
-    let points = run.problem.mesh().points();
+    let points = run.problem.mesh().points_in::<2>();
     let places: Vec<[f64; 2]> =
         points.iter().zip(next.displacement::<2>()).map(|(x, u)| [x[0] + u[0], x[1] + u[1]]).collect();
     check_couple(run, (sliding, &coupling), step.reaction());

@@ -5,17 +5,17 @@ use crate::solution::run::{aluminium, difference, largest, run};
 use percute_core::contact::{ContactRecorder, Interface, Obstacle};
 use percute_core::history::StepSource;
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::problem::{BarProblem, Initial, TriangleProblem};
 use percute_testkit::{translated, upside_down};
 
 /// Two blocks of the same nodes that meet as mirror images do not slide: mortar is pairs, row by row.
 #[test]
 fn matching_surfaces_are_pairs() {
-    let block = TriangleMesh::rectangle(0.04, HEIGHT, 8, 6).unwrap();
+    let block = Mesh::rectangle(0.04, HEIGHT, 8, 6).unwrap();
     let upper = translated(&block, [0.0, GAP]).unwrap();
     let lower = translated(&upside_down(&block).unwrap(), [0.0, -GAP]).unwrap();
-    let mesh = TriangleMesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap();
+    let mesh = Mesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap();
     let half = upper.node_count();
     let velocity: Vec<_> = (0..mesh.node_count()).map(|i| [3.0, if i < half { -20.0 } else { 20.0 }]).collect();
     let problem = |interface| {
@@ -69,7 +69,7 @@ fn a_heavy_stiff_master_is_a_rigid_plane() {
     let problem = blocks.problem();
     let times = steps(&problem, 20e-6);
     let both = run(&problem, &times);
-    let upper = TriangleMesh::rectangle(0.04, HEIGHT, 14, 11).unwrap();
+    let upper = Mesh::rectangle(0.04, HEIGHT, 14, 11).unwrap();
     let alone = TriangleProblem::builder(translated(&upper, [0.005, HEIGHT + GAP]).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform([8.0, -20.0]))
@@ -87,8 +87,8 @@ fn a_heavy_stiff_master_is_a_rigid_plane() {
 /// The ends of bars are pairs whatever the interface.
 #[test]
 fn bars_are_pairs() {
-    let bar = |start: f64| BarMesh::uniform_bar(0.3, 10).unwrap().mapped(|p| [p[0] + start]).unwrap();
-    let mesh = BarMesh::joined(&[("left", &bar(-0.3)), ("right", &bar(1e-4))]).unwrap();
+    let bar = |start: f64| Mesh::uniform_bar(0.3, 10).unwrap().mapped(|p| [p[0] + start]).unwrap();
+    let mesh = Mesh::joined(&[("left", &bar(-0.3)), ("right", &bar(1e-4))]).unwrap();
     let interface = Interface::sliding(1, "left.end", "right.start", 0.0).unwrap();
     assert!(interface.is_matching());
     let problem = BarProblem::builder(mesh)

@@ -20,7 +20,7 @@ fn stays_at_rest(material: Elastic, strains: [f64; 2], angle: f64, gap: f64) {
     let turned = |v: [f64; 2]| [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]];
     let straight = blocks.mesh();
     let displacement: Vec<[f64; 2]> = straight
-        .points()
+        .points_in::<2>()
         .iter()
         .map(|&[x, y]| {
             // The upper block has come down by the gap.

@@ -6,7 +6,7 @@ use percute_core::contact::{Interface, Leaning, Obstacle};
 use percute_core::dynamics::{SimulationError, check_start};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
-use percute_core::mesh::{ElementGroups, FacetGroups, TriangleMesh};
+use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
 use percute_core::problem::{Builder, Cause, Initial, InputError, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::translated;
@@ -48,10 +48,10 @@ fn placed(place: impl Fn(usize, [f64; 2]) -> [f64; 2], supports: &[&str]) -> Res
 /// Both bodies without contact.
 fn joined(place: impl Fn(usize, [f64; 2]) -> [f64; 2]) -> Builder<2, 3> {
     let body = |side: usize, up: f64| {
-        let block = translated(&TriangleMesh::rectangle(0.02, 0.02, 4, 4).unwrap(), [0.0, up]).unwrap();
+        let block = translated(&Mesh::rectangle(0.02, 0.02, 4, 4).unwrap(), [0.0, up]).unwrap();
         block.mapped(|p| place(side, *p)).unwrap()
     };
-    let mesh = TriangleMesh::joined(&[("upper", &body(0, 0.02 + GAP)), ("lower", &body(1, 0.0))]).unwrap();
+    let mesh = Mesh::joined(&[("upper", &body(0, 0.02 + GAP)), ("lower", &body(1, 0.0))]).unwrap();
     TriangleProblem::builder(mesh).material(aluminium())
 }
 
@@ -95,7 +95,7 @@ fn slopes_of_a_cell_count_at_their_own_line() {
 fn chevrons_lean_together() {
     let slope = |problem: &TriangleProblem, ends: bool| {
         let (surface, mesh) = (problem.surface(), problem.mesh());
-        let apex = |at: usize| (mesh.points()[surface.nodes()[at].node.index()][0] - 0.01).abs() < 1e-9;
+        let apex = |at: usize| (mesh.points_in::<2>()[surface.nodes()[at].node.index()][0] - 0.01).abs() < 1e-9;
         let leaning = |inside: bool| Leaning::new(surface, mesh, vec![inside; surface.nodes().len()]);
         assert_eq!(leaning(true).largest(0.0, apex, |_| &[0.0]), 0.0);
         leaning(!ends).largest(0.0, |_| true, |_| &[0.0]).to_degrees()
@@ -238,7 +238,7 @@ fn edges_above_each_other_are_refused() {
         [4, 7, 13],
     ];
     let groups = FacetGroups::from([("up".to_string(), vec![[2, 3], [6, 7]]), ("down".to_string(), vec![[8, 9]])]);
-    let mesh = TriangleMesh::new(points, &cells, &groups, &ElementGroups::new()).unwrap();
+    let mesh = Mesh::new(points, &cells, &groups, &ElementGroups::new()).unwrap();
     assert_eq!(mesh.parts(), 2);
     let interface = Interface::sliding(2, "up", "down", 0.0).unwrap();
     let problem = TriangleProblem::builder(mesh).material(aluminium()).interface(interface).build();

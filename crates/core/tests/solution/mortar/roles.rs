@@ -3,7 +3,7 @@
 use super::setup::steel;
 use crate::solution::run::aluminium;
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Between, Contact, Initial, TriangleProblem};
 use percute_testkit::rotated;
 
@@ -13,11 +13,9 @@ struct Block(&'static str, [f64; 2], f64, Elastic);
 
 /// The body of the slave of two blocks of 20 mm in this order, turned by an angle (degrees).
 fn slave(blocks: [Block; 2], degrees: f64) -> String {
-    let mesh = |Block(_, at, height, _): &Block| {
-        TriangleMesh::rectangle(0.02, *height, 6, 6).unwrap().placed(at, 0.0).unwrap()
-    };
+    let mesh = |Block(_, at, height, _): &Block| Mesh::rectangle(0.02, *height, 6, 6).unwrap().placed(at, 0.0).unwrap();
     let meshes = blocks.each_ref().map(mesh);
-    let joined = TriangleMesh::joined(&[(blocks[0].0, &meshes[0]), (blocks[1].0, &meshes[1])]).unwrap();
+    let joined = Mesh::joined(&[(blocks[0].0, &meshes[0]), (blocks[1].0, &meshes[1])]).unwrap();
     let (sin, cos) = degrees.to_radians().sin_cos();
     let falls = |block: &Block| if block.1[1] > 0.0 { [20.0 * sin, -20.0 * cos] } else { [0.0; 2] };
     let velocity = (0..2).flat_map(|k| vec![falls(&blocks[k]); meshes[k].node_count()]).collect();

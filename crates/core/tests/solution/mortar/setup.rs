@@ -4,7 +4,7 @@ use crate::solution::run::aluminium;
 use percute_core::contact::Interface;
 use percute_core::dynamics::critical_time_step;
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Builder, Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::translated;
@@ -50,17 +50,17 @@ impl Blocks {
     }
 
     /// The mesh, of bodies `upper` and `lower`.
-    pub(crate) fn mesh(&self) -> TriangleMesh {
+    pub(crate) fn mesh(&self) -> Mesh {
         let block = |k: usize, at: [f64; 2]| {
-            let mesh = TriangleMesh::rectangle(self.widths[k], HEIGHT, self.cells[k][0], self.cells[k][1]).unwrap();
+            let mesh = Mesh::rectangle(self.widths[k], HEIGHT, self.cells[k][0], self.cells[k][1]).unwrap();
             translated(&mesh, at).unwrap()
         };
         let (upper, lower) = (block(0, [self.aside, HEIGHT + self.gap]), block(1, [0.0; 2]));
-        TriangleMesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap()
+        Mesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap()
     }
 
     /// The bodies on a mesh of theirs, moved and turned perhaps; `map` does the same to velocities.
-    pub(crate) fn bodies(&self, mesh: TriangleMesh, map: impl Fn([f64; 2]) -> [f64; 2]) -> Builder<2, 3> {
+    pub(crate) fn bodies(&self, mesh: Mesh, map: impl Fn([f64; 2]) -> [f64; 2]) -> Builder<2, 3> {
         let upper = (self.cells[0][0] + 1) * (self.cells[0][1] + 1);
         let velocity = (0..mesh.node_count()).map(|node| map(self.velocities[usize::from(node >= upper)])).collect();
         TriangleProblem::builder(mesh)

@@ -4,7 +4,7 @@ use super::law::{check_energy, check_steps};
 use super::setup::{GAP, HEIGHT, steel, steps};
 use crate::solution::run::{Run, aluminium, run};
 use percute_core::contact::Obstacle;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Between, Contact, Initial, TriangleProblem};
 use percute_testkit::translated;
 
@@ -37,7 +37,7 @@ impl Three {
     fn problem(&self, on_floor: bool) -> TriangleProblem {
         let width = 0.02 - 0.5 * SLIT;
         let block = |k: usize, width: f64, at: [f64; 2]| {
-            let mesh = TriangleMesh::rectangle(width, HEIGHT, self.cells[k][0], self.cells[k][1]).unwrap();
+            let mesh = Mesh::rectangle(width, HEIGHT, self.cells[k][0], self.cells[k][1]).unwrap();
             translated(&mesh, at).unwrap()
         };
         let blocks = [
@@ -45,14 +45,14 @@ impl Three {
             block(1, width + self.aside, [0.0, 0.0]),
             block(2, width - self.aside, [width + self.aside + SLIT, 0.0]),
         ];
-        let named: Vec<(&str, &TriangleMesh)> = ["upper", "left", "right"].into_iter().zip(&blocks).collect();
+        let named: Vec<(&str, &Mesh)> = ["upper", "left", "right"].into_iter().zip(&blocks).collect();
         let velocity = (0..3).flat_map(|k| vec![self.velocities[k]; blocks[k].node_count()]).collect();
         let contact = |below: &str| {
             let groups = Between::Groups(["upper.bottom".to_string(), format!("{below}.top")]);
             Contact::new(2, groups, self.friction, None).unwrap()
         };
         let [first, second] = if self.right_first { ["right", "left"] } else { ["left", "right"] };
-        let mut builder = TriangleProblem::builder(TriangleMesh::joined(&named).unwrap())
+        let mut builder = TriangleProblem::builder(Mesh::joined(&named).unwrap())
             .material_of("upper", aluminium())
             .material_of("left", aluminium())
             .material_of("right", steel())

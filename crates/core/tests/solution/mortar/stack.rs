@@ -4,7 +4,7 @@ use super::law::{check_energy, check_law, check_steps};
 use super::setup::{GAP, HEIGHT, steel, steps};
 use crate::solution::run::{aluminium, run};
 use percute_core::contact::{Interface, Obstacle};
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_testkit::translated;
 
@@ -15,17 +15,17 @@ const CELLS: [[usize; 2]; 3] = [[14, 9], [19, 12], [25, 16]];
 fn stack(velocities: [[f64; 2]; 3], plane: Option<Obstacle<2>>) -> TriangleProblem {
     let block = |k: usize| {
         let [nx, ny] = CELLS[k];
-        let mesh = TriangleMesh::rectangle(0.04, HEIGHT, nx, ny).unwrap();
+        let mesh = Mesh::rectangle(0.04, HEIGHT, nx, ny).unwrap();
         translated(&mesh, [0.0, k as f64 * (HEIGHT + GAP)]).unwrap()
     };
     let blocks = [block(0), block(1), block(2)];
     let names = ["lower", "middle", "upper"];
-    let bodies: Vec<(&str, &TriangleMesh)> = names.into_iter().zip(&blocks).collect();
+    let bodies: Vec<(&str, &Mesh)> = names.into_iter().zip(&blocks).collect();
     let velocity = (0..3).flat_map(|k| vec![velocities[k]; blocks[k].node_count()]).collect();
     let between = |below: &str, above: &str| {
         Interface::sliding(2, format!("{above}.bottom"), format!("{below}.top"), 0.2).unwrap()
     };
-    let mut builder = TriangleProblem::builder(TriangleMesh::joined(&bodies).unwrap())
+    let mut builder = TriangleProblem::builder(Mesh::joined(&bodies).unwrap())
         .material_of("lower", aluminium())
         .material_of("middle", steel())
         .material_of("upper", aluminium())

@@ -6,7 +6,7 @@ use crate::solution::run::run;
 use percute_core::contact::Interface;
 use percute_core::load::{BodyForce, Profile, Table, Traction};
 use percute_core::material::Elastic;
-use percute_core::mesh::{BarMesh, MeshError, TriangleMesh};
+use percute_core::mesh::{Mesh, MeshError};
 use percute_core::problem::{BarProblem, Builder, Cause, TriangleProblem};
 
 /// Blocks that touch and move along together.
@@ -113,9 +113,9 @@ fn touching_bodies_need_contact_where_they_touch() {
 #[test]
 fn bodies_must_not_overlap() {
     let joined = |gap: f64| {
-        let lower = TriangleMesh::rectangle(1.0, 1.0, 3, 3).unwrap();
+        let lower = Mesh::rectangle(1.0, 1.0, 3, 3).unwrap();
         let upper = lower.mapped(|p| [p[0], p[1] + 1.0 + gap]).unwrap();
-        TriangleMesh::joined(&[("lower", &lower), ("upper", &upper)])
+        Mesh::joined(&[("lower", &lower), ("upper", &upper)])
     };
     for gap in [0.0, 1e-15, -1e-15, 1e-11] {
         let mesh = joined(gap).unwrap();
@@ -129,8 +129,8 @@ fn bodies_must_not_overlap() {
         let MeshError::PartsTouch { elements } = joined(gap).unwrap_err() else { panic!("another error") };
         assert!(elements[0] < 18 && elements[1] >= 18);
     }
-    let bar = BarMesh::uniform_bar(1.0, 4).unwrap();
-    let beside = |start: f64| BarMesh::joined(&[("a", &bar), ("b", &bar.mapped(|p| [p[0] + start]).unwrap())]);
+    let bar = Mesh::uniform_bar(1.0, 4).unwrap();
+    let beside = |start: f64| Mesh::joined(&[("a", &bar), ("b", &bar.mapped(|p| [p[0] + start]).unwrap())]);
     assert!(beside(0.99).is_err());
     let problem = BarProblem::builder(beside(1.0).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 1e-4).unwrap())

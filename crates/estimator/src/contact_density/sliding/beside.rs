@@ -78,7 +78,7 @@ fn in_star<const D: usize, const N: usize>(
     let node = problem.surface().nodes()[candidate.nodes[edge.ends[end]]].node;
     let star = mesh.stars().star(node);
     let corners = |&id: &ElementId| {
-        let (points, own) = (mesh.cell_points(id), mesh.local_node(id, node).unwrap_or(0));
+        let (points, own) = (mesh.corners::<D, N>(id), mesh.local_node(id, node).unwrap_or(0));
         let arm = |next: usize| [0, D - 1].map(|c| points[(own + next) % N][c] - points[own][c]);
         StarElement { ends: [arm(1), arm(N - 1)], law: problem.material(id) }
     };
@@ -103,9 +103,9 @@ fn in_star<const D: usize, const N: usize>(
 fn corners<const D: usize, const N: usize>(problem: &Problem<D, N>, edge: &EdgeFacet) -> [[f64; 2]; 3] {
     let (mesh, candidate) = (problem.mesh(), &problem.surface().facets()[edge.facet]);
     let ends = edge.ends.map(|end| problem.surface().nodes()[candidate.nodes[end]].node);
-    let cell = &mesh.cells()[owner(problem, edge).index()];
+    let cell = &mesh.nodes_of::<N>()[owner(problem, edge).index()];
     let apex = cell.iter().find(|node| !ends.contains(node)).copied().unwrap_or(ends[0]);
-    [ends[0], ends[1], apex].map(|node| [0, D - 1].map(|c| mesh.points()[node.index()][c]))
+    [ends[0], ends[1], apex].map(|node| [0, D - 1].map(|c| mesh.points_in::<D>()[node.index()][c]))
 }
 
 /// The stress in a triangle on an edge, cut from a place on the edge to the corner opposite; none if a part would be
@@ -148,7 +148,7 @@ fn cut_fan([a, b, c]: [[f64; 2]; 3]) -> [[[f64; 2]; 2]; 4] {
 }
 
 fn owner<const D: usize, const N: usize>(problem: &Problem<D, N>, edge: &EdgeFacet) -> ElementId {
-    problem.mesh().facets()[problem.surface().facets()[edge.facet].facet.index()].owner
+    problem.mesh().facet(problem.surface().facets()[edge.facet].facet).owner
 }
 
 /// The sum of the roots, which is to be small: they are added to those of other stresses.

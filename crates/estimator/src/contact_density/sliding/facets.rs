@@ -62,10 +62,10 @@ impl SlidingFacets {
 /// of the edge in nine shapes of triangles.
 fn spread<const D: usize, const N: usize>(problem: &Problem<D, N>, facet: usize) -> f64 {
     let (mesh, facet) = (problem.mesh(), problem.surface().facets()[facet].facet);
-    let owner: ElementId = mesh.facets()[facet.index()].owner;
-    let (points, law) = (mesh.points(), problem.material(owner));
-    let ends = mesh.facets()[facet.index()].nodes;
-    let apex = mesh.cells()[owner.index()].iter().find(|node| !ends.contains(node)).copied().unwrap_or(ends[0]);
+    let owner: ElementId = mesh.facet(facet).owner;
+    let (points, law) = (mesh.points_in::<D>(), problem.material(owner));
+    let ends = mesh.facet_nodes::<D>(facet);
+    let apex = mesh.nodes_of::<N>()[owner.index()].iter().find(|node| !ends.contains(node)).copied().unwrap_or(ends[0]);
     let arm = |from: usize, to: usize| -> [f64; D] { std::array::from_fn(|c| points[to][c] - points[from][c]) };
     let cotangent = |k: usize| {
         let (near, far) = (ends[k].index(), ends[D - 1 - k].index());

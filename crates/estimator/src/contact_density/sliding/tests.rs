@@ -4,14 +4,14 @@ use super::*;
 use crate::contact_density::{Densities, FacetDensity, facet_power};
 use percute_core::contact::{Interface, Side};
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::TriangleProblem;
 use percute_testkit::Random;
 
 /// Two blocks, one above the other, with the same nodes on both sides of their interface.
 fn blocks(interface: Interface) -> TriangleProblem {
-    let block = |y: f64| TriangleMesh::rectangle(0.3, 0.2, 3, 2).unwrap().mapped(|p| [p[0], p[1] + y]).unwrap();
-    let mesh = TriangleMesh::joined(&[("upper", &block(0.201)), ("lower", &block(0.0))]).unwrap();
+    let block = |y: f64| Mesh::rectangle(0.3, 0.2, 3, 2).unwrap().mapped(|p| [p[0], p[1] + y]).unwrap();
+    let mesh = Mesh::joined(&[("upper", &block(0.201)), ("lower", &block(0.0))]).unwrap();
     TriangleProblem::builder(mesh)
         .material(Elastic::plane_strain(70e9, 0.3, 2700.0, 0.7).unwrap())
         .interface(interface)
@@ -49,7 +49,7 @@ fn on_matching_surfaces_they_are_those_of_pairs() {
     };
     let mut power = vec![0.0; surface.facets().len()];
     let slip = [sliding.slave(), sliding.master()].map(along_side);
-    density.friction_power(&slides, sliding, &slip, |piece, part| {
+    density.friction_power(sliding, &slip, |piece, part| {
         facets[0].of(piece).into_iter().for_each(|facet| power[facet] += 0.5 * part);
     });
     let [cone, opposite] = found.sliding_residuals(&slides);

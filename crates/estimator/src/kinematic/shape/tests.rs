@@ -7,7 +7,7 @@ use percute_core::contact::Obstacle;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::load::{BodyForce, Table};
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -135,9 +135,9 @@ fn long_windows() {
 }
 
 /// A body that a body force `g` (N/m³) brings back to a plane of slope `lean`.
-fn chattering(mesh: &TriangleMesh, speed: f64, g: f64, lean: f64) -> TriangleProblem {
-    let lowest = mesh.points().iter().fold(f64::INFINITY, |m, p| m.min(p[1] + lean * p[0]));
-    Problem::builder(mesh.clone())
+fn chattering(mesh: &Mesh, speed: f64, g: f64, lean: f64) -> TriangleProblem {
+    let lowest = mesh.points_in::<2>().iter().fold(f64::INFINITY, |m, p| m.min(p[1] + lean * p[0]));
+    Problem::<2, 3>::builder(mesh.clone())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([1.0, -speed]))
         .body_force(BodyForce { group: None, value: Table::constant([0.0, -g]) })

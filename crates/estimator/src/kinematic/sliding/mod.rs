@@ -224,7 +224,7 @@ const SIGNS: [f64; 2] = [1.0, -1.0];
 
 /// ρc² of the elements at a surface (Pa), the least of them.
 fn stiffness<const D: usize, const N: usize>(problem: &Problem<D, N>, side: &Side) -> f64 {
-    let element = |facet: &ContactFacet<D>| problem.mesh().facets()[facet.facet.index()].owner;
+    let element = |facet: &ContactFacet<D>| problem.mesh().facet(facet.facet).owner;
     let own = |facet: &&ContactFacet<D>| side.node_at(facet.nodes[0]).is_some();
     let stiffness = |facet| problem.material(element(facet)).wave_modulus();
     problem.surface().facets().iter().filter(own).map(stiffness).fold(f64::INFINITY, f64::min)

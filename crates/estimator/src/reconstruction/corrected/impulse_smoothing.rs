@@ -146,12 +146,12 @@ mod tests {
     use super::*;
     use percute_core::contact::Obstacle;
     use percute_core::material::Elastic;
-    use percute_core::mesh::BarMesh;
+    use percute_core::mesh::Mesh;
     use percute_core::problem::BarProblem;
 
     /// h = ½, c = 2, ρS = 3: m = ¾ at the end of the bar, ρcS = 6, so that τ = ⅛.
     fn bar() -> BarProblem {
-        Problem::builder(BarMesh::uniform_bar(1.0, 2).unwrap())
+        Problem::<1, 2>::builder(Mesh::uniform_bar(1.0, 2).unwrap())
             .material(Elastic::bar(12.0, 3.0, 1.0).unwrap())
             .obstacle(Obstacle::plane([-1.0], [1.0], 0.0, None).unwrap())
             .build()

@@ -70,7 +70,7 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
 
 /// Whether tractions of nodes are concentrated.
 fn concentrates<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> bool {
-    let possible = match problem.mesh().simplex().shape() {
+    let possible = match problem.mesh().shape() {
         Shape::Bar => false,
         Shape::Triangle => true,
     };
@@ -112,7 +112,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         let mesh = problem.mesh();
         let of_stars = || Concentration::new(problem).memory(problem);
         let concentration = concentrates(problem, options).then(of_stars).unwrap_or(0);
-        TractionMinimisation::memory(mesh.simplex().shape(), mesh.element_count())
+        TractionMinimisation::memory(mesh.shape(), mesh.element_count())
             .saturating_add(Motions::<D, N>::memory(mesh.node_count(), mesh.element_count()))
             .saturating_add(concentration)
     }

@@ -48,7 +48,7 @@ pub(super) struct MomentCorrection<const D: usize> {
 
 impl<const D: usize> MomentCorrection<D> {
     pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
-        match problem.mesh().simplex().shape() {
+        match problem.mesh().shape() {
             Shape::Bar => return Self { groups: Vec::new() },
             Shape::Triangle => {}
         }
@@ -67,7 +67,7 @@ impl<const D: usize> MomentCorrection<D> {
                 groups.len() - 1
             });
             let group = &mut groups[found].1;
-            let point = problem.mesh().points()[contact.node.index()];
+            let point = problem.mesh().points_in::<D>()[contact.node.index()];
             let arm: [f64; D] = std::array::from_fn(|c| point[c] - centroid[c]);
             group.nodes.push(CorrectedNode {
                 at,
@@ -160,7 +160,7 @@ fn factors(nodes: &[CorrectedNode], normal: &[f64], missing: f64) -> Vec<f64> {
 
 /// Centroid of each node's shape function on the candidate facets (m).
 fn centroids<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<[f64; D]> {
-    let (points, surface) = (problem.mesh().points(), problem.surface());
+    let (points, surface) = (problem.mesh().points_in::<D>(), problem.surface());
     let place = |k: usize| points[surface.nodes()[k].node.index()];
     let mut centroids = vec![[0.0; D]; surface.nodes().len()];
     for facet in surface.facets() {

@@ -236,7 +236,7 @@ fn mean<const D: usize, const N: usize>(problem: &Problem<D, N>, side: &Side, va
     let positions = side.position(0)..side.position(side.len());
     let (mut sum, mut length) = (0.0, 0.0);
     for facet in problem.surface().facets().iter().filter(|facet| positions.contains(&facet.nodes[0])) {
-        let owner: ElementId = problem.mesh().facets()[facet.facet.index()].owner;
+        let owner: ElementId = problem.mesh().facet(facet.facet).owner;
         let own = facet.area / problem.material(owner).extent();
         sum += value(owner) * own;
         length += own;

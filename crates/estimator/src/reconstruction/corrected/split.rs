@@ -14,9 +14,9 @@ pub(super) fn skew_acceleration<const D: usize, const N: usize>(
     w: &[[f64; D]],
 ) -> Vec<[f64; D]> {
     let (mesh, mut skew) = (problem.mesh(), vec![[0.0; D]; w.len()]);
-    for (e, nodes) in mesh.cells().iter().enumerate() {
+    for (e, nodes) in mesh.nodes_of::<N>().iter().enumerate() {
         let id = ElementId::new(e);
-        let (arms, gradients) = (arms(&mesh.cell_points(id)), mesh.cell_geometry(id).gradients);
+        let (arms, gradients) = (arms(&mesh.corners::<D, N>(id)), mesh.geometry::<D, N>(id).gradients);
         let half = 0.5 * problem.material(id).density() * problem.volume(id) / (D + 2) as f64;
         let mut stress = [[0.0; D]; D];
         for (i, node) in nodes.iter().enumerate() {

@@ -25,8 +25,8 @@ pub(crate) struct KeptTriangle {
 impl KeptForm {
     /// That of an element, which it shares with no other.
     pub(crate) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, id: ElementId) -> Self {
-        let points = problem.mesh().cell_points(id);
-        let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
+        let points = problem.mesh().corners::<D, N>(id);
+        let mut forms = EnergyForms::new(problem.mesh().shape());
         let [lane, ..] = forms.prepare(problem, std::iter::once((id, points)));
         match forms.of(problem, id, &points, lane) {
             EnergyForm::Bar(map) => Self::Bar(map),
@@ -88,8 +88,8 @@ mod tests {
         let problem = TriangleProblem::builder(mesh).material(law).build().unwrap();
         let mut random = Random::new(3);
         let ids: Vec<ElementId> = (0..8).map(ElementId::new).collect();
-        let points = |id: &ElementId| problem.mesh().cell_points(*id);
-        let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
+        let points = |id: &ElementId| problem.mesh().corners::<2, 3>(*id);
+        let mut forms = EnergyForms::new(problem.mesh().shape());
         let lanes = forms.prepare(&problem, ids.iter().map(|id| (*id, points(id))));
         for (id, lane) in ids.iter().zip(lanes) {
             let mut vector = || [(); 2].map(|()| random.between(-1.0, 1.0));

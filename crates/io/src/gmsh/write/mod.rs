@@ -9,7 +9,7 @@ use super::error::{GmshCause, GmshError};
 use super::header::Version;
 use crate::create::{Overwrite, whole};
 use parts::Parts;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use sink::Sink;
 use std::path::Path;
 
@@ -27,7 +27,7 @@ pub struct Format {
 ///
 /// # Errors
 /// A file that cannot be created or exists already, group names that the format does not allow.
-pub fn write(path: &Path, overwrite: Overwrite, mesh: &AnyMesh, format: Format) -> Result<(), GmshError> {
+pub fn write(path: &Path, overwrite: Overwrite, mesh: &Mesh, format: Format) -> Result<(), GmshError> {
     let failed = |cause| GmshError { path: path.to_path_buf(), place: None, cause };
     let groups = mesh.facet_groups().keys().chain(mesh.element_groups().keys());
     for name in groups {
@@ -39,7 +39,7 @@ pub fn write(path: &Path, overwrite: Overwrite, mesh: &AnyMesh, format: Format) 
 }
 
 /// The bytes of the file.
-fn bytes(mesh: &AnyMesh, format: Format) -> Vec<u8> {
+fn bytes(mesh: &Mesh, format: Format) -> Vec<u8> {
     let (mut out, parts) = (Sink::new(format.binary), Parts::of(mesh));
     let version = if format.version == Version::V22 { "2.2" } else { "4.1" };
     out.line("$MeshFormat");

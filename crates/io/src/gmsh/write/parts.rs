@@ -1,6 +1,6 @@
 //! A mesh as parts of a geometry: elements that are in the same groups.
 
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_core::simplex::Shape;
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    pub(super) fn of(mesh: &AnyMesh) -> Self {
+    pub(super) fn of(mesh: &Mesh) -> Self {
         let mut names = Vec::new();
         let mut facets = BTreeMap::<usize, Vec<usize>>::new();
         for (name, members) in mesh.facet_groups() {

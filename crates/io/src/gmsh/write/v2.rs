@@ -4,7 +4,7 @@ use super::parts::{GroupedPart, Parts};
 use super::sink::Sink;
 use crate::gmsh::kind::numbers;
 use percute_core::ids::{ElementId, FacetId, NodeId};
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 
 /// An element in one of its groups.
 struct Entry {
@@ -14,7 +14,7 @@ struct Entry {
     nodes: Vec<usize>,
 }
 
-pub(super) fn write(out: &mut Sink, mesh: &AnyMesh, parts: &Parts) {
+pub(super) fn write(out: &mut Sink, mesh: &Mesh, parts: &Parts) {
     out.line("$Nodes");
     out.line(&mesh.node_count().to_string());
     for node in 0..mesh.node_count() {

@@ -4,9 +4,9 @@ use super::parts::{GroupedPart, Parts};
 use super::sink::Sink;
 use crate::gmsh::kind::numbers;
 use percute_core::ids::{ElementId, FacetId, NodeId};
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 
-pub(super) fn write(out: &mut Sink, mesh: &AnyMesh, parts: &Parts) {
+pub(super) fn write(out: &mut Sink, mesh: &Mesh, parts: &Parts) {
     out.line("$Entities");
     entities(out, mesh, parts);
     end(out, "$EndEntities");
@@ -43,7 +43,7 @@ fn end(out: &mut Sink, name: &str) {
     out.line(name);
 }
 
-fn entities(out: &mut Sink, mesh: &AnyMesh, parts: &Parts) {
+fn entities(out: &mut Sink, mesh: &Mesh, parts: &Parts) {
     let (mut counts, d) = ([0; 4], mesh.dimension());
     counts[d - 1] = parts.facets.len();
     counts[d] = parts.cells.len();
@@ -72,7 +72,7 @@ fn entities(out: &mut Sink, mesh: &AnyMesh, parts: &Parts) {
     }
 }
 
-fn elements(out: &mut Sink, mesh: &AnyMesh, parts: &Parts) {
+fn elements(out: &mut Sink, mesh: &Mesh, parts: &Parts) {
     let facets: usize = parts.facets.iter().map(|part| part.members.len()).sum();
     let total = mesh.element_count() + facets;
     row(out, &[parts.facets.len() + parts.cells.len(), total, 1, total]);

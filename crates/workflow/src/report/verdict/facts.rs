@@ -14,7 +14,7 @@ use crate::report::symptoms::auxiliary_contact_energy;
 use percute_core::border::Vector;
 use percute_core::contact::{ContactResults, Nearest};
 use percute_core::material::Law;
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::AnyProblem;
 use percute_estimator::{Acceleration, ErrorMeasures, Estimate, Options, Reconstruction};
 
@@ -256,7 +256,7 @@ fn approach(problem: &AnyProblem) -> Option<f64> {
 }
 
 /// Diagonal of the bounding box of the largest body (m).
-fn size_of_bodies(mesh: &AnyMesh) -> f64 {
+fn size_of_bodies(mesh: &Mesh) -> f64 {
     if mesh.parts() < 2 {
         return mesh.size();
     }
@@ -271,12 +271,12 @@ fn size_of_bodies(mesh: &AnyMesh) -> f64 {
     boxes.iter().filter(|[low, _]| low[0].is_finite()).map(size).fold(0.0, f64::max)
 }
 
-fn slenderness(mesh: &AnyMesh) -> f64 {
+fn slenderness(mesh: &Mesh) -> f64 {
     if mesh.dimension() == 1 {
         return 1.0;
     }
     let area: f64 = mesh.volumes().iter().sum();
-    let outline: f64 = mesh.boundary().into_iter().map(|facet| mesh.facet_normal(facet).1).sum();
+    let outline: f64 = mesh.boundary().map(|facet| mesh.facet_normal(facet).1).sum();
     2.0 * area / outline / mesh.size()
 }
 

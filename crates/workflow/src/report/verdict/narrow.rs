@@ -65,14 +65,14 @@ mod tests {
     use percute_core::contact::{ContactRecorder, Obstacle};
     use percute_core::dynamics::{critical_time_step, simulate};
     use percute_core::history::History;
-    use percute_core::mesh::TriangleMesh;
+    use percute_core::mesh::Mesh;
     use percute_core::observer::Unobserved;
     use percute_core::problem::{Initial, TriangleProblem};
     use percute_core::time::TimeGrid;
 
     /// A disc of 10 mm that comes down on a plane at this speed (m/s), until the force is about largest.
     fn lands(rings: usize, speed: f64) -> Option<NarrowContact> {
-        let mesh = TriangleMesh::disc(0.01, rings).unwrap();
+        let mesh = Mesh::disc(0.01, rings).unwrap();
         let build = |gap: f64| {
             TriangleProblem::builder(mesh.clone())
                 .material(Elastic::plane_strain(70e9, 0.3, 2700.0, 0.5).unwrap())

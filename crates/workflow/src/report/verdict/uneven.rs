@@ -6,7 +6,7 @@ use percute_core::contact::ContactResults;
 use percute_core::dynamics::time_step_of_element;
 use percute_core::ids::{ElementId, FacetId};
 use percute_core::material::{Elastic, Hypothesis, Law};
-use percute_core::mesh::AnyMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::AnyProblem;
 
 /// The part of the squared mean error in long elements from which on they matter: without it, the estimate would be
@@ -51,7 +51,7 @@ impl Uneven {
 }
 
 /// The longest edge over the shortest one of a long element, if they matter.
-fn longest(mesh: &AnyMesh, by_element: &[f64]) -> f64 {
+fn longest(mesh: &Mesh, by_element: &[f64]) -> f64 {
     let (mut most, mut of_long, mut total) = (1.0_f64, 0.0, 0.0);
     for (element, error) in by_element.iter().enumerate() {
         let ratio = aspect(mesh, element);

@@ -16,14 +16,14 @@ fn halves(heights: impl Fn(f64) -> [f64; 2], gap: f64, place: [f64; 2]) -> Build
 /// The same without supports.
 fn flush(heights: impl Fn(f64) -> [f64; 2], gap: f64, [x, y]: [f64; 2]) -> Builder<2, 3> {
     let block = |side: usize, up: f64| {
-        let mesh = Mesh::<2, 3>::rectangle(0.02, 0.01, 4, 2).unwrap();
+        let mesh = Mesh::rectangle(0.02, 0.01, 4, 2).unwrap();
         mesh.mapped(|p| [x + p[0], y + up + p[1] + heights(p[0])[side]]).unwrap()
     };
     let (lower, upper) = (block(0, -0.01), block(1, gap));
     let velocity = [vec![[0.0; 2]; lower.node_count()], vec![[0.0, -20.0]; upper.node_count()]].concat();
     // Those that touch have no speed, which would be an impact at the start.
     let velocity = velocity.into_iter().map(|v| if gap > 0.0 { v } else { [0.0; 2] }).collect();
-    Problem::builder(Mesh::joined(&[("lower", &lower), ("upper", &upper)]).unwrap())
+    Problem::<2, 3>::builder(Mesh::joined(&[("lower", &lower), ("upper", &upper)]).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Nodal(velocity))
         .automatic_contact()
@@ -73,7 +73,7 @@ fn flush_ends_meet_along_a_surface() {
 #[test]
 fn clamped_bodies_are_whole() {
     let post = |at: f64| {
-        let mesh = Mesh::<2, 3>::rectangle(0.01, 0.04, 2, 8).unwrap();
+        let mesh = Mesh::rectangle(0.01, 0.04, 2, 8).unwrap();
         mesh.mapped(|p| [at + p[0] + 0.3 * p[1], p[1]]).unwrap()
     };
     let (left, right) = (post(0.0), post(0.01001));
@@ -87,7 +87,7 @@ fn clamped_bodies_are_whole() {
         // Nodes of the support have its velocity.
         let velocity =
             velocity.iter().enumerate().map(|(node, v)| if node < 3 && components[0] { [0.0; 2] } else { *v });
-        Problem::builder(Mesh::joined(&[("left", &left), ("right", &right)]).unwrap())
+        Problem::<2, 3>::builder(Mesh::joined(&[("left", &left), ("right", &right)]).unwrap())
             .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
             .initial_velocity(Initial::Nodal(velocity.collect()))
             .support(held("left.bottom"))

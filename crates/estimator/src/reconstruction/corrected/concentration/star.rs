@@ -125,7 +125,7 @@ impl NodeStar {
     /// The other corners of an element, from the node (m), in the frame. Rounding does not grow with the distance of
     /// the body from the origin.
     fn ends<const D: usize, const N: usize>(&self, problem: &Problem<D, N>, position: usize) -> [[f64; 2]; 2] {
-        let points = problem.mesh().cell_points(self.elements[position]);
+        let points = problem.mesh().corners::<D, N>(self.elements[position]);
         let origin = points[self.corners[position]];
         [1, N - 1].map(|next| {
             let point = points[(self.corners[position] + next) % N];

@@ -9,7 +9,7 @@ use crate::reconstruction::{StepDensities, SurfaceSteps, check};
 use crate::time_level::SurfaceStep;
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, TriangleProblem};
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ fn tilted() -> TriangleProblem {
 /// The same with another coefficient of friction.
 fn rough(friction: f64) -> TriangleProblem {
     let (sin, cos) = 10_f64.to_radians().sin_cos();
-    Problem::builder(TriangleMesh::rectangle(2.0, 1.0, 8, 4).unwrap())
+    Problem::<2, 3>::builder(Mesh::rectangle(2.0, 1.0, 8, 4).unwrap())
         .material(Elastic::plane_stress(YOUNG, 0.3, 2700.0, 0.5).unwrap())
         .initial_velocity(Initial::Uniform([0.0, -1.0]))
         .obstacle(Obstacle::plane([0.0, -1e-3], [sin, cos], friction, None).unwrap())
@@ -108,7 +108,7 @@ fn turned_stars_share_their_stress() {
     let points: Vec<_> = std::iter::once([3.0, 2.0]).chain((0..24).map(corner)).collect();
     let cells: Vec<[usize; 3]> =
         (0..24).map(|k| [[k + 1, (k + 1) % 24 + 1, 0], [0, k + 1, (k + 1) % 24 + 1]][k % 2]).collect();
-    let problem = Problem::builder(TriangleMesh::new(points, &cells, &BTreeMap::new(), &BTreeMap::new()).unwrap())
+    let problem = Problem::<2, 3>::builder(Mesh::new(points, &cells, &BTreeMap::new(), &BTreeMap::new()).unwrap())
         .material(Elastic::plane_stress(YOUNG, 0.3, 2700.0, 0.5).unwrap())
         .initial_velocity(Initial::Uniform([0.0, -1.0]))
         .obstacle(Obstacle::plane([0.0, 0.9], [0.0, 1.0], 0.2, None).unwrap())

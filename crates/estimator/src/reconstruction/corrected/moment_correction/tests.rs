@@ -4,7 +4,7 @@ use crate::options::Options;
 use crate::reconstruction::corrected::Corrected;
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::{Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::Random;
@@ -23,9 +23,13 @@ fn blocks(angle: f64) -> TriangleProblem {
             cells.extend([[a, a + 2, a + 1], [a + 2, a + 3, a + 1]]);
         }
     }
-    let mesh = TriangleMesh::new(points, &cells, &Default::default(), &Default::default()).unwrap();
+    let mesh = Mesh::new(points, &cells, &Default::default(), &Default::default()).unwrap();
     let plane = Obstacle::plane(turn([0.0, -1e-3]), turn([0.0, 1.0]), 0.4, None).unwrap();
-    Problem::builder(mesh).material(Elastic::plane_stress(1.0, 0.3, 1.0, 1.0).unwrap()).obstacle(plane).build().unwrap()
+    Problem::<2, 3>::builder(mesh)
+        .material(Elastic::plane_stress(1.0, 0.3, 1.0, 1.0).unwrap())
+        .obstacle(plane)
+        .build()
+        .unwrap()
 }
 
 /// Resultant and moment of nodal forces on each of the two blocks; the five nodes of one follow each other.
@@ -33,7 +37,7 @@ fn balance(problem: &TriangleProblem, forces: &[[f64; 2]]) -> [[f64; 3]; 2] {
     let mut sums = [[0.0; 3]; 2];
     for (contact, f) in problem.surface().nodes().iter().zip(forces) {
         let node = contact.node.index();
-        let [x, y] = problem.mesh().points()[node];
+        let [x, y] = problem.mesh().points_in::<2>()[node];
         let sum = &mut sums[node / 10];
         (sum[0], sum[1], sum[2]) = (sum[0] + f[0], sum[1] + f[1], sum[2] + x * f[1] - y * f[0]);
     }

@@ -85,7 +85,7 @@ impl Blocks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::mesh::TriangleMesh;
+    use percute_core::mesh::Mesh;
     use percute_testkit::random_rectangle;
 
     /// Turns begin and finish each node once, before the first and after the last of its elements.
@@ -113,21 +113,21 @@ mod tests {
     #[test]
     fn turns_finish_their_nodes() {
         for (nx, ny) in [(4, 30), (5, 31), (3, 1)] {
-            let mesh = TriangleMesh::rectangle(1.0, 1.0, nx, ny).unwrap();
+            let mesh = Mesh::rectangle(1.0, 1.0, nx, ny).unwrap();
             for fewest in [1, 7, 16, 40, 10_000] {
-                let blocks = Blocks::with_fewest(mesh.cells(), mesh.node_count(), fewest);
-                check(mesh.cells(), mesh.node_count(), &blocks);
+                let blocks = Blocks::with_fewest(mesh.nodes_of::<3>(), mesh.node_count(), fewest);
+                check(mesh.nodes_of::<3>(), mesh.node_count(), &blocks);
             }
         }
-        let mesh = TriangleMesh::rectangle(1.0, 1.0, 4, 30).unwrap();
-        assert!(Blocks::with_fewest(mesh.cells(), mesh.node_count(), 8).count() > 5);
+        let mesh = Mesh::rectangle(1.0, 1.0, 4, 30).unwrap();
+        assert!(Blocks::with_fewest(mesh.nodes_of::<3>(), mesh.node_count(), 8).count() > 5);
     }
 
     /// Without locality there is one block.
     #[test]
     fn any_order_will_do() {
         let mesh = random_rectangle(1.0, 1.0, 8, 3).unwrap();
-        let mut cells = mesh.cells().to_vec();
+        let mut cells = mesh.nodes_of::<3>().to_vec();
         cells.reverse();
         let blocks = Blocks::with_fewest(&cells, mesh.node_count(), 1);
         check(&cells, mesh.node_count(), &blocks);

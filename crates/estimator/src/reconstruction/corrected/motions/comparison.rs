@@ -10,9 +10,8 @@ use percute_core::dynamics::critical_time_step;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
 use percute_core::material::{Elastic, Law};
-use percute_core::mesh::{BarMesh, ElementGroups, Mesh, TriangleMesh};
+use percute_core::mesh::{ElementGroups, Mesh};
 use percute_core::problem::Initial;
-use percute_core::simplex::{Element as Simplices, Simplex};
 use percute_testkit::{Random, random_rectangle};
 
 /// One motion.
@@ -41,7 +40,7 @@ fn lumping_difference<const D: usize, const N: usize>(
     field: &[[f64; D]],
 ) -> Vec<[f64; D]> {
     let mut difference = vec![[0.0; D]; field.len()];
-    for (e, nodes) in problem.mesh().cells().iter().enumerate() {
+    for (e, nodes) in problem.mesh().nodes_of::<3>().iter().enumerate() {
         let id = ElementId::new(e);
         let share = problem.material(id).density() * problem.volume(id) / (D + 2) as f64;
         for c in 0..D {
@@ -77,8 +76,8 @@ fn softening<const D: usize, const N: usize>(problem: &Problem<D, N>, u: &[[f64;
         let mut subtract = |mean: [[f64; D]; D], share: f64| {
             (0..D).for_each(|a| (0..D).for_each(|b| change[a][b] -= share * mean[a][b]));
         };
-        for facet in mesh.cell_facets()[e] {
-            let facet = &mesh.facets()[facet.index()];
+        for facet in mesh.facets_of::<N>()[e] {
+            let facet = &mesh.facet(facet);
             let both: Vec<_> = [Some(facet.owner), facet.neighbour].into_iter().flatten().collect();
             subtract(mean(&both, law), edges / 3.0);
         }
@@ -212,7 +211,7 @@ fn plain<const D: usize, const N: usize>(problem: &Problem<D, N>) -> [Plain<D>; 
 fn compare<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, fewest: usize) {
     let dynamics = Dynamics::new(problem, times);
     let count = problem.mesh().node_count();
-    let blocks = Blocks::with_fewest(problem.mesh().cells(), count, fewest);
+    let blocks = Blocks::with_fewest(problem.mesh().nodes_of::<3>(), count, fewest);
     let smoothing = Arc::new(Smoothing::new(problem));
     let mut motions = Motions::on_blocks(problem, times, smoothing, Shares::ALL, blocks);
     motions.prepare(&elements(problem));
@@ -291,7 +290,7 @@ fn compare_energies<const D: usize, const N: usize>(
     levels: [PlainLevel<D>; MOTIONS],
 ) {
     let touches = |e: usize| {
-        let nodes = problem.mesh().cells()[e];
+        let nodes = problem.mesh().nodes_of::<3>()[e];
         problem.surface().nodes().iter().any(|contact| nodes.contains(&contact.node))
     };
     let [own, half_size, half_step, contact] = levels.map(|level| [level.displacement, level.velocity]);
@@ -316,21 +315,18 @@ fn compare_energies<const D: usize, const N: usize>(
 
 /// A rough body of two materials with an obstacle, a fixed and a driven support and loads.
 fn loaded<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
+    mesh: &Mesh,
     laws: [Elastic; 2],
     [fixed, driven, loaded]: [&str; 3],
-) -> Problem<D, N>
-where
-    Simplices<D, N>: Simplex<D, N>,
-{
+) -> Problem<D, N> {
     let facets = mesh.facet_groups().iter().map(|(name, facets)| {
-        let nodes = facets.iter().map(|f| mesh.facets()[f.index()].nodes.map(|n| n.index()));
+        let nodes = facets.iter().map(|f| mesh.facet_nodes::<D>(*f).map(|n| n.index()));
         (name.clone(), nodes.collect())
     });
-    let cells: Vec<[usize; N]> = mesh.cells().iter().map(|cell| cell.map(|n| n.index())).collect();
+    let cells: Vec<[usize; N]> = mesh.nodes_of::<N>().iter().map(|cell| cell.map(|n| n.index())).collect();
     let group = |soft: bool| (0..cells.len()).filter(|e| (e % 3 == 0) == soft).collect();
     let groups = ElementGroups::from([("soft".to_string(), group(true)), ("hard".to_string(), group(false))]);
-    let mesh = Mesh::new(mesh.points().to_vec(), &cells, &facets.collect(), &groups).unwrap();
+    let mesh = Mesh::new(mesh.points_in::<D>().to_vec(), &cells, &facets.collect(), &groups).unwrap();
     let normal = std::array::from_fn(|c| if c + 1 == D { 1.0 } else { 0.0 });
     let below = std::array::from_fn(|c| if c + 1 == D { -10.0 } else { 0.0 });
     let table = |values: [f64; 2]| Table::new(vec![0.0, 1.0], values.map(|v| [v; D]).to_vec()).unwrap();
@@ -367,12 +363,12 @@ fn triangles() {
         [[70.0, 0.3, 2.0], [20.0, 0.45, 3.0]].map(|[e, nu, rho]| Elastic::plane_strain(e, nu, rho, 0.5).unwrap());
     for (mesh, fewest) in [
         (random_rectangle(1.0, 0.8, 6, 3).unwrap(), 4),
-        (TriangleMesh::rectangle(1.0, 0.8, 3, 40).unwrap(), 1),
-        (TriangleMesh::rectangle(1.0, 0.8, 3, 41).unwrap(), 20),
+        (Mesh::rectangle(1.0, 0.8, 3, 40).unwrap(), 1),
+        (Mesh::rectangle(1.0, 0.8, 3, 41).unwrap(), 20),
         // Several chunks.
-        (TriangleMesh::rectangle(1.0, 0.8, 2, 170).unwrap(), 1),
+        (Mesh::rectangle(1.0, 0.8, 2, 170).unwrap(), 1),
     ] {
-        let problem = loaded(&mesh, laws, ["left", "top", "right"]);
+        let problem = loaded::<2, 3>(&mesh, laws, ["left", "top", "right"]);
         compare(&problem, &uneven(&problem, 30), fewest);
     }
 }
@@ -383,7 +379,7 @@ fn triangles() {
 fn responses_are_symmetric() {
     let laws =
         [[70.0, 0.3, 2.0], [20.0, 0.45, 3.0]].map(|[e, nu, rho]| Elastic::plane_strain(e, nu, rho, 0.5).unwrap());
-    let problem = loaded(&random_rectangle(1.0, 0.8, 6, 3).unwrap(), laws, ["left", "top", "right"]);
+    let problem = loaded::<2, 3>(&random_rectangle(1.0, 0.8, 6, 3).unwrap(), laws, ["left", "top", "right"]);
     let (times, nodes) = (uneven(&problem, 5), problem.surface().nodes());
     let mut motions = Motions::new(&problem, &times, Arc::new(Smoothing::new(&problem)), Shares::ALL);
     motions.begin(&Dynamics::new(&problem, &times), 0);
@@ -418,7 +414,7 @@ fn responses_are_symmetric() {
 #[test]
 fn bars() {
     let laws = [Elastic::bar(3.0, 1.0, 0.5).unwrap(), Elastic::bar(1.0, 2.0, 0.7).unwrap()];
-    let problem = loaded(&BarMesh::uniform_bar(1.0, 23).unwrap(), laws, ["start", "end", "start"]);
+    let problem = loaded::<1, 2>(&Mesh::uniform_bar(1.0, 23).unwrap(), laws, ["start", "end", "start"]);
     compare(&problem, &uneven(&problem, 30), 2);
 }
 
@@ -426,7 +422,7 @@ fn bars() {
 fn with_threads(problem: &Problem<2, 3>, threads: usize) -> (Vec<[f64; 2]>, Vec<Difference>) {
     let times = uneven(problem, 10);
     let dynamics = Dynamics::new(problem, &times);
-    let blocks = Blocks::with_fewest(problem.mesh().cells(), problem.mesh().node_count(), 1);
+    let blocks = Blocks::with_fewest(problem.mesh().nodes_of::<3>(), problem.mesh().node_count(), 1);
     let smoothing = Arc::new(Smoothing::new(problem));
     let mut motions = Motions::on_blocks(problem, &times, smoothing, Shares::ALL, blocks);
     assert!(motions.plan.chunks.len() >= 4);
@@ -458,7 +454,7 @@ fn with_threads(problem: &Problem<2, 3>, threads: usize) -> (Vec<[f64; 2]>, Vec<
 fn threads_do_not_change_bits() {
     let laws =
         [[70.0, 0.3, 2.0], [20.0, 0.45, 3.0]].map(|[e, nu, rho]| Elastic::plane_strain(e, nu, rho, 0.5).unwrap());
-    let problem = loaded(&TriangleMesh::rectangle(1.0, 0.8, 2, 170).unwrap(), laws, ["left", "top", "right"]);
+    let problem = loaded(&Mesh::rectangle(1.0, 0.8, 2, 170).unwrap(), laws, ["left", "top", "right"]);
     let one = with_threads(&problem, 1);
     for threads in [2, 3, 8] {
         assert_eq!(one, with_threads(&problem, threads), "{threads}");

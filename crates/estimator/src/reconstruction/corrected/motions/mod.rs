@@ -202,7 +202,7 @@ impl<'p, const D: usize, const N: usize> Motions<'p, D, N> {
         smoothing: Arc<Smoothing>,
         shares: Shares,
     ) -> Self {
-        let blocks = Blocks::new(problem.mesh().cells(), problem.mesh().node_count());
+        let blocks = Blocks::new(problem.mesh().nodes_of::<3>(), problem.mesh().node_count());
         Self::on_blocks(problem, times, smoothing, shares, blocks)
     }
 

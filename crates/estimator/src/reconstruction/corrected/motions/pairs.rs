@@ -183,11 +183,12 @@ impl Around {
         };
         for (which, element) in pair.into_iter().enumerate() {
             let Some(element) = element else { continue };
-            for (k, facet) in problem.mesh().cell_facets()[element.index()].iter().enumerate() {
+            for (k, facet) in problem.mesh().facets_of::<N>()[element.index()].iter().enumerate() {
                 let other = Smoothing::beyond(problem, element, *facet);
                 let volume = problem.volume(element) + problem.volume(other);
                 made.beyond[which][k] = places[other.index()];
-                made.weights[which][k] = smoothing.edge_weight(problem.mesh().cells()[element.index()][0], volume);
+                made.weights[which][k] =
+                    smoothing.edge_weight(problem.mesh().nodes_of::<N>()[element.index()][0], volume);
             }
         }
         made
@@ -196,8 +197,8 @@ impl Around {
 
 impl Laws {
     fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, shares: &[Shares; MOTIONS]) -> Self {
-        let shape = problem.mesh().simplex().shape();
-        let plain: Vec<Moduli> = problem.materials().iter().map(|law| Moduli::new::<D>(law, shape)).collect();
+        let shape = problem.mesh().shape();
+        let plain: Vec<Moduli> = problem.materials().iter().map(|law| Moduli::new(law, shape)).collect();
         let smoothed = shares.map(|share| share.space);
         Self {
             rest: plain.iter().map(|moduli| moduli.scaled(&smoothed.map(|share| 1.0 - share))).collect(),
@@ -218,8 +219,8 @@ fn partner<const D: usize, const N: usize>(
 ) -> (usize, Option<ElementId>) {
     let (mesh, laws, id) = (problem.mesh(), problem.element_material(), ElementId::new(e));
     let mut found: (usize, Option<ElementId>) = (1, None);
-    for (apart, facet) in mesh.cell_facets()[e].iter().enumerate() {
-        let facet = &mesh.facets()[facet.index()];
+    for (apart, &facet) in mesh.facets_of::<N>()[e].iter().enumerate() {
+        let facet = &mesh.facet(facet);
         let Some(other) = facet.across(id) else { continue };
         let o = other.index();
         if range.contains(&o) && !taken[o] && laws[o] == laws[e] && found.1.is_none_or(|known| other < known) {
@@ -238,20 +239,21 @@ impl Pair {
         second: Option<ElementId>,
     ) -> Self {
         let mesh = problem.mesh();
-        let cell = &mesh.cells()[first.index()];
+        let cell = &mesh.nodes_of::<N>()[first.index()];
         let local = |i: usize| cell[(apart + N - 1 + i) % N];
         // Nodes 1 and 3 are those apart.
-        let shape = mesh.simplex().shape();
+        let shape = mesh.shape();
         let shared = match shape {
             Shape::Bar => local(0),
             Shape::Triangle => local(2),
         };
-        let other = second.and_then(|second| mesh.cells()[second.index()].iter().find(|node| !cell.contains(node)));
+        let other =
+            second.and_then(|second| mesh.nodes_of::<N>()[second.index()].iter().find(|node| !cell.contains(node)));
         let nodes = [local(0), local(1), shared, *other.unwrap_or(&local(0))];
         let gradient = |element: Option<ElementId>, node: NodeId| {
             let mut gradient = [0.0; 2];
             if let Some(element) = element.filter(|_| node != nodes[0]) {
-                let at = mesh.local_node(element, node).map(|i| mesh.cell_geometry(element).gradients[i]);
+                let at = mesh.local_node(element, node).map(|i| mesh.geometry::<D, N>(element).gradients[i]);
                 let root = problem.volume(element).sqrt();
                 at.iter().flatten().zip(&mut gradient).for_each(|(g, to)| *to = root * g);
             }
@@ -276,7 +278,7 @@ impl Pair {
 }
 
 impl Moduli {
-    fn new<const D: usize>(law: &impl LinearLaw, shape: Shape) -> Self {
+    fn new(law: &impl LinearLaw, shape: Shape) -> Self {
         let (lambda, shear) = law.moduli();
         let normal = lambda + 2.0 * shear;
         let shear = match shape {

@@ -218,13 +218,13 @@ fn for_each<S: Send, const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::mesh::TriangleMesh;
+    use percute_core::mesh::Mesh;
 
     /// Chunks and meetings do every turn of every sweep once, and none before those that it needs.
     #[test]
     fn a_plan_does_all_turns() {
-        let mesh = TriangleMesh::rectangle(1.0, 1.0, 2, 400).unwrap();
-        let blocks = Blocks::with_fewest(mesh.cells(), mesh.node_count(), 1);
+        let mesh = Mesh::rectangle(1.0, 1.0, 2, 400).unwrap();
+        let blocks = Blocks::with_fewest(mesh.nodes_of::<3>(), mesh.node_count(), 1);
         let (turns, blocks_in_all) = (blocks.turns(), blocks.count());
         for fewest in [10, 13, 40, 1000] {
             let plan = Plan::with_fewest(&blocks, fewest);

@@ -188,7 +188,7 @@ impl<const D: usize> Pass<'_, D> {
         }
         let nodes = self.blocks.finished(turn);
         let range = view.local(&nodes);
-        self.surface.apply::<D>(&nodes, &mut view.rate[range.clone()]);
+        self.surface.apply(&nodes, &mut view.rate[range.clone()]);
         for (rate, inverse) in view.rate[range.clone()].iter_mut().zip(&self.inverse_mass[nodes]) {
             rate.0 = r.store(r.mul(r.load(&rate.0), r.splat(*inverse)));
         }

@@ -55,7 +55,7 @@ impl SurfaceForces {
     /// Sets the forces on prescribed components of these nodes and adds those of contact on others. At supports the
     /// contact difference stays at rest.
     #[inline(always)]
-    pub(super) fn apply<const D: usize>(&self, nodes: &Range<usize>, forces: &mut [Nodal]) {
+    pub(super) fn apply(&self, nodes: &Range<usize>, forces: &mut [Nodal]) {
         let local = |node: u32| node as usize - nodes.start;
         let supports = &self.supports[between(&self.supports, nodes, |support| support.node)];
         for support in supports {

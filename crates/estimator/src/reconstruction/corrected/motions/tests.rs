@@ -2,7 +2,7 @@ use super::*;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::Support;
 use percute_core::material::{Elastic, LinearLaw};
-use percute_core::mesh::{BarMesh, TriangleMesh};
+use percute_core::mesh::Mesh;
 use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
 use percute_testkit::{Random, random_rectangle};
 use std::f64::consts::PI;
@@ -41,9 +41,9 @@ const ELEMENTS: usize = 12;
 
 /// A bar with E = ρ = S = L = 1, held at its ends, in its second mode.
 fn held_bar() -> BarProblem {
-    let mesh = BarMesh::uniform_bar(1.0, ELEMENTS).unwrap();
-    let shape = mesh.points().iter().map(|p| [(2.0 * PI * p[0]).sin()]).collect();
-    let mut builder = Problem::builder(mesh)
+    let mesh = Mesh::uniform_bar(1.0, ELEMENTS).unwrap();
+    let shape = mesh.points_in::<1>().iter().map(|p| [(2.0 * PI * p[0]).sin()]).collect();
+    let mut builder = Problem::<1, 2>::builder(mesh)
         .material(Elastic::bar(1.0, 1.0, 1.0).unwrap())
         .initial_displacement(Initial::Nodal(shape));
     for group in ["start", "end"] {
@@ -82,10 +82,10 @@ fn dispersion_is_of_fourth_order() {
 #[test]
 fn three_quarters_are_a_halving() {
     let bar = |elements: usize| {
-        let mesh = BarMesh::uniform_bar(1.0, elements).unwrap();
-        let shape = mesh.points().iter().map(|p| [(2.0 * PI * p[0]).sin()]).collect();
+        let mesh = Mesh::uniform_bar(1.0, elements).unwrap();
+        let shape = mesh.points_in::<1>().iter().map(|p| [(2.0 * PI * p[0]).sin()]).collect();
         let law = Elastic::bar(1.0, 1.0, 1.0).unwrap();
-        let mut builder = Problem::builder(mesh).material(law).initial_displacement(Initial::Nodal(shape));
+        let mut builder = Problem::<1, 2>::builder(mesh).material(law).initial_displacement(Initial::Nodal(shape));
         for group in ["start", "end"] {
             builder =
                 builder.support(Support { group: group.into(), components: [true, false, false], velocity: None });
@@ -118,9 +118,9 @@ fn three_quarters_are_a_halving() {
 /// takes its steps; the auxiliary solution's swings, with sin²(ωΔt/2) = 1 − β(2/3)².
 #[test]
 fn the_shortest_wave_of_a_bar_does_not_grow() {
-    let mesh = BarMesh::uniform_bar(1.0, ELEMENTS).unwrap();
+    let mesh = Mesh::uniform_bar(1.0, ELEMENTS).unwrap();
     let zigzag = (0..=ELEMENTS).map(|k| [if k % 2 == 0 { 1.0 } else { -1.0 }]).collect();
-    let problem = Problem::builder(mesh)
+    let problem = Problem::<1, 2>::builder(mesh)
         .material(Elastic::bar(1.0, 1.0, 1.0).unwrap())
         .initial_velocity(Initial::Nodal(zigzag))
         .build()
@@ -142,11 +142,12 @@ fn the_shortest_wave_of_a_bar_does_not_grow() {
 /// is not, and is not taken but for the first of them.
 #[test]
 fn uneven_steps_leave_the_corrections_out() {
-    let mesh = BarMesh::uniform_bar(1.0, ELEMENTS).unwrap();
+    let mesh = Mesh::uniform_bar(1.0, ELEMENTS).unwrap();
     let mut random = Random::new(5);
     let rough = (0..=ELEMENTS).map(|_| [random.between(-1.0, 1.0)]).collect();
     let law = Elastic::bar(1.0, 1.0, 1.0).unwrap();
-    let problem = Problem::builder(mesh).material(law).initial_displacement(Initial::Nodal(rough)).build().unwrap();
+    let problem =
+        Problem::<1, 2>::builder(mesh).material(law).initial_displacement(Initial::Nodal(rough)).build().unwrap();
     let step = |n: usize| if n.is_multiple_of(2) { 0.7 } else { 0.6 } / ELEMENTS as f64;
     let times = TimeGrid::from_steps(&(0..1000).map(step).collect::<Vec<_>>()).unwrap();
     let all = motion(&problem, &times, true);
@@ -158,9 +159,9 @@ fn uneven_steps_leave_the_corrections_out() {
 fn rough_block() -> TriangleProblem {
     let mesh = random_rectangle(1.0, 0.8, 6, 3).unwrap();
     let mut random = Random::new(7);
-    let rough = mesh.points().iter().map(|_| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)]).collect();
+    let rough = mesh.points_in::<2>().iter().map(|_| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)]).collect();
     let law = Elastic::plane_stress(70.0, 0.3, 2.0, 1.0).unwrap();
-    Problem::builder(mesh).material(law).initial_displacement(Initial::Nodal(rough)).build().unwrap()
+    Problem::<2, 3>::builder(mesh).material(law).initial_displacement(Initial::Nodal(rough)).build().unwrap()
 }
 
 #[test]
@@ -183,7 +184,8 @@ fn a_translation_is_not_touched() {
     let mesh = random_rectangle(1.0, 0.8, 5, 1).unwrap();
     let law = Elastic::plane_stress(70.0, 0.3, 2.0, 1.0).unwrap();
     let velocity = [3.0, -2.0];
-    let problem = Problem::builder(mesh).material(law).initial_velocity(Initial::Uniform(velocity)).build().unwrap();
+    let problem =
+        Problem::<2, 3>::builder(mesh).material(law).initial_velocity(Initial::Uniform(velocity)).build().unwrap();
     let times = TimeGrid::uniform(1.0, 50).unwrap();
     let end = motion(&problem, &times, true).pop().unwrap();
     for u in &end {
@@ -209,10 +211,10 @@ fn supports_move_as_prescribed() {
 fn wave_errors(kh: f64, shares: Shares) -> [f64; 2] {
     let cells = 12;
     let side = cells as f64;
-    let mesh = TriangleMesh::rectangle(side, side, cells, cells).unwrap();
-    let centre = mesh.points().iter().position(|p| *p == [0.5 * side; 2]).unwrap();
+    let mesh = Mesh::rectangle(side, side, cells, cells).unwrap();
+    let centre = mesh.points_in::<2>().iter().position(|p| *p == [0.5 * side; 2]).unwrap();
     let law = Elastic::plane_stress(1.0, 0.3, 1.0, 1.0).unwrap();
-    let problem = Problem::builder(mesh).material(law).build().unwrap();
+    let problem = Problem::<2, 3>::builder(mesh).material(law).build().unwrap();
     let (lambda, shear) = law.moduli();
     let step = 0.9 * critical_time_step(&problem);
     let times = TimeGrid::uniform(2.0 * step, 2).unwrap();
@@ -225,7 +227,7 @@ fn wave_errors(kh: f64, shares: Shares) -> [f64; 2] {
         // The columns of the symbol: minus the accelerations under waves of each component.
         let column = |c: usize| {
             let mut motions = Motions::new(&problem, &times, Arc::new(Smoothing::new(&problem)), shares);
-            for (u, p) in motions.fields.displacement.iter_mut().zip(problem.mesh().points()) {
+            for (u, p) in motions.fields.displacement.iter_mut().zip(problem.mesh().points_in::<2>()) {
                 let phase = k[0] * (p[0] - 0.5 * side) + k[1] * (p[1] - 0.5 * side);
                 let mut wave = [0.0; 2];
                 wave[c] = phase.cos();
@@ -274,10 +276,12 @@ fn waves_are_of_fourth_order() {
 /// is.
 #[test]
 fn corrections_are_weakened_where_they_are_unstable() {
-    let mesh = TriangleMesh::rectangle(1.0, 1.0, 1, 1).unwrap();
+    let mesh = Mesh::rectangle(1.0, 1.0, 1, 1).unwrap();
     let law = Elastic::plane_strain(1.0, 0.49, 1.0, 1.0).unwrap();
-    let rough = mesh.points().iter().zip(1..).map(|(_, k)| [f64::from(k).sin(), f64::from(3 * k).cos()]).collect();
-    let problem = Problem::builder(mesh).material(law).initial_displacement(Initial::Nodal(rough)).build().unwrap();
+    let rough =
+        mesh.points_in::<2>().iter().zip(1..).map(|(_, k)| [f64::from(k).sin(), f64::from(3 * k).cos()]).collect();
+    let problem =
+        Problem::<2, 3>::builder(mesh).material(law).initial_displacement(Initial::Nodal(rough)).build().unwrap();
     for (courant, weakened) in [(0.9, false), (0.999, true)] {
         let times = TimeGrid::uniform(3000.0 * courant * critical_time_step(&problem), 3000).unwrap();
         let whole = Smoothing::new(&problem).bodies()[0].mass[0];

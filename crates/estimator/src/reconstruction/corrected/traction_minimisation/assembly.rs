@@ -42,7 +42,7 @@ impl<const D: usize, const N: usize> Unknown<'_, D, N> {
     /// The components in which the moments of a facet are unknown: all in the body, those of the support on its
     /// boundary.
     fn unknown(&self, facet: FacetId) -> [bool; D] {
-        let inside = self.problem.mesh().facets()[facet.index()].neighbour.is_some();
+        let inside = self.problem.mesh().facet(facet).neighbour.is_some();
         if inside { [true; D] } else { self.problem.supported(facet) }
     }
 
@@ -80,7 +80,7 @@ impl<const D: usize, const N: usize> Unknown<'_, D, N> {
 
     /// 1 if an element lies on the side of the neighbour of one of its edges.
     fn side(&self, e: usize, facet: FacetId) -> usize {
-        usize::from(self.problem.mesh().facets()[facet.index()].owner != ElementId::new(e))
+        usize::from(self.problem.mesh().facet(facet).owner != ElementId::new(e))
     }
 
     /// No energy yet.
@@ -112,7 +112,7 @@ impl<const D: usize, const N: usize> Unknown<'_, D, N> {
     /// Adds the form of an element, not yet scaled.
     fn add(&self, to: &mut Operator, e: usize, form: &ModeForm, lane: usize) {
         let mesh = self.problem.mesh();
-        let (cell, facets) = (&mesh.cells()[e], &mesh.cell_facets()[e]);
+        let (cell, facets) = (&mesh.nodes_of::<N>()[e], &mesh.facets_of::<N>()[e]);
         let number = [0, 1, 2].map(|k| self.numbers.of(facets[k]));
         let entry = |i: usize, j: usize| form[i][j].0[lane];
         for k in 0..3 {
@@ -142,7 +142,7 @@ impl<const D: usize, const N: usize> Unknown<'_, D, N> {
     /// Sets the edges around local node `i` of an element.
     fn add_sectors(&self, to: &mut Operator, e: usize, i: usize, number: &[usize; 3]) {
         let mesh = self.problem.mesh();
-        let (cell, facets) = (&mesh.cells()[e], &mesh.cell_facets()[e]);
+        let (cell, facets) = (&mesh.nodes_of::<N>()[e], &mesh.facets_of::<N>()[e]);
         let (node, sectors) = (cell[i], to.sectors(cell[i].index()));
         if sectors.is_empty() {
             return;

@@ -83,16 +83,16 @@ impl TractionMinimisation {
         problem: &Problem<D, N>,
         elements: &[Element<D, N>],
     ) -> Option<Self> {
-        match problem.mesh().simplex().shape() {
+        match problem.mesh().shape() {
             Shape::Bar => return None,
             Shape::Triangle => {}
         }
         let numbers = Numbers::new(problem.mesh());
         let operator = assembly::assemble(problem, elements, &numbers);
-        let (wavefront, spaces) = (Wavefront::new(problem.mesh()), Pool::new());
+        let (wavefront, spaces) = (Wavefront::new::<N>(problem.mesh()), Pool::new());
         let largest_eigenvalue = spaces.lend(
             || Workspace::new(&numbers),
-            |space| spectrum::largest_eigenvalue(problem.mesh(), (&numbers, &operator, &wavefront), space),
+            |space| spectrum::largest_eigenvalue::<D, N>(problem.mesh(), (&numbers, &operator, &wavefront), space),
         );
         Some(Self {
             numbers,
@@ -172,7 +172,7 @@ impl TractionMinimisation {
                 concentration.each_element(problem, forces.density.hats(), |element, stress| {
                     let slope = product_slope::<D, N>(&stress.products());
                     let slope = slope.map(|slope| Lanes::at_levels(|l| if l == lane { slope } else { 0.0 }));
-                    self.numbers.add_slope(problem.mesh(), element.index(), &slope, &mut all.part());
+                    self.numbers.add_slope::<_, D, N>(problem.mesh(), element.index(), &slope, &mut all.part());
                 });
             }
         }
@@ -198,13 +198,7 @@ impl TractionMinimisation {
     }
 
     /// Adds the change to the moments on the links of the stars of some nodes.
-    fn add<const D: usize, const N: usize>(
-        &self,
-        mesh: &Mesh<D, N>,
-        nodes: Range<usize>,
-        change: &Modes,
-        moments: &mut [[Lanes; D]],
-    ) {
+    fn add<const D: usize>(&self, mesh: &Mesh, nodes: Range<usize>, change: &Modes, moments: &mut [[Lanes; D]]) {
         let first = |node: usize| mesh.stars().link_range(NodeId::new(node)).start;
         if nodes.len() > 2 * BLOCK {
             let middle = nodes.start.midpoint(nodes.end);
@@ -220,15 +214,15 @@ impl TractionMinimisation {
 }
 
 /// The change of the moments on the links of the stars of some nodes.
-struct AddChange<'a, const D: usize, const N: usize> {
+struct AddChange<'a, const D: usize> {
     numbers: &'a Numbers,
-    mesh: &'a Mesh<D, N>,
+    mesh: &'a Mesh,
     nodes: Range<usize>,
     change: &'a Modes,
     moments: &'a mut [[Lanes; D]],
 }
 
-impl<const D: usize, const N: usize> Task for AddChange<'_, D, N> {
+impl<const D: usize> Task for AddChange<'_, D> {
     type Output = ();
 
     #[inline(always)]
@@ -237,7 +231,7 @@ impl<const D: usize, const N: usize> Task for AddChange<'_, D, N> {
         let mut rest = moments;
         for node in nodes.map(NodeId::new) {
             let (own, others) = rest.split_at_mut(mesh.stars().link_range(node).len());
-            numbers.add_change(Wide::zeros(registers), mesh, node, change, own);
+            numbers.add_change::<_, D>(Wide::zeros(registers), mesh, node, change, own);
             rest = others;
         }
     }
@@ -278,7 +272,7 @@ impl<const D: usize, const N: usize> Slopes<'_, D, N> {
         let block = equilibration.blocks.block(block);
         fields.gather(like, problem, block.nodes, levels);
         fields.gather_displacement(like, block.nodes, levels);
-        let mut forms = EnergyForms::new(problem.mesh().simplex().shape());
+        let mut forms = EnergyForms::new(problem.mesh().shape());
         for start in range.clone().step_by(LANES) {
             let group = start..(start + LANES).min(range.end);
             fields.gather_moments(&equilibration.elements[group.clone()], levels);
@@ -292,7 +286,7 @@ impl<const D: usize, const N: usize> Slopes<'_, D, N> {
                 let balance = fields.nodal_balance(like, e - start, levels, id, &nodes);
                 let stress = hooke(problem.material(id), &element.gradient(&BalanceNode::displacements(like, &nodes)));
                 let slope = moment_slope(&measure, &form, &balance, &stress);
-                self.numbers.add_slope(problem.mesh(), e, &slope, to);
+                self.numbers.add_slope::<_, D, N>(problem.mesh(), e, &slope, to);
             }
         }
     }

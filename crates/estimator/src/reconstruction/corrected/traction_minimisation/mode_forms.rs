@@ -31,7 +31,7 @@ pub(super) fn mode_forms<const D: usize, const N: usize>(
     let mut laws = [problem.material(ElementId::new(first)); LANES];
     for lane in 0..LANES {
         let e = (first + lane).min(mesh.element_count() - 1);
-        let (cell, points) = (&mesh.cells()[e], mesh.cell_points(ElementId::new(e)));
+        let (cell, points) = (&mesh.nodes_of::<N>()[e], mesh.corners::<D, N>(ElementId::new(e)));
         maps[lane] = Matrix2::from_fn(|c, k| points[k + 1][c] - points[0][c]);
         laws[lane] = problem.material(ElementId::new(e));
         for k in 0..3 {

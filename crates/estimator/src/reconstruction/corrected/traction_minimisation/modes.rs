@@ -83,20 +83,20 @@ impl Numbers {
     /// Of an element (bytes): in a triangulation, three edges and one node go with two elements.
     pub(super) const BYTES: usize = 2 * size_of::<u32>();
 
-    pub(super) fn new<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Self {
-        let lower = |facet: &Facet<D>| facet.nodes.iter().map(|n| n.index()).min().unwrap_or(0);
+    pub(super) fn new(mesh: &Mesh) -> Self {
+        let lower = |facet: &Facet<'_>| facet.nodes.iter().map(|n| n.index()).min().unwrap_or(0);
         let mut first = vec![0; mesh.node_count() + 1];
-        mesh.facets().iter().for_each(|facet| first[lower(facet) + 1] += 1);
+        mesh.facets().for_each(|facet| first[lower(&facet) + 1] += 1);
         for i in 1..first.len() {
             first[i] += first[i - 1];
         }
         let mut next = first.clone();
-        let number = |facet: &Facet<D>| {
-            let next = &mut next[lower(facet)];
+        let number = |facet: Facet<'_>| {
+            let next = &mut next[lower(&facet)];
             *next += 1;
             *next - 1
         };
-        Self { facet: mesh.facets().iter().map(number).collect(), first }
+        Self { facet: mesh.facets().map(number).collect(), first }
     }
 
     /// How many nodes there are.
@@ -127,16 +127,16 @@ impl Numbers {
     #[inline(always)]
     pub(in crate::reconstruction) fn add_slope<T: Value<Stored = Lanes>, const D: usize, const N: usize>(
         &self,
-        mesh: &Mesh<D, N>,
+        mesh: &Mesh,
         e: usize,
         slope: &[T; MOMENTS],
         to: &mut ModesPart<'_>,
     ) {
-        let (cell, facets) = (&mesh.cells()[e], &mesh.cell_facets()[e]);
+        let (cell, facets) = (&mesh.nodes_of::<N>()[e], &mesh.facets_of::<N>()[e]);
         let mut nodes = [[slope[0].zero(); 3]; N];
         for k in 0..N {
             let (a, b) = ((k + 1) % N, (k + 2) % N);
-            let edge = Edge::new(mesh, cell[a], cell[b]);
+            let edge = Edge::new::<D>(mesh, cell[a], cell[b]);
             let (ax, ay, bx, by) = (slope[4 * k], slope[4 * k + 1], slope[4 * k + 2], slope[4 * k + 3]);
             let (x, y) = (bx - ax, by - ay);
             let sum = &mut to.edges[self.of(facets[k]) - to.first_edge];
@@ -155,10 +155,10 @@ impl Numbers {
 
     /// Adds the moments that modes make on the links of the star of one node; the sums have the form of a number.
     #[inline(always)]
-    pub(in crate::reconstruction) fn add_change<T: Value<Stored = Lanes>, const D: usize, const N: usize>(
+    pub(in crate::reconstruction) fn add_change<T: Value<Stored = Lanes>, const D: usize>(
         &self,
         like: T,
-        mesh: &Mesh<D, N>,
+        mesh: &Mesh,
         node: NodeId,
         change: &Modes,
         moments: &mut [[Lanes; D]],
@@ -166,10 +166,10 @@ impl Numbers {
         let [x, y, turn] = load(like, &change.nodes[node.index()]);
         for (moment, facet) in moments.iter_mut().zip(mesh.stars().star(node).links) {
             let Some(facet) = *facet else { continue };
-            let ends = &mesh.facets()[facet.index()].nodes;
+            let ends = &mesh.facet_nodes::<D>(facet);
             let other = if ends[0] == node { ends[D - 1] } else { ends[0] };
             // The star leaves the element before the link by it: the node is the second one there.
-            let edge = Edge::new(mesh, other, node);
+            let edge = Edge::new::<D>(mesh, other, node);
             let s = like.load(&change.edges[self.of(facet)]);
             let couple = turn - like.load(&change.nodes[other.index()][2]);
             let [a, b] = [like.load(&moment[0]), like.load(&moment[1])];
@@ -191,8 +191,8 @@ pub(super) struct Edge {
 
 impl Edge {
     #[inline(always)]
-    fn new<const D: usize, const N: usize>(mesh: &Mesh<D, N>, first: NodeId, second: NodeId) -> Self {
-        let (a, b) = (&mesh.points()[first.index()], &mesh.points()[second.index()]);
+    fn new<const D: usize>(mesh: &Mesh, first: NodeId, second: NodeId) -> Self {
+        let (a, b) = (&mesh.points_in::<D>()[first.index()], &mesh.points_in::<D>()[second.index()]);
         let d = [b[0] - a[0], b[1] - a[1]];
         let inverse_square = 1.0 / (d[0] * d[0] + d[1] * d[1]);
         let inverse = if first < second { -inverse_square.sqrt() } else { inverse_square.sqrt() };

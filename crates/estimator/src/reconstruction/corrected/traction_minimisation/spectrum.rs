@@ -26,7 +26,7 @@ const PHASE: f64 = 1e3;
 
 /// The largest eigenvalue, at least 1: that of a single mode.
 pub(super) fn largest_eigenvalue<const D: usize, const N: usize>(
-    mesh: &Mesh<D, N>,
+    mesh: &Mesh,
     of @ (numbers, operator, _): (&Numbers, &Operator, &Wavefront),
     space: &mut Workspace,
 ) -> f64 {
@@ -36,7 +36,7 @@ pub(super) fn largest_eigenvalue<const D: usize, const N: usize>(
     dispatch(
         #[inline(always)]
         || {
-            start(mesh, numbers, now);
+            start::<D, N>(mesh, numbers, now);
             operator.scale_slopes(&block, &mut now.nodes, &mut now.edges);
             operator.balance(&block, &mut now.nodes, &now.edges);
         },
@@ -103,10 +103,10 @@ fn largest_of(tridiagonal: &[[Lanes; 2]; STEPS], lane: usize) -> f64 {
 
 /// Slopes whose moments point from the other nodes of an element to the ends of its edges, with phases of their own.
 #[inline(always)]
-fn start<const D: usize, const N: usize>(mesh: &Mesh<D, N>, numbers: &Numbers, slopes: &mut Modes) {
-    let (points, phases) = (mesh.points(), phases(mesh));
+fn start<const D: usize, const N: usize>(mesh: &Mesh, numbers: &Numbers, slopes: &mut Modes) {
+    let (points, phases) = (mesh.points_in::<D>(), phases::<D>(mesh));
     let mut part = slopes.part();
-    for (e, cell) in mesh.cells().iter().enumerate() {
+    for (e, cell) in mesh.nodes_of::<N>().iter().enumerate() {
         let mut slope = [Lanes::ZERO; MOMENTS];
         // Of each node, sine and cosine of once to eight times its phase.
         let turns = cell.map(|node| multiples(phases[node.index()]));
@@ -121,13 +121,13 @@ fn start<const D: usize, const N: usize>(mesh: &Mesh<D, N>, numbers: &Numbers, s
                 }
             }
         }
-        numbers.add_slope(mesh, e, &slope, &mut part);
+        numbers.add_slope::<_, D, N>(mesh, e, &slope, &mut part);
     }
 }
 
 /// Sine and cosine of the phase of each node. Those of a body do not depend on the places of other bodies.
-fn phases<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Vec<[f64; 2]> {
-    let (points, body) = (mesh.points(), mesh.part_of_nodes());
+fn phases<const D: usize>(mesh: &Mesh) -> Vec<[f64; 2]> {
+    let (points, body) = (mesh.points_in::<D>(), mesh.part_of_nodes());
     let mut sums = vec![([0.0; D], 0.0); points.len()];
     for (point, body) in points.iter().zip(&body) {
         let (sum, count) = &mut sums[body.index()];

@@ -7,7 +7,7 @@ use crate::measure::NodalBalance;
 use case::{Case, problem_of, problems};
 use percute_core::ids::FacetId;
 use percute_core::material::Elastic;
-use percute_core::mesh::{ElementGroups, TriangleMesh};
+use percute_core::mesh::{ElementGroups, Mesh};
 use percute_testkit::{Random, random_rectangle};
 
 /// Moments on an edge act like forces at its two nodes: no mode gives any element a resultant or a moment.
@@ -19,7 +19,7 @@ fn modes_have_no_resultant_on_any_element() {
 fn check_resultants(case: &Case) {
     let links = case.on_links(&case.random_modes(&mut Random::new(1)));
     for e in 0..case.elements.len() {
-        let points = case.problem.mesh().cell_points(ElementId::new(e));
+        let points = case.problem.mesh().corners::<2, 3>(ElementId::new(e));
         let all = case.of_element(e, &links);
         for lane in 0..LANES {
             let (mut force, mut couple) = ([0.0; 2], 0.0);
@@ -44,7 +44,7 @@ fn check_resultants(case: &Case) {
 fn the_modes_are_all_there_are() {
     for (case, redundant) in problems().map(Case::new).iter().zip([0, 1]) {
         let mesh = case.problem.mesh();
-        let unknown = |f: usize| match mesh.facets()[f].neighbour {
+        let unknown = |f: usize| match mesh.facet(FacetId::new(f)).neighbour {
             Some(_) => 2,
             None => case.problem.supported(FacetId::new(f)).into_iter().filter(|supported| *supported).count(),
         };
@@ -74,7 +74,7 @@ fn modes_leave_given_tractions_alone() {
     for node in (0..mesh.node_count()).map(NodeId::new) {
         let star = mesh.stars().star(node);
         for (facet, moment) in star.links.iter().zip(&links[mesh.stars().link_range(node)]) {
-            if facet.is_some_and(|facet| mesh.facets()[facet.index()].neighbour.is_none()) {
+            if facet.is_some_and(|facet| mesh.facet(facet).neighbour.is_none()) {
                 assert_eq!(moment[1].0, [0.0; LANES], "{node:?}");
                 across = across.max(moment[0].0[0].abs());
             }
@@ -109,7 +109,7 @@ fn slopes_are_differences_of_the_energy() {
     let [case, _] = problems().map(Case::new);
     let mut random = Random::new(8);
     for (e, element) in case.elements.iter().enumerate() {
-        let (id, points) = (ElementId::new(e), case.problem.mesh().cell_points(ElementId::new(e)));
+        let (id, points) = (ElementId::new(e), case.problem.mesh().corners::<2, 3>(ElementId::new(e)));
         let measure = ElementMeasure::new(&case.problem, element, id, Acceleration::Closest);
         let mut forms = EnergyForms::new(Shape::Triangle);
         let [lane, ..] = forms.prepare(&case.problem, std::iter::once((id, points)));
@@ -165,12 +165,12 @@ fn check_matrix(case: &Case) {
 }
 
 /// Ten times as long.
-fn stretched(mesh: &TriangleMesh) -> TriangleMesh {
-    let points = mesh.points().iter().map(|p| [10.0 * p[0], p[1]]).collect();
-    let cells: Vec<_> = mesh.cells().iter().map(|cell| cell.map(|n| n.index())).collect();
-    let nodes = |f: &FacetId| mesh.facets()[f.index()].nodes.map(|n| n.index());
+fn stretched(mesh: &Mesh) -> Mesh {
+    let points = mesh.points_in::<2>().iter().map(|p| [10.0 * p[0], p[1]]).collect();
+    let cells: Vec<_> = mesh.nodes_of::<3>().iter().map(|cell| cell.map(|n| n.index())).collect();
+    let nodes = |f: &FacetId| mesh.facet_nodes::<2>(*f).map(|n| n.index());
     let groups = mesh.facet_groups().iter().map(|(name, facets)| (name.clone(), facets.iter().map(nodes).collect()));
-    TriangleMesh::new(points, &cells, &groups.collect(), &ElementGroups::new()).unwrap()
+    Mesh::new(points, &cells, &groups.collect(), &ElementGroups::new()).unwrap()
 }
 
 /// Random meshes and structured ones, also stretched and almost incompressible. Measured are 97.6 to 99.1 % of what can
@@ -178,10 +178,9 @@ fn stretched(mesh: &TriangleMesh) -> TriangleMesh {
 /// instants, stretched 93 to 96 %.
 #[test]
 fn the_steps_gain_most_of_what_can_be_gained() {
-    let body =
-        |mesh: TriangleMesh, ratio: f64| problem_of(mesh, Elastic::plane_strain(210e9, ratio, 7800.0, 1.0).unwrap());
+    let body = |mesh: Mesh, ratio: f64| problem_of(mesh, Elastic::plane_strain(210e9, ratio, 7800.0, 1.0).unwrap());
     let random = |seed: u64| random_rectangle(0.05, 0.04, 8, seed).unwrap();
-    let structured = TriangleMesh::rectangle(0.05, 0.04, 10, 8).unwrap();
+    let structured = Mesh::rectangle(0.05, 0.04, 10, 8).unwrap();
     let cases = [
         (body(random(1), 0.3), 0.95),
         (body(random(2), 0.49), 0.95),
@@ -203,7 +202,7 @@ fn the_steps_gain_most_of_what_can_be_gained() {
 /// assumes.
 #[test]
 fn the_largest_eigenvalue() {
-    let mesh = TriangleMesh::rectangle(0.05, 0.05, 12, 12).unwrap();
+    let mesh = Mesh::rectangle(0.05, 0.05, 12, 12).unwrap();
     for mesh in [stretched(&mesh), mesh, random_rectangle(0.05, 0.04, 6, 3).unwrap()] {
         let case = Case::new(problem_of(mesh, Elastic::plane_strain(210e9, 0.4, 7800.0, 1.0).unwrap()));
         let (exact, found) = (case.matrix().symmetric_eigenvalues().max(), case.all.largest_eigenvalue);
@@ -233,7 +232,7 @@ fn lanes_are_apart() {
 /// Threads, and an order of nodes without any locality, do not change the work that each number is made of.
 #[test]
 fn the_order_of_the_work_does_not_matter() {
-    let mesh = TriangleMesh::rectangle(0.05, 0.04, 160, 130).unwrap();
+    let mesh = Mesh::rectangle(0.05, 0.04, 160, 130).unwrap();
     for mesh in [mesh.clone(), percute_testkit::renumbered(&mesh, 1).unwrap().0] {
         let case = Case::new(problem_of(mesh, Elastic::plane_strain(210e9, 0.3, 7800.0, 1.0).unwrap()));
         let slopes = case.random_slopes(&mut Random::new(6));

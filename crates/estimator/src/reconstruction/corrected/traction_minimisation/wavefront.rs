@@ -52,10 +52,10 @@ impl Work<'_> {
 type Done = [Range<usize>; STAGES];
 
 impl Wavefront {
-    pub(super) fn new<const D: usize, const N: usize>(mesh: &Mesh<D, N>) -> Self {
+    pub(super) fn new<const N: usize>(mesh: &Mesh) -> Self {
         let count = mesh.node_count().div_ceil(BLOCK);
         let mut around: Vec<[u32; 2]> = (0..count as u32).map(|k| [k, k + 1]).collect();
-        for cell in mesh.cells() {
+        for cell in mesh.nodes_of::<N>() {
             let blocks = cell.map(|node| (node.index() / BLOCK) as u32);
             for block in blocks {
                 let [first, end] = &mut around[block as usize];

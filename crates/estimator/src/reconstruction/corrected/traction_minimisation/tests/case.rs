@@ -9,19 +9,20 @@ use crate::element::elements;
 use crate::stress::{Loading, TriangleStress};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
-use percute_core::mesh::TriangleMesh;
+use percute_core::mesh::Mesh;
 use percute_core::problem::TriangleProblem;
+use percute_core::simplex::simplex;
 use percute_testkit::{Random, random_rectangle};
 
 /// Second derivative of the energy of an element in the moments on its edges.
 type Form = [[f64; MOMENTS]; MOMENTS];
 
-pub(super) fn problem_of(mesh: TriangleMesh, material: Elastic) -> TriangleProblem {
+pub(super) fn problem_of(mesh: Mesh, material: Elastic) -> TriangleProblem {
     held(mesh, material, [true; 2])
 }
 
-fn held(mesh: TriangleMesh, material: Elastic, components: [bool; 2]) -> TriangleProblem {
-    Problem::builder(mesh)
+fn held(mesh: Mesh, material: Elastic, components: [bool; 2]) -> TriangleProblem {
+    Problem::<2, 3>::builder(mesh)
         .material(material)
         .support(Support { group: "left".into(), components: [components[0], components[1], false], velocity: None })
         .build()
@@ -48,7 +49,7 @@ impl Case {
         let form = |(e, element): (usize, &Element<2, 3>)| {
             let id = ElementId::new(e);
             let measure = ElementMeasure::new(&problem, element, id, Acceleration::Closest);
-            let stress = TriangleStress::new(&problem.mesh().cell_points(id), problem.material(id));
+            let stress = TriangleStress::new(&problem.mesh().corners::<2, 3>(id), problem.material(id));
             std::array::from_fn(|i| {
                 let mut moments = [[[0.0; 2]; 2]; 3];
                 moments[i / 4][i / 2 % 2][i % 2] = 1.0;
@@ -93,7 +94,7 @@ impl Case {
 
     /// The moments on the edges of an element, outward.
     pub(super) fn of_element(&self, e: usize, links: &[[Lanes; 2]]) -> [Lanes; MOMENTS] {
-        let crossing = self.problem.mesh().simplex().facets_around();
+        let crossing = simplex::<2, 3>().facets_around();
         let mut moments = [Lanes::ZERO; MOMENTS];
         for i in 0..3 {
             let at = self.elements[e].links[i] as usize;
@@ -117,7 +118,7 @@ impl Case {
     pub(super) fn in_modes(&self, slopes: &[[Lanes; MOMENTS]]) -> Modes {
         let mut modes = Modes::new(&self.all.numbers);
         for (e, slope) in slopes.iter().enumerate() {
-            self.all.numbers.add_slope(self.problem.mesh(), e, slope, &mut modes.part());
+            self.all.numbers.add_slope::<_, 2, 3>(self.problem.mesh(), e, slope, &mut modes.part());
         }
         modes
     }
