@@ -160,7 +160,7 @@ class Equilibration:
         loads = np.empty((shape[0], 18, shape[-1]))
         moments = loads[:, :12].reshape(shape[0], 3, 2, *shape[2:])
         for i in range(3):
-            # Corner i leaves by facet i + 1, whose second end it is, and enters by facet i + 2, whose first end it is.
+            # Corner i leaves by face i + 1, whose second end it is, and enters by face i + 2, whose first end it is.
             moments[:, (i + 1) % 3, 1] = leaving[:, i]
             moments[:, (i + 2) % 3, 0] = -entering[:, i]
         loads[:, 12:] = nodal.reshape(shape[0], 6, -1)

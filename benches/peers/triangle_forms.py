@@ -6,7 +6,7 @@ import numpy as np
 from block import DENSITY, ELASTICITY
 
 GROUP = [(1, 2), (2, 0), (0, 1)]
-"""Ends of the facet opposite each node, counterclockwise."""
+"""Ends of the face opposite each node, counterclockwise."""
 MASS = np.array(
     [
         [6, -1, -1, 0, -4, 0],
@@ -23,7 +23,7 @@ MASS = np.array(
 def energy_form(corners: np.ndarray) -> np.ndarray:
     """Least ½∫σ:K⁻¹σ of quadratic stresses on three sub-triangles, a form of 12 tractions |e|F and 6 volume loads.
 
-    The tractions are those of each facet at its two ends; div σ is the linear volume load of the three nodes.
+    The tractions are those of each face at its two ends; div σ is the linear volume load of the three nodes.
     """
     size = np.sqrt(np.ptp(corners[:, 0]) * np.ptp(corners[:, 1]))
     points = (corners - corners.mean(axis=0)) / size
@@ -60,7 +60,7 @@ def energy_form(corners: np.ndarray) -> np.ndarray:
                 load[4 * sub + c], load[4 * sub + 2 + c] = weights
                 balance(traction(slot(sub, node), points[p], points[q], c), load / size)
     for k in range(3):
-        # The two sub-triangles at node k: it is the end of facet k + 1 and the start of facet k + 2 (modulo 3).
+        # The two sub-triangles at node k: it is the end of face k + 1 and the start of face k + 2 (modulo 3).
         one, other = (k + 1) % 3, (k + 2) % 3
         places = {sub: GROUP[sub].index(k) for sub in (one, other)}
         middles = {sub: 5 if places[sub] == 0 else 4 for sub in (one, other)}

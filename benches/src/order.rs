@@ -1,7 +1,7 @@
 //! The meshes of the block: structured, shuffled, unstructured.
 
 use crate::Failure;
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
+use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
 use percute_testkit::{Random, random_rectangle};
 use std::str::FromStr;
 
@@ -69,7 +69,7 @@ fn shuffled(mesh: &Mesh) -> Result<Mesh, Failure> {
     }
     let elements = random.permutation(mesh.element_count());
     let cells: Vec<_> = elements.iter().map(|&e| mesh.nodes_of::<3>()[e].map(|node| new_node[node.index()])).collect();
-    Ok(Mesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new())?)
+    Ok(Mesh::new(points, &cells, &FaceGroups::new(), &ElementGroups::new())?)
 }
 
 #[cfg(test)]

@@ -160,12 +160,12 @@ class _Reader:
     def arrays(self, scale: float) -> tuple[NDArray[np.float64], _Integers, dict[str, _Integers], dict[str, _Integers]]:
         """Give points, cells and groups as arguments of `Mesh`."""
         cells, elements = self._of(self.dimension)
-        facets, members = self._of(self.dimension - 1)
+        faces, members = self._of(self.dimension - 1)
         for name, nodes in self.points_of.items() if self.dimension == 1 else ():
             # The ends of a bar are points.
             ends = np.intersect1d(nodes, cells)
-            members[name] = len(facets) + np.arange(len(ends))
-            facets = np.concatenate([facets, ends[:, None]])
+            members[name] = len(faces) + np.arange(len(ends))
+            faces = np.concatenate([faces, ends[:, None]])
         points = self.points.reshape(len(self.points), -1) * scale
         if cells.min() < 0 or cells.max() >= len(points):
             raise FileFormatError(f"{self.name}: an element names a node that is not there")
@@ -175,7 +175,7 @@ class _Reader:
         if len(used) < len(points):
             count = len(points) - len(used)
             self.import_warnings.append(f"{counted(count, 'node')} of the mesh file left out: no element uses {'it' if count == 1 else 'them'}")
-        return self._flat(points[used]), numbers[cells], self._boundary(cells, facets, members, numbers), elements
+        return self._flat(points[used]), numbers[cells], self._boundary(cells, faces, members, numbers), elements
 
     def _flat(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Leave out constant coordinates."""
@@ -187,24 +187,24 @@ class _Reader:
         return points[:, : self.dimension]
 
     def _boundary(
-        self, cells: _Integers, facets: _Integers, members: dict[str, _Integers], numbers: _Integers
+        self, cells: _Integers, faces: _Integers, members: dict[str, _Integers], numbers: _Integers
     ) -> dict[str, _Integers]:
         """Give the members of each group that lie on the boundary."""
         corners = cells.shape[1]
         sides = np.concatenate([np.delete(cells, opposite, axis=1) for opposite in range(corners)])
         keys, counts = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
         owners = {tuple(key): count for key, count in zip(keys.tolist(), counts.tolist(), strict=True)}
-        of = np.array([owners.get(tuple(sorted(facet)), 0) for facet in facets.tolist()], dtype=int)
+        of = np.array([owners.get(tuple(sorted(face)), 0) for face in faces.tolist()], dtype=int)
         groups = {}
         for name, chosen in members.items():
             if np.any(of[chosen] == 0):
-                first = facets[chosen][of[chosen] == 0][0].tolist()
+                first = faces[chosen][of[chosen] == 0][0].tolist()
                 raise FileFormatError(f"{self.name}: group {name!r} has an edge of the nodes {first} that is not an edge of an element")
             inner = int(np.count_nonzero(of[chosen] > 1))
             if inner:
                 edges = f"{counted(inner, 'edge')} {'lies' if inner == 1 else 'lie'}"
                 self.import_warnings.append(f"group {name!r}: {edges} inside the body, left out: groups name parts of its boundary")
-            groups[name] = numbers[facets[chosen][of[chosen] == 1]]
+            groups[name] = numbers[faces[chosen][of[chosen] == 1]]
         return groups
 
 

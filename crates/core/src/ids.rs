@@ -84,6 +84,6 @@ compact_index!(
     ElementId
 );
 compact_index!(
-    /// A facet of the mesh: an edge in 2D, a point in 1D.
-    FacetId
+    /// A face of the mesh: an edge in 2D, a point in 1D.
+    FaceId
 );

@@ -132,10 +132,10 @@ impl Table {
     }
 }
 
-/// Components of the motion prescribed on a group of facets, ∂₁Ω (eq. \[4\]).
+/// Components of the motion prescribed on a group of faces, ∂₁Ω (eq. \[4\]).
 #[derive(Clone, Debug)]
 pub struct Support {
-    /// Group of facets.
+    /// Group of faces.
     pub group: String,
     /// Which components, in global axes.
     pub components: [bool; 3],
@@ -163,14 +163,14 @@ impl Profile {
     }
 }
 
-/// A traction F_d on a group of facets, ∂₂Ω: a table in time (Pa) times a profile in space.
+/// A traction F_d on a group of faces, ∂₂Ω: a table in time (Pa) times a profile in space.
 #[derive(Clone, Debug)]
 pub struct Traction {
-    /// Group of facets.
+    /// Group of faces.
     pub group: String,
     /// Force per area (Pa), in global axes.
     pub value: Table,
-    /// Linear variation along the facets.
+    /// Linear variation along the faces.
     pub profile: Profile,
 }
 

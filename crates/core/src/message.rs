@@ -52,8 +52,8 @@ pub(crate) fn axis(component: usize) -> char {
     ['x', 'y', 'z'][component]
 }
 
-/// A facet by its nodes.
-pub(crate) fn facet(nodes: &[usize]) -> String {
+/// A face by its nodes.
+pub(crate) fn face(nodes: &[usize]) -> String {
     match nodes {
         [node] => format!("end at node {node}"),
         [first, second] => format!("edge of nodes {first} and {second}"),

@@ -9,7 +9,7 @@ use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use percute_benches::{Motion, problem, steps};
 use percute_core::dynamics::{Dynamics, critical_time_step};
 use percute_core::ids::NodeId;
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
+use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
 use percute_estimator::{Estimator, Options, Reconstruction};
 use std::hint::black_box;
 
@@ -18,7 +18,7 @@ fn setup(criterion: &mut Criterion) {
         group.bench_function(format!("mesh/{name}"), |b| {
             let (points, cells) = (case.problem.mesh().points_in::<2>(), case.problem.mesh().nodes_of::<3>());
             let cells: Vec<_> = cells.iter().map(|cell| cell.map(NodeId::index)).collect();
-            let make = || Mesh::new(points.to_vec(), &cells, &FacetGroups::new(), &ElementGroups::new());
+            let make = || Mesh::new(points.to_vec(), &cells, &FaceGroups::new(), &ElementGroups::new());
             b.iter(|| make().expect("a valid mesh"));
         });
         group.bench_function(format!("problem/{name}"), |b| {

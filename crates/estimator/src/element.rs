@@ -15,8 +15,8 @@ pub(crate) struct Element<const D: usize, const N: usize> {
     pub(crate) volume: f64,
     /// Lumped mass at each node, ρV/(D+1) (kg).
     pub(crate) nodal_mass: f64,
-    /// For each node, where the facet by which its star enters this element lies among the
-    /// links of all stars; the facet by which it leaves comes next.
+    /// For each node, where the face by which its star enters this element lies among the
+    /// links of all stars; the face by which it leaves comes next.
     pub(crate) links: [u32; N],
 }
 

@@ -1,35 +1,35 @@
-//! The facets that carry prescribed tractions.
+//! The faces that carry prescribed tractions.
 
-use percute_core::ids::FacetId;
+use percute_core::ids::FaceId;
 use percute_core::problem::Problem;
 use std::collections::BTreeMap;
 
-/// All facets with a load, each once, in ascending order.
+/// All faces with a load, each once, in ascending order.
 #[derive(Debug)]
-pub(crate) struct LoadedFacets<'p, const D: usize, const N: usize> {
+pub(crate) struct LoadedFaces<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
-    facets: Vec<FacetId>,
+    faces: Vec<FaceId>,
 }
 
-impl<'p, const D: usize, const N: usize> LoadedFacets<'p, D, N> {
+impl<'p, const D: usize, const N: usize> LoadedFaces<'p, D, N> {
     pub(crate) fn new(problem: &'p Problem<D, N>) -> Self {
-        let mut facets: Vec<FacetId> = problem.facet_loads().iter().map(|l| l.facet).collect();
-        facets.sort_unstable();
-        facets.dedup();
-        Self { problem, facets }
+        let mut faces: Vec<FaceId> = problem.face_loads().iter().map(|l| l.face).collect();
+        faces.sort_unstable();
+        faces.dedup();
+        Self { problem, faces }
     }
 
-    pub(crate) fn facets(&self) -> &[FacetId] {
-        &self.facets
+    pub(crate) fn faces(&self) -> &[FaceId] {
+        &self.faces
     }
 
     /// Moments of the tractions on them at an instant (N).
     pub(crate) fn moments(&self, t: f64) -> Vec<[[f64; D]; D]> {
-        let mut sums: BTreeMap<FacetId, [[f64; D]; D]> = self.facets.iter().map(|&f| (f, [[0.0; D]; D])).collect();
-        for load in self.problem.facet_loads() {
-            let area = self.problem.facet_area(load.facet);
-            let moments = Problem::<D, N>::facet_moments(area, &self.problem.facet_traction_at(load, t));
-            if let Some(sum) = sums.get_mut(&load.facet) {
+        let mut sums: BTreeMap<FaceId, [[f64; D]; D]> = self.faces.iter().map(|&f| (f, [[0.0; D]; D])).collect();
+        for load in self.problem.face_loads() {
+            let area = self.problem.face_area(load.face);
+            let moments = Problem::<D, N>::face_moments(area, &self.problem.face_traction_at(load, t));
+            if let Some(sum) = sums.get_mut(&load.face) {
                 (0..D).for_each(|i| (0..D).for_each(|c| sum[i][c] += moments[i][c]));
             }
         }

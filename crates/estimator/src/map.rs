@@ -14,7 +14,7 @@ pub struct ElementMap {
     pub kinetic: Vec<f64>,
     /// Its elastic part (J).
     pub elastic: Vec<f64>,
-    /// Its contact part (J), an integral from 0 to t_n, in the element that owns the facet.
+    /// Its contact part (J), an integral from 0 to t_n, in the element that owns the face.
     pub contact: Vec<f64>,
     /// ∫η_E dt of each element from 0 to t_n (J s). The quantity of the paper's figure 9 follows from it, see
     /// [`ElementMap::error`].

@@ -11,7 +11,7 @@
 
 mod strains;
 
-use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
@@ -86,10 +86,10 @@ impl Smoothing {
     fn asymmetry<const D: usize, const N: usize>(&self, problem: &Problem<D, N>) -> Vec<f64> {
         let (mesh, laws) = (problem.mesh(), problem.element_material());
         let mut sums = vec![[0.0; 2]; mesh.parts()];
-        for facet in mesh.facets() {
-            if let Some(other) = facet.neighbour.filter(|other| laws[other.index()] == laws[facet.owner.index()]) {
-                let sum = &mut sums[self.body(facet.nodes[0])];
-                sum[0] += asymmetry_of_pair::<D, N>(mesh, [facet.owner, other], facet.nodes).min(1.0);
+        for face in mesh.faces() {
+            if let Some(other) = face.neighbour.filter(|other| laws[other.index()] == laws[face.owner.index()]) {
+                let sum = &mut sums[self.body(face.nodes[0])];
+                sum[0] += asymmetry_of_pair::<D, N>(mesh, [face.owner, other], face.nodes).min(1.0);
                 sum[1] += 1.0;
             }
         }
@@ -166,14 +166,14 @@ impl Smoothing {
         &self.weights
     }
 
-    /// The element of the same material beyond a facet of an element; without one, the element itself.
+    /// The element of the same material beyond a face of an element; without one, the element itself.
     #[inline(always)]
     pub(crate) fn beyond<const D: usize, const N: usize>(
         problem: &Problem<D, N>,
         element: ElementId,
-        facet: FacetId,
+        face: FaceId,
     ) -> ElementId {
-        let (known, laws) = (&problem.mesh().facet(facet), problem.element_material());
+        let (known, laws) = (&problem.mesh().face(face), problem.element_material());
         let other = known.across(element);
         other.filter(|other| laws[other.index()] == laws[element.index()]).unwrap_or(element)
     }

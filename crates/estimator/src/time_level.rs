@@ -41,7 +41,7 @@ pub(crate) struct TimeLevel<const D: usize> {
     pub(crate) displacement: NodalField<D>,
     /// f_d on each element (N/m³), empty if there is none.
     pub(crate) body_force: Vec<[f64; D]>,
-    /// Prescribed moments on the loaded facets (N).
+    /// Prescribed moments on the loaded faces (N).
     pub(crate) load_moments: Vec<[[f64; D]; D]>,
     pub(crate) surface: SurfaceStep<D>,
     /// The other fields of a split mass term.
@@ -123,7 +123,7 @@ pub(crate) struct ForcesKnown<const D: usize> {
     pub(crate) off_contact: Vec<OffContact<D>>,
     /// Densities and velocities beside nodes at two planes, over each step since the sampled level before.
     pub(crate) corner_sliding: Vec<CornerSliding<D>>,
-    /// Part of friction in the contact part of η on each candidate facet (J), up to t_{n−½} and to t_n.
+    /// Part of friction in the contact part of η on each candidate face (J), up to t_{n−½} and to t_n.
     pub(crate) friction: Vec<[f64; 2]>,
 }
 

@@ -1,10 +1,10 @@
 //! Equilibrated tractions F̂ by star problems (§6.2.2).
 //!
-//! Around a node i, the projected traction moments b = ∫F̂φ_i on the facets must satisfy Σ η b = r on each element of
+//! Around a node i, the projected traction moments b = ∫F̂φ_i on the faces must satisfy Σ η b = r on each element of
 //! its star. In the order of the star the system is a chain: the moment that leaves an element is the one that
-//! enters it plus r. One constant per component is left where no facet of the chain is known. It is
+//! enters it plus r. One constant per component is left where no face of the chain is known. It is
 //! chosen so that the moments are nearest to those of the averaged finite-element traction. That is
-//! the pseudo-inverse of the star matrix, in as many operations as the star has facets.
+//! the pseudo-inverse of the star matrix, in as many operations as the star has faces.
 
 mod equilibrated;
 mod mass_term;
@@ -15,12 +15,12 @@ use crate::blocks::{ElementBlocks, MeshPart, StarBlocks, parts};
 use crate::contact_density::Densities;
 use crate::element::Element;
 use crate::lanes::Value;
-use crate::loaded::LoadedFacets;
+use crate::loaded::LoadedFaces;
 use crate::pool::Pool;
 use crate::time_level::{ForcesKnown, TimeLevel};
 pub(crate) use equilibrated::{EquilibratedLevel, EquilibratedLevels, KeptLevel};
 use mass_term::MassTerm;
-use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::material::Law;
 use percute_core::mesh::{Star, Strips};
 use percute_core::observer::StopFlag;
@@ -36,7 +36,7 @@ pub(crate) type Then<'t, const D: usize> = &'t mut dyn FnMut(&EquilibratedLevels
 /// Elements of a strip, at least.
 const STRIP: usize = 512;
 
-/// Facet without prescribed moments.
+/// Face without prescribed moments.
 const FREE: u32 = u32::MAX;
 
 /// A relative miss that is rounding for sure.
@@ -52,11 +52,11 @@ pub(crate) struct Equilibration<'p, const D: usize, const N: usize> {
     pub(crate) strips: Strips,
     parts: Vec<MeshPart>,
     star_fields: Pool<StarFields<D>>,
-    /// For each facet, its place among the loaded facets, then the candidate facets of contact.
+    /// For each face, its place among the loaded faces, then the candidate faces of contact.
     slots: Vec<u32>,
-    /// For each local node, the facets by which its star enters and leaves an element.
+    /// For each local node, the faces by which its star enters and leaves an element.
     pub(crate) crossing: [[Option<usize>; 2]; N],
-    /// Number of loaded facets.
+    /// Number of loaded faces.
     loaded: usize,
     /// Where the links of each contact node's star begin among those of all contact nodes.
     contact_links: Vec<usize>,
@@ -66,19 +66,19 @@ pub(crate) struct Equilibration<'p, const D: usize, const N: usize> {
 
 impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
     pub(crate) fn new(problem: &'p Problem<D, N>) -> Self {
-        let mut slots = vec![FREE; problem.mesh().facets().len()];
-        let loaded = LoadedFacets::new(problem);
-        let contact = problem.surface().facets().iter().map(|f| f.facet);
-        for (slot, facet) in loaded.facets().iter().copied().chain(contact).enumerate() {
-            slots[facet.index()] = slot as u32;
+        let mut slots = vec![FREE; problem.mesh().faces().len()];
+        let loaded = LoadedFaces::new(problem);
+        let contact = problem.surface().faces().iter().map(|f| f.face);
+        for (slot, face) in loaded.faces().iter().copied().chain(contact).enumerate() {
+            slots[face.index()] = slot as u32;
         }
         let mut contact_links = vec![0];
         for contact in problem.surface().nodes() {
             let links = problem.mesh().stars().link_range(contact.node).len();
             contact_links.push(contact_links[contact_links.len() - 1] + links);
         }
-        let (elements, loaded) = (crate::element::elements(problem), loaded.facets().len());
-        let crossing = simplex::<D, N>().facets_around();
+        let (elements, loaded) = (crate::element::elements(problem), loaded.faces().len());
+        let crossing = simplex::<D, N>().faces_around();
         let (blocks, star_blocks) = (ElementBlocks::new(problem.mesh()), StarBlocks::new(problem.mesh()));
         let strips = Strips::with_fewest(problem.mesh().nodes_of::<N>(), STRIP);
         let parts = parts(problem.mesh(), &strips);
@@ -104,35 +104,35 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
         self.parts.iter().take_while(|_| !self.stop.is_up())
     }
 
-    /// Known moment on a boundary facet at one of its nodes: load, contact force, or nothing.
+    /// Known moment on a boundary face at one of its nodes: load, contact force, or nothing.
     #[inline]
-    fn known_moment(&self, level: &TimeLevel<D>, densities: &Densities<D>, facet: FacetId, node: NodeId) -> [f64; D] {
-        let slot = self.slots[facet.index()];
+    fn known_moment(&self, level: &TimeLevel<D>, densities: &Densities<D>, face: FaceId, node: NodeId) -> [f64; D] {
+        let slot = self.slots[face.index()];
         if slot == FREE {
             return [0.0; D];
         }
         let slot = slot as usize;
-        let position = self.problem.mesh().facet(facet).position(node);
+        let position = self.problem.mesh().face(face).position(node);
         if slot < self.loaded {
             return level.load_moments[slot][position];
         }
         let contact = slot - self.loaded;
-        let area = self.problem.surface().facets()[contact].area;
-        Problem::<D, N>::facet_moments(area, &densities[contact])[position]
+        let area = self.problem.surface().faces()[contact].area;
+        Problem::<D, N>::face_moments(area, &densities[contact])[position]
     }
 
-    /// Whether a facet has known moments that may differ from zero.
+    /// Whether a face has known moments that may differ from zero.
     #[inline(always)]
-    fn is_known(&self, facet: FacetId) -> bool {
-        self.slots[facet.index()] != FREE
+    fn is_known(&self, face: FaceId) -> bool {
+        self.slots[face.index()] != FREE
     }
 
     /// The known moments of the first and the last link of a star, in the form of a number.
     #[inline(always)]
-    fn ends<T: Value>(&self, like: T, star: &Star<'_>, known: impl Fn(FacetId) -> [T; D]) -> Ends<D, T> {
+    fn ends<T: Value>(&self, like: T, star: &Star<'_>, known: impl Fn(FaceId) -> [T; D]) -> Ends<D, T> {
         let closed = star.is_closed();
         let links = [star.links[0], star.links[star.elements.len()]].map(|link| link.filter(|_| !closed));
-        let supported = |link: Option<FacetId>| link.map_or([false; D], |f| self.problem.supported(f));
+        let supported = |link: Option<FaceId>| link.map_or([false; D], |f| self.problem.supported(f));
         let mut moments = [[like.zero(); D]; 2];
         for (moment, link) in moments.iter_mut().zip(links) {
             if let Some(link) = link {

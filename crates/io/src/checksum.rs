@@ -46,8 +46,8 @@ impl Checksum {
     pub(crate) fn mesh(self, mesh: &Mesh) -> Self {
         let cells = mesh.cells().flatten().map(|node| node.index());
         let mut all = self.numbers(mesh.points()).indices(cells);
-        for (name, members) in mesh.facet_groups() {
-            let nodes = members.iter().flat_map(|&facet| mesh.facet(facet).nodes);
+        for (name, members) in mesh.face_groups() {
+            let nodes = members.iter().flat_map(|&face| mesh.face(face).nodes);
             all = all.text(name).indices(nodes.map(|node| node.index()));
         }
         for (name, members) in mesh.element_groups() {

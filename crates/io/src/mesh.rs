@@ -6,7 +6,7 @@ use crate::read::{Data, Opened, Part};
 use crate::write::{attribute, group, numbers, unit};
 use hdf5::Group;
 use hdf5::types::FixedAscii;
-use percute_core::mesh::{ElementGroups, FacetRows, Mesh};
+use percute_core::mesh::{ElementGroups, FaceRows, Mesh};
 
 /// Numbers and names of the elements in VTK, by dimension from 1.
 pub(crate) const VTK_TYPES: [(u8, &str); 2] = [(3, "VTK_LINE"), (5, "VTK_TRIANGLE")];
@@ -63,13 +63,13 @@ pub(crate) fn write_grid(file: &Group, mesh: &Mesh) -> Result<Group, FileCause> 
     Ok(vtk)
 }
 
-/// Creates the groups of facets and elements in the group `percute`.
+/// Creates the groups of faces and elements in the group `percute`.
 pub(crate) fn write_groups(ours: &Group, mesh: &Mesh) -> Result<(), FileCause> {
-    let facets = group(ours, "facet_groups")?;
-    for (name, members) in mesh.facet_groups() {
-        let nodes = members.iter().flat_map(|&facet| mesh.facet(facet).nodes);
+    let faces = group(ours, "face_groups")?;
+    for (name, members) in mesh.face_groups() {
+        let nodes = members.iter().flat_map(|&face| mesh.face(face).nodes);
         let nodes: Vec<i64> = nodes.map(|node| node.index() as i64).collect();
-        numbers(&facets, &encoded(name), &[members.len(), mesh.dimension()], &nodes)?;
+        numbers(&faces, &encoded(name), &[members.len(), mesh.dimension()], &nodes)?;
     }
     let elements = group(ours, "element_groups")?;
     for (name, members) in mesh.element_groups() {
@@ -95,11 +95,11 @@ pub(crate) fn read(opened: &Opened, dimension: usize) -> Result<Mesh, FileCause>
             return Err(FileCause::Value { name: data.name, detail });
         }
     }
-    let mut facets = FacetRows::new();
-    for_each_group(&ours, "facet_groups", |name, members| {
+    let mut faces = FaceRows::new();
+    for_each_group(&ours, "face_groups", |name, members| {
         let count = members.shape.first().copied().unwrap_or(0);
-        members.expect(&[count, dimension], "the nodes of each facet")?;
-        facets.insert(name, members.indices(nodes, "nodes")?);
+        members.expect(&[count, dimension], "the nodes of each face")?;
+        faces.insert(name, members.indices(nodes, "nodes")?);
         Ok(())
     })?;
     let mut elements = ElementGroups::new();
@@ -108,7 +108,7 @@ pub(crate) fn read(opened: &Opened, dimension: usize) -> Result<Mesh, FileCause>
         elements.insert(name, members.indices(count_of_cells, "elements")?);
         Ok(())
     })?;
-    Ok(Mesh::bodies_from_rows(dimension, &points, &cells, (&facets, &elements))?)
+    Ok(Mesh::bodies_from_rows(dimension, &points, &cells, (&faces, &elements))?)
 }
 
 fn for_each_group(

@@ -23,14 +23,14 @@ impl Body {
     /// That of a mesh.
     #[must_use]
     pub fn new(mesh: &Mesh) -> Self {
-        let facets = mesh.facet_groups().iter().map(|(name, members)| (name.clone(), members.len()));
+        let faces = mesh.face_groups().iter().map(|(name, members)| (name.clone(), members.len()));
         let elements = mesh.element_groups().iter().map(|(name, members)| (name.clone(), members.len()));
         Self {
             dimension: mesh.dimension(),
             points: mesh.places().map(|[x, y, _]| [x, y]).collect(),
             part: mesh.part_of_nodes().into_iter().map(NodeId::index).collect(),
             cells: mesh.cells().flatten().copied().map(NodeId::index).collect(),
-            groups: [facets.collect(), elements.collect()],
+            groups: [faces.collect(), elements.collect()],
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::{bridge, errors, view};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
-use percute_core::mesh::{Diagonals, ElementGroups, FacetRows, Mesh, MeshError};
+use percute_core::mesh::{Diagonals, ElementGroups, FaceRows, Mesh, MeshError};
 use percute_io::Overwrite;
 use percute_io::gmsh::{self, Format, Version};
 use percute_presentation::Body;
@@ -65,7 +65,7 @@ impl MeshData {
         let dimension = points.as_array().ncols();
         let points = points.as_slice()?.to_vec();
         let cells = indices(py, "cells", cells.as_slice()?, dimension + 1)?;
-        let (mut edges, mut elements) = (FacetRows::new(), ElementGroups::new());
+        let (mut edges, mut elements) = (FaceRows::new(), ElementGroups::new());
         for (name, members) in edge_groups {
             let told = format!("edge_groups[{name:?}]");
             edges.insert(name, indices(py, &told, members.as_slice()?, dimension)?);
@@ -159,12 +159,12 @@ impl MeshData {
         view::view(py, &self.mesh, |mesh| view::numbers(mesh.cell_rows()), &shape)
     }
 
-    /// Name of each group of facets, with the nodes of each of its facets.
+    /// Name of each group of faces, with the nodes of each of its faces.
     #[getter]
     fn edge_groups<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let groups = PyDict::new(py);
-        for (name, facets) in self.mesh.facet_groups() {
-            let nodes = facets.iter().flat_map(|&f| self.mesh.facet(f).nodes).map(|n| n.index() as i64);
+        for (name, faces) in self.mesh.face_groups() {
+            let nodes = faces.iter().flat_map(|&f| self.mesh.face(f).nodes).map(|n| n.index() as i64);
             groups.set_item(name, rows(py, nodes.collect(), self.dimension())?)?;
         }
         Ok(groups)

@@ -1,7 +1,7 @@
 //! Delaunay triangulations of a rectangle and a disc.
 
 use crate::{Random, TestkitError, smallest_angle};
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
+use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 use std::f64::consts::{PI, TAU};
 
@@ -98,7 +98,7 @@ fn triangulated(
     let triangulation: DelaunayTriangulation<Point2<f64>> = DelaunayTriangulation::bulk_load_stable(sites)?;
     let cells: Vec<_> =
         triangulation.inner_faces().map(|face| face.vertices().map(|vertex| vertex.fix().index())).collect();
-    let mut groups = FacetGroups::new();
+    let mut groups = FaceGroups::new();
     for edge in triangulation.convex_hull() {
         let nodes = edge.vertices().map(|vertex| vertex.fix().index());
         if let Some(name) = side(&points[nodes[0]], &points[nodes[1]]) {
@@ -118,7 +118,7 @@ mod tests {
     }
 
     fn group_length(mesh: &Mesh, group: &str) -> f64 {
-        mesh.facet_groups()[group].iter().map(|&f| mesh.normal_in::<2>(f).1).sum()
+        mesh.face_groups()[group].iter().map(|&f| mesh.normal_in::<2>(f).1).sum()
     }
 
     /// Fills the rectangle, groups all of the boundary, and has no small angle, for many seeds.
@@ -133,7 +133,7 @@ mod tests {
             for (group, length) in [("left", 1.3), ("right", 1.3), ("bottom", 2.0), ("top", 2.0)] {
                 assert!((group_length(&mesh, group) - length).abs() < 1e-13, "{group}");
             }
-            let grouped: usize = mesh.facet_groups().values().map(Vec::len).sum();
+            let grouped: usize = mesh.face_groups().values().map(Vec::len).sum();
             assert_eq!(grouped, mesh.boundary().count());
         }
     }
@@ -157,7 +157,7 @@ mod tests {
     fn discs() {
         for size in [1.0, 0.5, 0.21, 0.1] {
             let mesh = disc(1.0, size).unwrap();
-            let sides = mesh.facet_groups()["rim"].len();
+            let sides = mesh.face_groups()["rim"].len();
             assert_eq!(sides, mesh.boundary().count());
             assert!((area(&mesh) - 0.5 * sides as f64 * (TAU / sides as f64).sin()).abs() < 1e-12);
             assert!(smallest_angle(&mesh) >= 10.0, "size {size}: {}", smallest_angle(&mesh));

@@ -1,20 +1,20 @@
 //! Images of meshes under motions, and the same mesh under other numbers.
 
 use crate::Random;
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh, MeshError};
+use percute_core::mesh::{ElementGroups, FaceGroups, Mesh, MeshError};
 
 /// Arguments of [`Mesh::new`].
 struct Parts<const D: usize, const N: usize> {
     points: Vec<[f64; D]>,
     cells: Vec<[usize; N]>,
-    facet_groups: FacetGroups<D>,
+    face_groups: FaceGroups<D>,
     element_groups: ElementGroups,
 }
 
 impl<const D: usize, const N: usize> Parts<D, N> {
     fn of(mesh: &Mesh) -> Self {
-        let facet_groups = mesh.facet_groups().iter().map(|(name, facets)| {
-            (name.clone(), facets.iter().map(|f| mesh.facet_nodes::<D>(*f).map(|n| n.index())).collect())
+        let face_groups = mesh.face_groups().iter().map(|(name, faces)| {
+            (name.clone(), faces.iter().map(|f| mesh.face_nodes::<D>(*f).map(|n| n.index())).collect())
         });
         let element_groups = mesh
             .element_groups()
@@ -23,13 +23,13 @@ impl<const D: usize, const N: usize> Parts<D, N> {
         Self {
             points: mesh.points_in().to_vec(),
             cells: mesh.nodes_of::<N>().iter().map(|cell| cell.map(|n| n.index())).collect(),
-            facet_groups: facet_groups.collect(),
+            face_groups: face_groups.collect(),
             element_groups: element_groups.collect(),
         }
     }
 
     fn mesh(self) -> Result<Mesh, MeshError> {
-        Mesh::new(self.points, &self.cells, &self.facet_groups, &self.element_groups)
+        Mesh::new(self.points, &self.cells, &self.face_groups, &self.element_groups)
     }
 }
 
@@ -66,7 +66,7 @@ fn mirror(mesh: &Mesh, axis: usize) -> Result<Mesh, MeshError> {
     parts.mesh()
 }
 
-/// The mesh of a half at x ≥ 0 and its mirror image, joined where x = 0. The numbers of the half are kept. Facets at
+/// The mesh of a half at x ≥ 0 and its mirror image, joined where x = 0. The numbers of the half are kept. Faces at
 /// x = 0 leave their groups; the image of `right` is `left`.
 ///
 /// # Errors
@@ -86,17 +86,17 @@ pub(crate) fn doubled(half: &Mesh) -> Result<Mesh, MeshError> {
     let count = parts.cells.len();
     parts.cells.extend_from_within(..);
     parts.cells[count..].iter_mut().for_each(|cell| *cell = [cell[0], cell[2], cell[1]].map(|node| image[node]));
-    for (name, facets) in std::mem::take(&mut parts.facet_groups) {
-        let away = |facet: &[usize; 2]| facet.iter().any(|&node| image[node] != node);
-        let facets: Vec<[usize; 2]> = facets.into_iter().filter(away).collect();
-        let images: Vec<[usize; 2]> = facets.iter().map(|facet| facet.map(|node| image[node])).collect();
+    for (name, faces) in std::mem::take(&mut parts.face_groups) {
+        let away = |face: &[usize; 2]| face.iter().any(|&node| image[node] != node);
+        let faces: Vec<[usize; 2]> = faces.into_iter().filter(away).collect();
+        let images: Vec<[usize; 2]> = faces.iter().map(|face| face.map(|node| image[node])).collect();
         let other = match name.as_str() {
             "left" => "right",
             "right" => "left",
             same => same,
         };
-        for (name, facets) in [(other.to_string(), images), (name, facets)].into_iter().filter(|(_, f)| !f.is_empty()) {
-            parts.facet_groups.entry(name).or_default().extend(facets);
+        for (name, faces) in [(other.to_string(), images), (name, faces)].into_iter().filter(|(_, f)| !f.is_empty()) {
+            parts.face_groups.entry(name).or_default().extend(faces);
         }
     }
     for elements in parts.element_groups.values_mut() {
@@ -144,7 +144,7 @@ fn permuted<T: Copy>(new: &[usize], values: &[T]) -> Vec<T> {
     order.into_iter().map(|i| values[i]).collect()
 }
 
-/// The mesh with its nodes and elements in random order; groups name the same facets and
+/// The mesh with its nodes and elements in random order; groups name the same faces and
 /// elements as before. Each element also starts at another of its nodes.
 ///
 /// # Errors
@@ -170,7 +170,7 @@ fn renumbered_in<const D: usize, const N: usize>(mesh: &Mesh, seed: u64) -> Resu
     }
     parts.cells = permuted(&element, &parts.cells);
     parts.points = permuted(&node, &parts.points);
-    parts.facet_groups.values_mut().flatten().for_each(|facet| *facet = facet.map(|n| node[n]));
+    parts.face_groups.values_mut().flatten().for_each(|face| *face = face.map(|n| node[n]));
     parts.element_groups.values_mut().flatten().for_each(|e| *e = element[*e]);
     Ok((parts.mesh()?, Renumbering { node, element }))
 }
@@ -190,7 +190,7 @@ mod tests {
 
     /// Total of a function of the outward normals over a group, weighted with lengths.
     fn normals(mesh: &Mesh, group: &str) -> [f64; 2] {
-        mesh.facet_groups()[group]
+        mesh.face_groups()[group]
             .iter()
             .map(|&f| mesh.normal_in::<2>(f))
             .fold([0.0; 2], |sum, (n, length)| [sum[0] + n[0] * length, sum[1] + n[1] * length])
@@ -232,11 +232,11 @@ mod tests {
         for (p, q) in mesh.points_in::<2>().iter().zip(image.points_in()) {
             assert!(close(*q, [p[0] + 3.0, p[1] - 2.0]));
         }
-        assert_eq!(image.facet_groups(), mesh.facet_groups());
+        assert_eq!(image.face_groups(), mesh.face_groups());
     }
 
     /// Under its new number each node is where it was, each element has the same corners, and
-    /// groups hold the same facets and elements.
+    /// groups hold the same faces and elements.
     #[test]
     fn renumbering_moves_nothing() {
         let mesh = grouped();
@@ -266,7 +266,7 @@ mod tests {
         let mesh = Mesh::uniform_bar(1.0, 7).unwrap();
         let (image, new) = renumbered(&mesh, 1).unwrap();
         assert_eq!(image.reoriented_elements(), 0);
-        let end = image.facet(image.facet_groups()["end"][0]).nodes[0];
+        let end = image.face(image.face_groups()["end"][0]).nodes[0];
         assert_eq!((end, image.points()[end.index()]), (NodeId::new(new.node[7]), 1.0));
     }
 }

@@ -27,8 +27,8 @@ pub(crate) struct LastOutline {
 impl LastOutline {
     /// That of a mesh; a bar has no outline.
     pub(crate) fn new(mesh: &Mesh) -> Self {
-        let facets = mesh.boundary();
-        let nodes = facets.into_iter().flat_map(|facet| mesh.facet(facet).nodes);
+        let faces = mesh.boundary();
+        let nodes = faces.into_iter().flat_map(|face| mesh.face(face).nodes);
         let mut nodes: Vec<usize> = nodes.map(|node| node.index()).collect();
         nodes.sort_unstable();
         nodes.dedup();

@@ -77,7 +77,7 @@ fn graded_meshes_are_bisections() {
         assert!(best.cell_points(e).iter().all(|p| locator.weights(parent, p).iter().all(|w| *w > -1e-12)));
     }
     let length = |mesh: &Mesh, name: &str| -> f64 {
-        mesh.facet_groups()[name].iter().map(|facet| mesh.normal_in::<2>(*facet).1).sum()
+        mesh.face_groups()[name].iter().map(|face| mesh.normal_in::<2>(*face).1).sum()
     };
     for name in ["left", "right", "bottom", "top"] {
         assert!((length(best, name) - length(first, name)).abs() < 1e-15, "{name}");

@@ -3,7 +3,7 @@
 use percute_core::contact::{ContactResults, Obstacle};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{History, SinkError, Step, StepSource};
-use percute_core::ids::{FacetId, NodeId};
+use percute_core::ids::{FaceId, NodeId};
 use percute_core::load::{Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, Mesh};
@@ -254,8 +254,8 @@ fn true_errors_do_not_depend_on_numbers() {
     // A node in the middle of a coarse edge is moved off it: of the elements around it some are not nested.
     let moved = 81 * 20 + 31;
     let cells: Vec<_> = fine.nodes_of::<3>().iter().map(|cell| cell.map(NodeId::index)).collect();
-    let facet = |f: &FacetId| fine.facet_nodes::<2>(*f).map(NodeId::index);
-    let groups = fine.facet_groups().iter().map(|(name, f)| (name.clone(), f.iter().map(facet).collect())).collect();
+    let face = |f: &FaceId| fine.face_nodes::<2>(*f).map(NodeId::index);
+    let groups = fine.face_groups().iter().map(|(name, f)| (name.clone(), f.iter().map(face).collect())).collect();
     let mut points = fine.points_in::<2>().to_vec();
     points[moved][1] += 1e-4;
     let (strange, new) = renumbered(&Mesh::new(points, &cells, &groups, &ElementGroups::new()).unwrap(), 3).unwrap();

@@ -5,7 +5,7 @@ use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
-use percute_core::mesh::{ElementGroups, FacetRows, Mesh};
+use percute_core::mesh::{ElementGroups, FaceRows, Mesh};
 use percute_core::observer::Unobserved;
 use percute_core::problem::{AnyProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
@@ -37,18 +37,18 @@ fn same(problem: &AnyProblem, options: &Options) {
     assert_eq!(*options, options_again);
 }
 
-/// A mesh whose groups of facets have other names, and a first half and a second half of elements.
+/// A mesh whose groups of faces have other names, and a first half and a second half of elements.
 fn named(mesh: &Mesh, sides: &[&str], names: &[String]) -> Mesh {
     let nodes = |side: &str| {
-        let facets = &mesh.facet_groups()[side];
-        facets.iter().flat_map(|&f| mesh.facet(f).nodes).map(|node| node.index()).collect::<Vec<_>>()
+        let faces = &mesh.face_groups()[side];
+        faces.iter().flat_map(|&f| mesh.face(f).nodes).map(|node| node.index()).collect::<Vec<_>>()
     };
-    let facets: FacetRows = sides.iter().zip(names).map(|(side, name)| (name.clone(), nodes(side))).collect();
+    let faces: FaceRows = sides.iter().zip(names).map(|(side, name)| (name.clone(), nodes(side))).collect();
     let (half, all) = (mesh.element_count() / 2, mesh.element_count());
     let elements =
         ElementGroups::from([(names[0].clone(), (0..half).collect()), (names[1].clone(), (half..all).collect())]);
     let cells: Vec<_> = mesh.cell_rows().iter().map(|node| node.index()).collect();
-    Mesh::from_rows(mesh.dimension(), mesh.points(), &cells, (&facets, &elements)).unwrap()
+    Mesh::from_rows(mesh.dimension(), mesh.points(), &cells, (&faces, &elements)).unwrap()
 }
 
 fn flip(random: &mut Random) -> bool {
@@ -106,8 +106,8 @@ fn start<const D: usize>(mesh: &Mesh, support: Option<&Support>, random: &mut Ra
     let mut velocity: Vec<[f64; D]> = mesh.points_in::<D>().iter().map(|_| vector(random)).collect();
     let Some(Support { group, components, velocity: motion }) = support else { return velocity };
     let at_start = motion.as_ref().map_or([0.0; 3], |table| table.at(0.0));
-    for facet in &mesh.facet_groups()[group] {
-        for node in mesh.facet_nodes::<D>(*facet) {
+    for face in &mesh.face_groups()[group] {
+        for node in mesh.face_nodes::<D>(*face) {
             (0..D).filter(|&c| components[c]).for_each(|c| velocity[node.index()][c] = at_start[c]);
         }
     }
@@ -138,7 +138,7 @@ fn anything<const D: usize, const N: usize>(
     } else {
         builder.material(law::<D>(random))
     };
-    for group in loaded.filter(|name| mesh.facet_groups().contains_key(*name)) {
+    for group in loaded.filter(|name| mesh.face_groups().contains_key(*name)) {
         let profile = Profile { value: random.between(-2.0, 2.0), gradient: padded(&vector::<D>(random)) };
         builder = builder.traction(Traction { group: group.clone(), value: table::<D>(random), profile });
     }

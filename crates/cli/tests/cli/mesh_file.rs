@@ -71,7 +71,7 @@ fn a_mesh_of_gmsh_is_run_from_every_format() {
         assert_eq!(report["largest_residual"]["admissible"], true, "{format}");
         let names: Vec<_> =
             report["warnings"].as_array().unwrap().iter().map(|w| w["name"].as_str().unwrap()).collect();
-        for name in ["dropped_nodes", "points_left_out", "inner_facets"] {
+        for name in ["dropped_nodes", "points_left_out", "inner_edges"] {
             assert!(names.contains(&name), "{format}: {names:?}");
         }
     }

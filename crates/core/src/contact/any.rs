@@ -83,7 +83,7 @@ impl AnyObstacle {
         on!(self, obstacle => obstacle.law())
     }
 
-    /// The group of facets that may touch it, if it is not all.
+    /// The group of faces that may touch it, if it is not all.
     #[must_use]
     pub fn group(&self) -> Option<&str> {
         on!(self, obstacle => obstacle.group())

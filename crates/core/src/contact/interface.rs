@@ -3,7 +3,7 @@
 use super::coulomb::Coulomb;
 use super::obstacle::{ObstacleError, coulomb};
 
-/// Two groups of facets, of different bodies, that may touch with Coulomb friction.
+/// Two groups of faces, of different bodies, that may touch with Coulomb friction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interface {
     groups: [String; 2],
@@ -12,7 +12,7 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// Between two groups of facets, with a coefficient of friction μ ≥ 0. The nodes of the two face each other in
+    /// Between two groups of faces, with a coefficient of friction μ ≥ 0. The nodes of the two face each other in
     /// pairs: they differ by a gap along one common normal only, and each pair stays one during the run. The normal is
     /// the mean one of the first group or, if the nodes do not face each other along it, of the second one.
     ///

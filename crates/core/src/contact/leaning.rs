@@ -117,20 +117,20 @@ fn pairs<const D: usize>(surface: &ContactSurface<D>, mesh: &Mesh) -> Vec<([usiz
         nodes.sort_unstable();
         nodes
     };
-    let facets: BTreeMap<[usize; D], _> = surface.facets().iter().map(|facet| (sorted(facet.nodes), facet)).collect();
+    let faces: BTreeMap<[usize; D], _> = surface.faces().iter().map(|face| (sorted(face.nodes), face)).collect();
     let mut leaning = Vec::new();
-    for facet in surface.facets() {
-        let other = facet.nodes.map(|at| opposite(at).unwrap_or(at));
-        let Some(other) = facets.get(&sorted(other)).filter(|other| other.facet != facet.facet) else { continue };
-        let frame = surface.obstacles()[facet.obstacle].flat_frame();
+    for face in surface.faces() {
+        let other = face.nodes.map(|at| opposite(at).unwrap_or(at));
+        let Some(other) = faces.get(&sorted(other)).filter(|other| other.face != face.face) else { continue };
+        let frame = surface.obstacles()[face.obstacle].flat_frame();
         let (normal, along) = (frame.normal(), tangent(frame.normal()));
-        let slope = |facet| {
-            let outward = mesh.normal_in::<D>(facet).0;
+        let slope = |face| {
+            let outward = mesh.normal_in::<D>(face).0;
             (dot(&outward, &along) / dot(&outward, normal)).atan()
         };
-        let lean = common(slope(facet.facet), slope(other.facet));
+        let lean = common(slope(face.face), slope(other.face));
         if lean > LEVEL {
-            leaning.push((facet.nodes, lean));
+            leaning.push((face.nodes, lean));
         }
     }
     leaning

@@ -36,4 +36,4 @@ pub use results::{
     NodeSummary, Resultant, stopping_times,
 };
 pub(crate) use solve::solve;
-pub use surface::{ContactFacet, ContactNode, ContactSurface};
+pub use surface::{ContactFace, ContactNode, ContactSurface};

@@ -61,7 +61,7 @@ enum Shape<const D: usize> {
 
 impl<const D: usize> Obstacle<D> {
     /// A plane through `point` (m) with its outward `normal` (of any length; it points to the
-    /// body) and a coefficient of friction μ ≥ 0. With a `group`, only its facets may touch.
+    /// body) and a coefficient of friction μ ≥ 0. With a `group`, only its faces may touch.
     ///
     /// # Errors
     /// A zero normal, values that are not finite, negative friction, friction in 1D.
@@ -108,7 +108,7 @@ impl<const D: usize> Obstacle<D> {
         Self { shape, gap: None, ..self.clone() }
     }
 
-    /// The surface of another body, as a group of facets meets it; `normal` is the unit normal from there to the group.
+    /// The surface of another body, as a group of faces meets it; `normal` is the unit normal from there to the group.
     /// With `sliding`, the two slide along each other: it is their index in the contact surface.
     pub(crate) fn surface(normal: [f64; D], law: Coulomb, group: String, sliding: Option<usize>) -> Self {
         Self { shape: Shape::Surface(Frame::new(normal), sliding), law, group: Some(group), gap: None }
@@ -147,7 +147,7 @@ impl<const D: usize> Obstacle<D> {
         self.law.project(&self.flat_frame(), force)
     }
 
-    /// The group of facets that may touch, if it was named.
+    /// The group of faces that may touch, if it was named.
     #[must_use]
     pub fn group(&self) -> Option<&str> {
         self.group.as_deref()

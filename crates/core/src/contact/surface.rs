@@ -1,13 +1,13 @@
-//! The candidate facets and nodes of contact, with their obstacles.
+//! The candidate faces and nodes of contact, with their obstacles.
 
 use super::coulomb::Coulomb;
 use super::frame::Frame;
 use super::mortar::{Facing, SlidingSurfaces};
 use super::obstacle::Obstacle;
-use crate::ids::{FacetId, NodeId};
+use crate::ids::{FaceId, NodeId};
 use crate::mesh::{Mesh, NewNumbers};
 
-/// A node of the candidate facets.
+/// A node of the candidate faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactNode {
     /// The node.
@@ -30,12 +30,12 @@ pub struct ContactNode {
     pub beside: Option<usize>,
 }
 
-/// A facet that may touch an obstacle.
+/// A face that may touch an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactFacet<const D: usize> {
-    /// The facet.
-    pub facet: FacetId,
-    /// Positions of its nodes in [`ContactSurface::nodes`], in the order of the facet's nodes.
+pub struct ContactFace<const D: usize> {
+    /// The face.
+    pub face: FaceId,
+    /// Positions of its nodes in [`ContactSurface::nodes`], in the order of the face's nodes.
     pub nodes: [usize; D],
     /// Its area, with thickness or section (m²).
     pub area: f64,
@@ -43,7 +43,7 @@ pub struct ContactFacet<const D: usize> {
     pub obstacle: usize,
 }
 
-/// All obstacles and all candidate facets, ordered along the boundary: in 2D a facet joins two nodes that follow
+/// All obstacles and all candidate faces, ordered along the boundary: in 2D a face joins two nodes that follow
 /// each other in [`ContactSurface::nodes`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactSurface<const D: usize> {
@@ -51,7 +51,7 @@ pub struct ContactSurface<const D: usize> {
     nodes: Vec<ContactNode>,
     /// Places of the nodes in the undeformed mesh (m).
     points: Vec<[f64; D]>,
-    facets: Vec<ContactFacet<D>>,
+    faces: Vec<ContactFace<D>>,
     sliding: Vec<SlidingSurfaces<D>>,
 }
 
@@ -62,7 +62,7 @@ impl<const D: usize> ContactSurface<D> {
         &self.obstacles
     }
 
-    /// Nodes of the candidate facets.
+    /// Nodes of the candidate faces.
     #[must_use]
     pub fn nodes(&self) -> &[ContactNode] {
         &self.nodes
@@ -74,10 +74,10 @@ impl<const D: usize> ContactSurface<D> {
         &self.points[at]
     }
 
-    /// Candidate facets.
+    /// Candidate faces.
     #[must_use]
-    pub fn facets(&self) -> &[ContactFacet<D>] {
-        &self.facets
+    pub fn faces(&self) -> &[ContactFace<D>] {
+        &self.faces
     }
 
     /// All pairs of surfaces that slide along each other.
@@ -100,12 +100,12 @@ impl<const D: usize> ContactSurface<D> {
         Facing::new(self, displacement)
     }
 
-    /// Tributary area (m²) of each node: its share of the candidate facets, ℓ_k of eq. \[45\].
+    /// Tributary area (m²) of each node: its share of the candidate faces, ℓ_k of eq. \[45\].
     #[must_use]
     pub fn tributary_areas(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.nodes.len()];
-        for facet in &self.facets {
-            facet.nodes.iter().for_each(|&at| areas[at] += facet.area / D as f64);
+        for face in &self.faces {
+            face.nodes.iter().for_each(|&at| areas[at] += face.area / D as f64);
         }
         areas
     }
@@ -183,11 +183,11 @@ impl<const D: usize> ContactSurface<D> {
         self.nodes[at].beside.map_or(at, |beside| at.min(beside))
     }
 
-    /// Whether a facet has a node that may touch two planes.
+    /// Whether a face has a node that may touch two planes.
     #[inline]
     #[must_use]
-    pub fn reaches_a_corner(&self, facet: &ContactFacet<D>) -> bool {
-        facet.nodes.iter().any(|&at| self.nodes[at].beside.is_some())
+    pub fn reaches_a_corner(&self, face: &ContactFace<D>) -> bool {
+        face.nodes.iter().any(|&at| self.nodes[at].beside.is_some())
     }
 
     /// The force that the contact forces at all its obstacles do on a node.
@@ -228,18 +228,18 @@ impl<const D: usize> ContactSurface<D> {
         if contact.guided { Coulomb::FRICTIONLESS } else { self.obstacles[contact.obstacle].law() }
     }
 
-    /// The surface of the renumbered mesh: nodes and facets in the same order.
+    /// The surface of the renumbered mesh: nodes and faces in the same order.
     pub(crate) fn renumbered(&self, old: &Mesh, new: &NewNumbers) -> Self {
         let node = |contact: &ContactNode| ContactNode { node: new.node(contact.node), ..*contact };
-        let facet = |facet: &ContactFacet<D>| {
-            let nodes = &old.facet_nodes::<D>(facet.facet);
-            ContactFacet { facet: new.facet(facet.facet), nodes: new.along(nodes, facet.nodes), ..*facet }
+        let face = |face: &ContactFace<D>| {
+            let nodes = &old.face_nodes::<D>(face.face);
+            ContactFace { face: new.face(face.face), nodes: new.along(nodes, face.nodes), ..*face }
         };
         Self {
             obstacles: self.obstacles.clone(),
             nodes: self.nodes.iter().map(node).collect(),
             points: self.points.clone(),
-            facets: self.facets.iter().map(facet).collect(),
+            faces: self.faces.iter().map(face).collect(),
             sliding: self.sliding.clone(),
         }
     }
@@ -262,17 +262,17 @@ impl<const D: usize> ContactSurface<D> {
         self.move_back(obstacle, gap - least);
     }
 
-    /// Adds two surfaces that slide along each other, of which the nodes and facets have been added.
+    /// Adds two surfaces that slide along each other, of which the nodes and faces have been added.
     pub(crate) fn add_sliding(&mut self, sliding: SlidingSurfaces<D>) {
         self.sliding.push(sliding);
     }
 
-    /// Adds an obstacle with its candidates. The facets have positions in `nodes`.
+    /// Adds an obstacle with its candidates. The faces have positions in `nodes`.
     pub(crate) fn add(
         &mut self,
         obstacle: Obstacle<D>,
         nodes: impl IntoIterator<Item = (ContactNode, [f64; D])>,
-        facets: impl IntoIterator<Item = ContactFacet<D>>,
+        faces: impl IntoIterator<Item = ContactFace<D>>,
     ) {
         let start = self.nodes.len();
         for (node, point) in nodes {
@@ -282,8 +282,8 @@ impl<const D: usize> ContactSurface<D> {
             self.nodes.push(node);
             self.points.push(point);
         }
-        self.facets.extend(facets.into_iter().map(|f| ContactFacet { nodes: f.nodes.map(|at| start + at), ..f }));
-        self.facets.sort_by_key(|f| f.nodes.iter().copied().min());
+        self.faces.extend(faces.into_iter().map(|f| ContactFace { nodes: f.nodes.map(|at| start + at), ..f }));
+        self.faces.sort_by_key(|f| f.nodes.iter().copied().min());
         self.obstacles.push(obstacle);
     }
 }

@@ -1,4 +1,4 @@
-//! The elements of the sweep, two and two across a common facet.
+//! The elements of the sweep, two and two across a common face.
 
 use crate::ids::{ElementId, NodeId};
 use crate::material::LinearLaw;
@@ -59,7 +59,7 @@ pub(super) struct ChunkData<'a> {
     pub(super) law: [f64; 2],
 }
 
-/// An element and the element across one of its facets, if it has a partner.
+/// An element and the element across one of its faces, if it has a partner.
 struct Pair<const N: usize> {
     first: ElementId,
     second: Option<ElementId>,
@@ -196,7 +196,7 @@ fn laws<const D: usize, const N: usize>(problem: &Problem<D, N>) -> (Vec<[f64; 2
     (laws, of_material)
 }
 
-/// Joins elements of a strip that share a facet and a law: each with its free neighbour of the lowest number, if that
+/// Joins elements of a strip that share a face and a law: each with its free neighbour of the lowest number, if that
 /// is not far ahead.
 fn pair<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
@@ -214,9 +214,9 @@ fn pair<const D: usize, const N: usize>(
         }
         let first = ElementId::new(e);
         let mut partner: Option<(usize, usize)> = None;
-        for (apart, facet) in mesh.facets_of::<N>()[e].iter().enumerate() {
-            let facet = &mesh.facet(*facet);
-            let other = facet.across(first);
+        for (apart, face) in mesh.faces_of::<N>()[e].iter().enumerate() {
+            let face = &mesh.face(*face);
+            let other = face.across(first);
             let Some(other) = other.map(ElementId::index) else { continue };
             let free = strip.contains(&other) && !taken[other] && law(other) == law(e);
             if free && highest(other) <= reached + AHEAD && partner.is_none_or(|(known, _)| other < known) {

@@ -8,7 +8,7 @@ use crate::simplex::Shape;
 
 /// The stiffness of a problem, applied element by element. Its scaled gradients are valid for linear laws only.
 ///
-/// The sweep goes over pairs of elements that share a facet: a pair has four nodes to read and write where two
+/// The sweep goes over pairs of elements that share a face: a pair has four nodes to read and write where two
 /// triangles have six. First all even strips are swept, then all odd ones.
 #[derive(Clone, Debug)]
 pub struct Stiffness<const D: usize, const N: usize> {

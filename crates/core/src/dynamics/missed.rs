@@ -2,7 +2,7 @@
 
 use super::SimulationError;
 use crate::history::{SinkError, State, StateSink};
-use crate::ids::{FacetId, NodeId};
+use crate::ids::{FaceId, NodeId};
 use crate::problem::Problem;
 use crate::problem::symmetry::{self, SymmetryLine, common_lines, distinct};
 use std::collections::{BTreeMap, BTreeSet};
@@ -36,12 +36,12 @@ pub(super) struct MissedContact<'p, const D: usize, const N: usize> {
 struct Body {
     /// Nodes, each with the way from a line of symmetry into the body (m), if it is on one.
     nodes: BTreeMap<NodeId, Point>,
-    facets: Vec<Side>,
+    faces: Vec<Side>,
 }
 
-/// A facet of a boundary.
+/// A face of a boundary.
 struct Side {
-    facet: FacetId,
+    face: FaceId,
     /// The height of its element there (m).
     height: f64,
     /// The line of symmetry on which it is.
@@ -60,19 +60,19 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
         let of_node = mesh.part_numbers();
         let node_lines = problem.node_lines();
         made.bodies = (0..mesh.parts()).map(|_| Body::default()).collect();
-        for facet in mesh.boundary() {
-            let (nodes, owner) = (mesh.facet_nodes::<D>(facet), mesh.facet(facet).owner);
-            let (normal, area) = mesh.normal_in::<D>(facet);
+        for face in mesh.boundary() {
+            let (nodes, owner) = (mesh.face_nodes::<D>(face), mesh.face(face).owner);
+            let (normal, area) = mesh.normal_in::<D>(face);
             let height = D as f64 * mesh.geometry::<D, N>(owner).volume / area;
-            let line = symmetry::line_of(mesh, &problem.supported(facet), &node_lines, facet);
+            let line = symmetry::line_of(mesh, &problem.supported(face), &node_lines, face);
             let body = &mut made.bodies[of_node[nodes[0].index()]];
-            body.facets.push(Side { facet, height, line });
+            body.faces.push(Side { face, height, line });
             for node in nodes {
                 let way = body.nodes.entry(node).or_default();
                 line.iter().for_each(|line| way[line.across] = -BESIDE * height * normal[line.across]);
             }
         }
-        let lines = made.bodies.iter().map(|body| distinct(body.facets.iter().filter_map(|side| side.line)));
+        let lines = made.bodies.iter().map(|body| distinct(body.faces.iter().filter_map(|side| side.line)));
         let lines: Vec<Vec<SymmetryLine>> = lines.collect();
         for (a, own) in made.bodies.iter().enumerate() {
             for (b, other) in made.bodies.iter().enumerate().filter(|(b, _)| *b != a) {
@@ -98,9 +98,9 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
         std::array::from_fn(|c| if c < D { x[c] + u[c] } else { 0.0 })
     }
 
-    /// The ends of a facet; one of a bar stands across it.
-    fn ends(&self, displacement: &[[f64; D]], facet: FacetId) -> [Point; 2] {
-        let nodes = self.problem.mesh().facet_nodes::<D>(facet);
+    /// The ends of a face; one of a bar stands across it.
+    fn ends(&self, displacement: &[[f64; D]], face: FaceId) -> [Point; 2] {
+        let nodes = self.problem.mesh().face_nodes::<D>(face);
         let [mut a, mut b] = [nodes[0], nodes[D - 1]].map(|node| self.place(displacement, node));
         if D == 1 {
             (a[1], b[1]) = (-1.0, 1.0);
@@ -118,13 +118,13 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
         limits
     }
 
-    /// How deep a point is in a body (m), if it is deeper than allowed. Facets on lines of symmetry of both bodies do
+    /// How deep a point is in a body (m), if it is deeper than allowed. Faces on lines of symmetry of both bodies do
     /// not count: the other half of the body is beyond.
     fn depth(&self, displacement: &[[f64; D]], body: &Body, point: &Point, common: &[SymmetryLine]) -> Option<f64> {
         let (mut inside, mut nearest) = (false, (f64::INFINITY, 0.0));
         let size = self.problem.mesh().size();
-        for &Side { facet, height, line } in &body.facets {
-            let [a, b] = self.ends(displacement, facet);
+        for &Side { face, height, line } in &body.faces {
+            let [a, b] = self.ends(displacement, face);
             // How often a line to the right crosses the boundary.
             if (a[1] > point[1]) != (b[1] > point[1]) {
                 let x = a[0] + (b[0] - a[0]) * (point[1] - a[1]) / (b[1] - a[1]);

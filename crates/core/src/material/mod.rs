@@ -31,7 +31,7 @@ pub trait Law {
     fn density(&self) -> f64;
 
     /// Section (m²) of a bar, thickness (m) of a plane body. It turns a length or an area of the mesh into a
-    /// volume, and a facet into an area.
+    /// volume, and a face into an area.
     fn extent(&self) -> f64;
 
     /// Largest wave speed in the undeformed body, in the dimension of the mesh (m/s).

@@ -59,7 +59,7 @@ impl Bisection {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{ElementGroups, FacetGroups, Mesh};
+    use crate::mesh::{ElementGroups, FaceGroups, Mesh};
 
     /// Two squares, one above the other, whose nodes face each other across a gap.
     fn pair() -> (Mesh, Vec<[NodeId; 2]>) {
@@ -73,7 +73,7 @@ mod tests {
             .collect();
         let cells: Vec<_> = lower.nodes_of::<3>().iter().map(|cell| cell.map(|n| n.index())).collect();
         let cells: Vec<_> = cells.iter().copied().chain(cells.iter().map(|cell| cell.map(|n| count + n))).collect();
-        let mesh = Mesh::of_bodies(points, &cells, &FacetGroups::new(), &ElementGroups::new()).unwrap();
+        let mesh = Mesh::of_bodies(points, &cells, &FaceGroups::new(), &ElementGroups::new()).unwrap();
         (mesh, (0..4).map(|k| [NodeId::new(8 + k), NodeId::new(count + k)]).collect())
     }
 

@@ -1,11 +1,11 @@
 //! Every check that a mesh must pass.
 
 use super::geometry::diameter;
-use super::topology::Facets;
-use super::{ElementGroups, FacetRows};
-use crate::ids::{ElementId, FacetId, NodeId};
+use super::topology::Faces;
+use super::{ElementGroups, FaceRows};
+use crate::ids::{ElementId, FaceId, NodeId};
 use crate::memory::can_be_had;
-use crate::message::{facet, numbers, rounded, short};
+use crate::message::{face, numbers, rounded, short};
 use crate::simplex::Simplex;
 use std::collections::{BTreeMap, HashMap};
 use thiserror::Error;
@@ -72,10 +72,10 @@ pub enum MeshError {
          diameter of {} m); move one of them, or leave the element out", short(*.volume), short(*.diameter)
     )]
     Degenerate { element: usize, nodes: Vec<usize>, volume: f64, diameter: f64 },
-    /// A facet shared by more than two elements.
-    #[error("the {} is shared by elements {}; at most two may share one", facet(.nodes), numbers(.elements))]
-    NonManifoldFacet { nodes: Vec<usize>, elements: Vec<usize> },
-    /// Two elements on the same side of a facet.
+    /// A face shared by more than two elements.
+    #[error("the {} is shared by elements {}; at most two may share one", face(.nodes), numbers(.elements))]
+    NonManifoldFace { nodes: Vec<usize>, elements: Vec<usize> },
+    /// Two elements on the same side of a face.
     #[error(
         "elements {} and {} lie on the same side of the edge they share: they overlap, or one is there twice; leave \
          one out",
@@ -98,15 +98,15 @@ pub enum MeshError {
         node: usize,
         /// Elements around it.
         elements: usize,
-        /// Elements that can be reached through facets.
+        /// Elements that can be reached through faces.
         reached: usize,
     },
-    /// A group refers to a facet that does not exist.
+    /// A group refers to a face that does not exist.
     #[error(
         "group \"{group}\" names the {}, which is not on the boundary of the mesh; a group holds edges (a bar: ends) \
-         of the boundary, nodes are counted from 0", facet(.nodes)
+         of the boundary, nodes are counted from 0", face(.nodes)
     )]
-    NoSuchFacet { group: String, nodes: Vec<usize> },
+    NoSuchFace { group: String, nodes: Vec<usize> },
     /// A group refers to an element that does not exist.
     #[error("group \"{group}\" names element {element}, but the mesh has elements 0 to {last}, counted from 0")]
     NoSuchElement { group: String, element: usize, last: usize },
@@ -209,25 +209,25 @@ pub(super) fn orient<const D: usize, const N: usize>(
     Ok(reoriented)
 }
 
-pub(super) fn facet_groups(
-    facets: &Facets,
+pub(super) fn face_groups(
+    faces: &Faces,
     node_count: usize,
-    groups: &FacetRows,
-) -> Result<BTreeMap<String, Vec<FacetId>>, MeshError> {
+    groups: &FaceRows,
+) -> Result<BTreeMap<String, Vec<FaceId>>, MeshError> {
     let find = |group: &String, nodes: &[usize]| {
-        let missing = || MeshError::NoSuchFacet { group: group.clone(), nodes: nodes.to_vec() };
+        let missing = || MeshError::NoSuchFace { group: group.clone(), nodes: nodes.to_vec() };
         if nodes.iter().any(|&n| n >= node_count) {
             return Err(missing());
         }
         let mut sorted: Vec<NodeId> = nodes.iter().copied().map(NodeId::new).collect();
         sorted.sort_unstable();
-        let at = facets.find(&sorted).ok_or_else(missing)?;
-        if facets.get(at).neighbour.is_some() { Err(missing()) } else { Ok(FacetId::new(at)) }
+        let at = faces.find(&sorted).ok_or_else(missing)?;
+        if faces.get(at).neighbour.is_some() { Err(missing()) } else { Ok(FaceId::new(at)) }
     };
     let mut named = BTreeMap::new();
     for (group, members) in groups {
         let mut ids =
-            members.chunks_exact(facets.width).map(|nodes| find(group, nodes)).collect::<Result<Vec<_>, _>>()?;
+            members.chunks_exact(faces.width).map(|nodes| find(group, nodes)).collect::<Result<Vec<_>, _>>()?;
         ids.sort_unstable();
         ids.dedup();
         named.insert(group.clone(), ids);

@@ -30,7 +30,7 @@ fn bar(mesh: &Mesh, factor: f64) -> Option<Mesh> {
 
 /// The rectangle, which may be turned and moved.
 fn rectangle(mesh: &Mesh, factor: f64) -> Option<Mesh> {
-    let [nx, ny] = ["bottom", "left"].map(|side| mesh.facet_groups().get(side).map_or(0, Vec::len));
+    let [nx, ny] = ["bottom", "left"].map(|side| mesh.face_groups().get(side).map_or(0, Vec::len));
     let count = (nx + 1) * (ny + 1);
     if nx == 0 || ny == 0 || mesh.node_count() < count {
         return None;
@@ -67,7 +67,7 @@ fn finer(count: usize, factor: f64) -> usize {
 /// Whether two meshes have the same elements and groups, and nodes at the same places to rounding.
 fn same(a: &Mesh, b: &Mesh) -> bool {
     a.cell_rows() == b.cell_rows()
-        && a.facet_groups() == b.facet_groups()
+        && a.face_groups() == b.face_groups()
         && a.element_groups() == b.element_groups()
         && a.points().len() == b.points().len()
         && a.points().iter().zip(b.points()).all(|(p, q)| (p - q).abs() <= SAME * a.size())

@@ -1,6 +1,6 @@
 //! Uniform bars, rectangles and discs.
 
-use super::{ElementGroups, FacetGroups, Mesh, MeshError, room};
+use super::{ElementGroups, FaceGroups, Mesh, MeshError, room};
 
 /// A length that must be positive and finite.
 fn positive(name: &'static str, value: f64) -> Result<(), MeshError> {
@@ -33,7 +33,7 @@ impl Mesh {
         room(elements)?;
         let points = (0..=elements).map(|i| [length * i as f64 / elements as f64]).collect();
         let cells: Vec<_> = (0..elements).map(|e| [e, e + 1]).collect();
-        let groups = FacetGroups::from([("start".to_string(), vec![[0]]), ("end".to_string(), vec![[elements]])]);
+        let groups = FaceGroups::from([("start".to_string(), vec![[0]]), ("end".to_string(), vec![[elements]])]);
         Self::new(points, &cells, &groups, &ElementGroups::new())
     }
 }
@@ -123,7 +123,7 @@ impl Mesh {
                 }
             }
         }
-        let groups = FacetGroups::from([
+        let groups = FaceGroups::from([
             ("bottom".to_string(), (0..nx).map(|i| [id(i, 0), id(i + 1, 0)]).collect()),
             ("top".to_string(), (0..nx).map(|i| [id(i, ny), id(i + 1, ny)]).collect()),
             ("left".to_string(), (0..ny).map(|j| [id(0, j), id(0, j + 1)]).collect()),
@@ -171,7 +171,7 @@ impl Mesh {
             }
         }
         let outline = (0..6 * rings).map(|j| [id(rings, j), id(rings, j + 1)]).collect();
-        let groups = FacetGroups::from([("boundary".to_string(), outline)]);
+        let groups = FaceGroups::from([("boundary".to_string(), outline)]);
         Self::new(points, &cells, &groups, &ElementGroups::new())
     }
 }
@@ -219,7 +219,7 @@ mod tests {
         for rings in [1, 2, 7] {
             let disc = Mesh::disc(0.5, rings).unwrap();
             assert_eq!((disc.element_count(), disc.node_count()), (6 * rings * rings, 3 * rings * (rings + 1) + 1));
-            assert_eq!((disc.reoriented_elements(), disc.facet_groups()["boundary"].len()), (0, 6 * rings));
+            assert_eq!((disc.reoriented_elements(), disc.face_groups()["boundary"].len()), (0, 6 * rings));
             let area = area(&disc);
             let sides = 6.0 * rings as f64;
             let exact = 0.5 * sides * 0.25 * (std::f64::consts::TAU / sides).sin();

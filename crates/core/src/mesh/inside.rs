@@ -3,7 +3,7 @@
 use super::place::foot;
 use super::{Mesh, in_kind};
 use crate::border::{Vector, cut};
-use crate::ids::{FacetId, NodeId};
+use crate::ids::{FaceId, NodeId};
 use crate::simplex::simplex;
 
 /// The node of a body that is deepest inside another one.
@@ -12,38 +12,37 @@ pub(super) struct Inside {
     pub(super) node: NodeId,
     /// The way to the boundary of the other body (m).
     pub(super) depth: f64,
-    /// The facet of the node that looks most against the other body, and the nearest one of that.
-    pub(super) facets: [FacetId; 2],
+    /// The face of the node that looks most against the other body, and the nearest one of that.
+    pub(super) faces: [FaceId; 2],
 }
 
 impl Mesh {
     /// The node of the boundary that is deepest inside another mesh, by more than a tolerance (m).
     pub(super) fn deepest_in(&self, other: &Self, tolerance: f64) -> Option<Inside> {
-        let mut nodes: Vec<NodeId> = self.boundary().flat_map(|facet| self.facet(facet).nodes).copied().collect();
+        let mut nodes: Vec<NodeId> = self.boundary().flat_map(|face| self.face(face).nodes).copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
-        let outline: Vec<(FacetId, [Vector; 2])> = other.boundary().map(|facet| (facet, other.ends(facet))).collect();
+        let outline: Vec<(FaceId, [Vector; 2])> = other.boundary().map(|face| (face, other.ends(face))).collect();
         let depth = |node: NodeId| {
             let point = &self.point(node);
             if !other.encloses(point) {
                 return None;
             }
-            let ways = outline.iter().map(|(facet, ends)| (foot(point, ends).1, *facet));
+            let ways = outline.iter().map(|(face, ends)| (foot(point, ends).1, *face));
             ways.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(depth, nearest)| (node, depth, nearest))
         };
         let deepest = nodes.into_iter().filter_map(depth).filter(|(_, depth, _)| *depth > tolerance);
         let (node, depth, nearest) = deepest.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let normal = other.facet_normal(nearest).0;
-        let against =
-            |facet: &FacetId| -> f64 { self.facet_normal(*facet).0.iter().zip(normal).map(|(a, b)| a * b).sum() };
-        let own = self.boundary().filter(|&facet| self.facet(facet).nodes.contains(&node));
+        let normal = other.face_normal(nearest).0;
+        let against = |face: &FaceId| -> f64 { self.face_normal(*face).0.iter().zip(normal).map(|(a, b)| a * b).sum() };
+        let own = self.boundary().filter(|&face| self.face(face).nodes.contains(&node));
         let own = own.min_by(|a, b| against(a).total_cmp(&against(b)))?;
-        Some(Inside { node, depth, facets: [own, nearest] })
+        Some(Inside { node, depth, faces: [own, nearest] })
     }
 
-    /// The names of the groups of a facet of the boundary.
-    pub(super) fn groups_of(&self, facet: FacetId) -> impl Iterator<Item = &str> {
-        self.facet_groups().iter().filter(move |(_, all)| all.contains(&facet)).map(|(name, _)| name.as_str())
+    /// The names of the groups of a face of the boundary.
+    pub(super) fn groups_of(&self, face: FaceId) -> impl Iterator<Item = &str> {
+        self.face_groups().iter().filter(move |(_, all)| all.contains(&face)).map(|(name, _)| name.as_str())
     }
 
     /// Whether a point is in an element, or on its boundary.
@@ -64,8 +63,8 @@ mod tests {
         let inside = upper.deepest_in(&lower, 1e-9).unwrap();
         // The lower side of the upper block is 0.1 m below the upper side of the lower one.
         assert!((inside.depth - 0.1).abs() < 1e-12, "{inside:?}");
-        let groups = [(&upper, inside.facets[0]), (&lower, inside.facets[1])];
-        assert_eq!(groups.map(|(mesh, facet)| mesh.groups_of(facet).collect::<Vec<_>>()), [["bottom"], ["top"]]);
+        let groups = [(&upper, inside.faces[0]), (&lower, inside.faces[1])];
+        assert_eq!(groups.map(|(mesh, face)| mesh.groups_of(face).collect::<Vec<_>>()), [["bottom"], ["top"]]);
         // Blocks that touch, and such that are apart.
         assert_eq!(block(1.0, 2.0).deepest_in(&lower, 1e-9), None);
         assert_eq!(block(1.0, 2.1).deepest_in(&lower, 1e-9), None);

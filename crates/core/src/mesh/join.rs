@@ -1,8 +1,8 @@
 //! Several bodies as one mesh, each in its place, and a body out of such a mesh.
 
-use super::{ElementGroups, FacetRows, Mesh, MeshError};
+use super::{ElementGroups, FaceRows, Mesh, MeshError};
 use crate::border::{Vector, cut, padded};
-use crate::ids::{ElementId, FacetId, NodeId};
+use crate::ids::{ElementId, FaceId, NodeId};
 use crate::message::{short, vector};
 use std::collections::BTreeMap;
 
@@ -17,13 +17,13 @@ impl Mesh {
     /// Bodies that overlap, or too many elements.
     pub fn joined(bodies: &[(&str, &Self)]) -> Result<Self, MeshError> {
         let (mut points, mut cells) = (Vec::new(), Vec::new());
-        let (mut facet_groups, mut element_groups) = (FacetRows::new(), ElementGroups::new());
+        let (mut face_groups, mut element_groups) = (FaceRows::new(), ElementGroups::new());
         let (mut first_node, mut first_element) = (0, 0);
         for (body, mesh) in bodies {
             points.extend_from_slice(mesh.points());
             cells.extend(mesh.cells.iter().map(|node| first_node + node.index()));
-            for (group, nodes) in mesh.plain_facet_groups() {
-                facet_groups.insert(format!("{body}.{group}"), nodes.into_iter().map(|n| first_node + n).collect());
+            for (group, nodes) in mesh.plain_face_groups() {
+                face_groups.insert(format!("{body}.{group}"), nodes.into_iter().map(|n| first_node + n).collect());
             }
             for (group, elements) in mesh.plain_element_groups() {
                 let elements = elements.into_iter().map(|element| first_element + element).collect();
@@ -34,7 +34,7 @@ impl Mesh {
             (first_node, first_element) = (first_node + mesh.node_count(), first_element + mesh.element_count());
         }
         let dimension = bodies.first().map_or(1, |(_, mesh)| mesh.dimension());
-        let groups = (&facet_groups, &element_groups);
+        let groups = (&face_groups, &element_groups);
         let made = Self::bodies_from_rows(dimension, &points, &cells, groups)?;
         let import_warnings = bodies.iter().flat_map(|(_, mesh)| mesh.import_warnings.iter().cloned()).collect();
         Ok(Self {
@@ -74,7 +74,7 @@ impl Mesh {
         });
         let (own, other, inside) = inside.max_by(|a, b| a.2.depth.total_cmp(&b.2.depth))?;
         let surface = |body: usize, k: usize| {
-            let group = bodies[body].1.groups_of(inside.facets[k]).next();
+            let group = bodies[body].1.groups_of(inside.faces[k]).next();
             group.map_or_else(|| format!("\"{}\"", bodies[body].0), |group| format!("\"{}.{group}\"", bodies[body].0))
         };
         let before: usize = bodies[..own].iter().map(|(_, mesh)| mesh.node_count()).sum();
@@ -102,21 +102,21 @@ impl Mesh {
         let dimension = self.dimension();
         let points: Vec<f64> = nodes.keys().flat_map(|&node| self.point(node).into_iter().take(dimension)).collect();
         let cells: Vec<_> = chosen.iter().flat_map(|&e| self.cell(e)).map(|node| nodes[node]).collect();
-        let of_chosen = |facet: &&FacetId| {
-            let facet = self.facet(**facet);
-            elements.contains_key(&facet.owner) || facet.neighbour.is_some_and(|e| elements.contains_key(&e))
+        let of_chosen = |face: &&FaceId| {
+            let face = self.face(**face);
+            elements.contains_key(&face.owner) || face.neighbour.is_some_and(|e| elements.contains_key(&e))
         };
-        let along = |&facet: &FacetId| self.facet(facet).nodes.iter().map(|node| nodes[node]);
-        let facets = self
-            .facet_groups
+        let along = |&face: &FaceId| self.face(face).nodes.iter().map(|node| nodes[node]);
+        let faces = self
+            .face_groups
             .iter()
             .map(|(name, all)| (name.clone(), all.iter().filter(of_chosen).flat_map(along).collect::<Vec<_>>()));
         let inside = self
             .element_groups
             .iter()
             .map(|(name, all)| (name.clone(), all.iter().filter_map(|e| elements.get(e).copied()).collect::<Vec<_>>()));
-        let (facets, inside) = (facets.filter(|(_, all)| !all.is_empty()), inside.filter(|(_, all)| !all.is_empty()));
-        let groups: (FacetRows, ElementGroups) = (facets.collect(), inside.collect());
+        let (faces, inside) = (faces.filter(|(_, all)| !all.is_empty()), inside.filter(|(_, all)| !all.is_empty()));
+        let groups: (FaceRows, ElementGroups) = (faces.collect(), inside.collect());
         let made = Self::bodies_from_rows(dimension, &points, &cells, (&groups.0, &groups.1));
         Some(made.map(|mesh| mesh.with_import_warnings(self.import_warnings.clone())))
     }
@@ -129,7 +129,7 @@ impl Mesh {
         let (dimension, cells) = (self.dimension(), self.cells.iter().map(|node| node.index()).collect::<Vec<_>>());
         let points: Vec<f64> =
             self.places().flat_map(|place| padded(&map(&cut(&place))).into_iter().take(dimension)).collect();
-        let groups = (&self.plain_facet_groups(), &self.plain_element_groups());
+        let groups = (&self.plain_face_groups(), &self.plain_element_groups());
         let made = Self::bodies_from_rows(dimension, &points, &cells, groups)?;
         Ok(Self { reoriented: self.reoriented, ..made.with_import_warnings(self.import_warnings.clone()) })
     }
@@ -149,10 +149,10 @@ impl Mesh {
         })
     }
 
-    fn plain_facet_groups(&self) -> FacetRows {
-        let nodes = |&facet: &FacetId| self.facet(facet).nodes.iter().map(|node| node.index());
-        let groups = self.facet_groups().iter();
-        groups.map(|(name, facets)| (name.clone(), facets.iter().flat_map(nodes).collect())).collect()
+    fn plain_face_groups(&self) -> FaceRows {
+        let nodes = |&face: &FaceId| self.face(face).nodes.iter().map(|node| node.index());
+        let groups = self.face_groups().iter();
+        groups.map(|(name, faces)| (name.clone(), faces.iter().flat_map(nodes).collect())).collect()
     }
 
     fn plain_element_groups(&self) -> ElementGroups {

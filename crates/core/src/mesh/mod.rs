@@ -1,6 +1,6 @@
 //! Meshes of P1 simplices, checked once when they are made.
 //!
-//! A mesh has no dimension in its type: cells, facets and coordinates are data in rows. Code that is compiled for a
+//! A mesh has no dimension in its type: cells, faces and coordinates are data in rows. Code that is compiled for a
 //! dimension `D` and elements of `N` nodes reads them as arrays: [`Mesh::points_in`], [`Mesh::nodes_of`].
 
 mod bisection;
@@ -33,23 +33,23 @@ pub use place::Around;
 pub(crate) use renumber::NewNumbers;
 pub use star::{Star, Stars};
 pub use strips::Strips;
-pub use topology::Facet;
+pub use topology::Face;
 
 use crate::border::{Vector, cut, padded};
-use crate::ids::{ElementId, FacetId, NodeId};
+use crate::ids::{ElementId, FaceId, NodeId};
 use crate::simplex::{CellGeometry, Shape, simplex};
 use std::collections::BTreeMap;
-use topology::Facets;
+use topology::Faces;
 
-/// Named groups of facets, each facet given by its nodes in any order.
-pub type FacetGroups<const D: usize> = BTreeMap<String, Vec<[usize; D]>>;
-/// Named groups of facets: the nodes of all their facets, in rows.
-pub type FacetRows = BTreeMap<String, Vec<usize>>;
+/// Named groups of faces, each face given by its nodes in any order.
+pub type FaceGroups<const D: usize> = BTreeMap<String, Vec<[usize; D]>>;
+/// Named groups of faces: the nodes of all their faces, in rows.
+pub type FaceRows = BTreeMap<String, Vec<usize>>;
 /// Named groups of elements, by number.
 pub type ElementGroups = BTreeMap<String, Vec<usize>>;
 
 /// A conforming mesh of simplices without degenerate elements, unused or duplicate nodes, or
-/// non-manifold facets and nodes. Elements are positively oriented. Separate parts do not overlap, and touch only if
+/// non-manifold faces and nodes. Elements are positively oriented. Separate parts do not overlap, and touch only if
 /// the mesh is one of several bodies.
 #[derive(Clone, Debug)]
 pub struct Mesh {
@@ -58,11 +58,11 @@ pub struct Mesh {
     points: Vec<f64>,
     /// Nodes of the elements, in rows.
     cells: Vec<NodeId>,
-    facets: Facets,
-    /// Facets of the elements, in rows.
-    cell_facets: Vec<FacetId>,
+    faces: Faces,
+    /// Faces of the elements, in rows.
+    cell_faces: Vec<FaceId>,
     stars: Stars,
-    facet_groups: BTreeMap<String, Vec<FacetId>>,
+    face_groups: BTreeMap<String, Vec<FaceId>>,
     element_groups: BTreeMap<String, Vec<ElementId>>,
     size: f64,
     reoriented: usize,
@@ -113,10 +113,10 @@ impl Mesh {
     pub fn new<const D: usize, const N: usize>(
         points: Vec<[f64; D]>,
         cells: &[[usize; N]],
-        facet_groups: &FacetGroups<D>,
+        face_groups: &FaceGroups<D>,
         element_groups: &ElementGroups,
     ) -> Result<Self, MeshError> {
-        Self::checked(points, cells, (&rows(facet_groups), element_groups), Parts::Apart)
+        Self::checked(points, cells, (&rows(face_groups), element_groups), Parts::Apart)
     }
 
     /// The same of bodies that may touch: parts of the mesh, of which nodes may be at one place. A problem has contact
@@ -127,16 +127,16 @@ impl Mesh {
     pub fn of_bodies<const D: usize, const N: usize>(
         points: Vec<[f64; D]>,
         cells: &[[usize; N]],
-        facet_groups: &FacetGroups<D>,
+        face_groups: &FaceGroups<D>,
         element_groups: &ElementGroups,
     ) -> Result<Self, MeshError> {
-        Self::checked(points, cells, (&rows(facet_groups), element_groups), Parts::MayTouch)
+        Self::checked(points, cells, (&rows(face_groups), element_groups), Parts::MayTouch)
     }
 
     fn checked<const D: usize, const N: usize>(
         points: Vec<[f64; D]>,
         cells: &[[usize; N]],
-        (facet_groups, element_groups): (&FacetRows, &ElementGroups),
+        (face_groups, element_groups): (&FaceRows, &ElementGroups),
         given: Parts,
     ) -> Result<Self, MeshError> {
         let simplex = simplex::<D, N>();
@@ -150,22 +150,22 @@ impl Mesh {
             Parts::MayTouch => check::duplicate_points_of_parts(&points, &part, size)?,
         }
         let reoriented = check::orient(simplex, &points, &mut cells)?;
-        let (facets, cell_facets) = topology::facets::<D, N>(&cells)?;
-        let stars = Stars::new(simplex, points.len(), &cells, &facets, &cell_facets)?;
-        let (parts, touching) = parts::separate(simplex, (&points, &part), &cells, &facets, size)?;
+        let (faces, cell_faces) = topology::faces::<D, N>(&cells)?;
+        let stars = Stars::new(simplex, points.len(), &cells, &faces, &cell_faces)?;
+        let (parts, touching) = parts::separate(simplex, (&points, &part), &cells, &faces, size)?;
         if let (Parts::Apart, Some(pair)) = (given, touching.first()) {
             return Err(MeshError::PartsTouch { elements: pair.map(ElementId::index) });
         }
-        let facet_groups = check::facet_groups(&facets, points.len(), facet_groups)?;
+        let face_groups = check::face_groups(&faces, points.len(), face_groups)?;
         let element_groups = check::element_groups(cells.len(), element_groups)?;
         Ok(Self {
             kind: simplex.shape(),
             points: points.into_flattened(),
             cells: cells.into_flattened(),
-            facets,
-            cell_facets: cell_facets.into_flattened(),
+            faces,
+            cell_faces: cell_faces.into_flattened(),
             stars,
-            facet_groups,
+            face_groups,
             element_groups,
             size,
             reoriented,
@@ -239,43 +239,43 @@ impl Mesh {
         &self.cells[count * element.index()..count * (element.index() + 1)]
     }
 
-    /// Facets of each element, whose number is known; entry `k` lies opposite to local node `k`.
+    /// Faces of each element, whose number is known; entry `k` lies opposite to local node `k`.
     #[inline]
     #[must_use]
-    pub fn facets_of<const N: usize>(&self) -> &[[FacetId; N]] {
-        self.cell_facets.as_chunks().0
+    pub fn faces_of<const N: usize>(&self) -> &[[FaceId; N]] {
+        self.cell_faces.as_chunks().0
     }
 
-    /// Facets of an element; entry `k` lies opposite to its node `k`.
+    /// Faces of an element; entry `k` lies opposite to its node `k`.
     #[must_use]
-    pub fn cell_facets(&self, element: ElementId) -> &[FacetId] {
+    pub fn cell_faces(&self, element: ElementId) -> &[FaceId] {
         let count = self.nodes_of_element();
-        &self.cell_facets[count * element.index()..count * (element.index() + 1)]
+        &self.cell_faces[count * element.index()..count * (element.index() + 1)]
     }
 
-    /// Number of facets: edges in 2D, points in 1D.
+    /// Number of faces: edges in 2D, points in 1D.
     #[must_use]
-    pub fn facet_count(&self) -> usize {
-        self.facets.len()
+    pub fn face_count(&self) -> usize {
+        self.faces.len()
     }
 
-    /// A facet.
+    /// A face.
     #[inline]
     #[must_use]
-    pub fn facet(&self, facet: FacetId) -> Facet<'_> {
-        self.facets.get(facet.index())
+    pub fn face(&self, face: FaceId) -> Face<'_> {
+        self.faces.get(face.index())
     }
 
-    /// The nodes of a facet, ascending.
+    /// The nodes of a face, ascending.
     #[inline]
     #[must_use]
-    pub fn facet_nodes<const D: usize>(&self, facet: FacetId) -> [NodeId; D] {
-        self.facets.nodes.as_chunks().0[facet.index()]
+    pub fn face_nodes<const D: usize>(&self, face: FaceId) -> [NodeId; D] {
+        self.faces.nodes.as_chunks().0[face.index()]
     }
 
-    /// All facets, in order.
-    pub fn facets(&self) -> impl ExactSizeIterator<Item = Facet<'_>> {
-        self.facets.iter()
+    /// All faces, in order.
+    pub fn faces(&self) -> impl ExactSizeIterator<Item = Face<'_>> {
+        self.faces.iter()
     }
 
     /// The elements around each node, in order.
@@ -290,10 +290,10 @@ impl Mesh {
         self.stars.star(node).elements
     }
 
-    /// Named groups of facets.
+    /// Named groups of faces.
     #[must_use]
-    pub fn facet_groups(&self) -> &BTreeMap<String, Vec<FacetId>> {
-        &self.facet_groups
+    pub fn face_groups(&self) -> &BTreeMap<String, Vec<FaceId>> {
+        &self.face_groups
     }
 
     /// Named groups of elements.
@@ -357,9 +357,9 @@ impl Mesh {
         sizes.iter().enumerate().map(name).collect()
     }
 
-    /// The same mesh with more groups of facets.
-    pub(crate) fn with_facet_groups(mut self, groups: impl IntoIterator<Item = (String, Vec<FacetId>)>) -> Self {
-        self.facet_groups.extend(groups);
+    /// The same mesh with more groups of faces.
+    pub(crate) fn with_face_groups(mut self, groups: impl IntoIterator<Item = (String, Vec<FaceId>)>) -> Self {
+        self.face_groups.extend(groups);
         self
     }
 
@@ -476,40 +476,40 @@ impl Mesh {
         self.cell(element).iter().position(|&other| other == node)
     }
 
-    /// Outward unit normal of a boundary facet, in its dimension, and its measure (length in 2D, 1 in 1D).
+    /// Outward unit normal of a boundary face, in its dimension, and its measure (length in 2D, 1 in 1D).
     #[must_use]
-    pub fn normal_in<const D: usize>(&self, facet: FacetId) -> ([f64; D], f64) {
-        let (normal, measure) = self.facet_normal(facet);
+    pub fn normal_in<const D: usize>(&self, face: FaceId) -> ([f64; D], f64) {
+        let (normal, measure) = self.face_normal(face);
         (cut(&normal), measure)
     }
 
-    /// Outward unit normal of a boundary facet, and its measure (length in 2D, 1 in 1D).
+    /// Outward unit normal of a boundary face, and its measure (length in 2D, 1 in 1D).
     #[must_use]
-    pub fn facet_normal(&self, facet: FacetId) -> (Vector, f64) {
-        let owner = self.facet(facet).owner;
-        let opposite = self.cell_facets(owner).iter().position(|&f| f == facet).unwrap_or(0);
+    pub fn face_normal(&self, face: FaceId) -> (Vector, f64) {
+        let owner = self.face(face).owner;
+        let opposite = self.cell_faces(owner).iter().position(|&f| f == face).unwrap_or(0);
         in_kind!(self, D, N => {
-            let (normal, measure) = self.geometry::<D, N>(owner).facet_normal(opposite);
+            let (normal, measure) = self.geometry::<D, N>(owner).face_normal(opposite);
             (padded(&normal), measure)
         })
     }
 
-    /// Whether all nodes of a facet have the same coordinate in a direction, to the rounding of a mesh that was turned
+    /// Whether all nodes of a face have the same coordinate in a direction, to the rounding of a mesh that was turned
     /// and moved.
     #[must_use]
-    pub fn stands_across(&self, facet: FacetId, direction: usize) -> bool {
-        let places = self.facet(facet).nodes.iter().map(|&node| self.point(node)[direction]);
+    pub fn stands_across(&self, face: FaceId, direction: usize) -> bool {
+        let places = self.face(face).nodes.iter().map(|&node| self.point(node)[direction]);
         let [low, high] = [f64::min, f64::max].map(|choose| places.clone().reduce(choose).unwrap_or(0.0));
         // Some operations on coordinates as large as the mesh or as its distance from the origin.
         high - low <= 16.0 * f64::EPSILON * (self.size + high.abs().max(low.abs()))
     }
 
-    /// Facets that belong to one element only.
-    pub fn boundary(&self) -> impl Iterator<Item = FacetId> + '_ {
-        self.facets.sides.iter().enumerate().filter(|(_, side)| side.1.is_none()).map(|(i, _)| FacetId::new(i))
+    /// Faces that belong to one element only.
+    pub fn boundary(&self) -> impl Iterator<Item = FaceId> + '_ {
+        self.faces.sides.iter().enumerate().filter(|(_, side)| side.1.is_none()).map(|(i, _)| FaceId::new(i))
     }
 }
 
-fn rows<const D: usize>(groups: &FacetGroups<D>) -> FacetRows {
-    groups.iter().map(|(name, facets)| (name.clone(), facets.as_flattened().to_vec())).collect()
+fn rows<const D: usize>(groups: &FaceGroups<D>) -> FaceRows {
+    groups.iter().map(|(name, faces)| (name.clone(), faces.as_flattened().to_vec())).collect()
 }

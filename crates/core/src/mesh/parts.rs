@@ -3,7 +3,7 @@
 //! Elements that share a node belong to one part. Parts may touch, but not overlap.
 
 use super::check::DUPLICATE;
-use super::topology::Facets;
+use super::topology::Faces;
 use super::{Mesh, MeshError, in_kind};
 use crate::ids::{ElementId, NodeId};
 use crate::simplex::{Simplex, simplex};
@@ -22,7 +22,7 @@ pub(super) fn separate<const D: usize, const N: usize>(
     simplex: &dyn Simplex<D, N>,
     (points, part): (&[[f64; D]], &[NodeId]),
     cells: &[[NodeId; N]],
-    facets: &Facets,
+    faces: &Faces,
     size: f64,
 ) -> Result<(usize, Vec<[ElementId; 2]>), MeshError> {
     let tolerance = DUPLICATE * size;
@@ -37,7 +37,7 @@ pub(super) fn separate<const D: usize, const N: usize>(
             nearer(a, b, tolerance)
                 .then(|| if nearer(a, b, -OVERLAP * size) { Meeting::Overlaps } else { Meeting::Touches })
         };
-        touching = touches(grid, cells.len(), facets, part_of, corners, meeting)?;
+        touching = touches(grid, cells.len(), faces, part_of, corners, meeting)?;
     }
     Ok((count, touching))
 }
@@ -68,15 +68,15 @@ fn root(parent: &mut [NodeId], mut node: NodeId) -> NodeId {
 }
 
 /// A smaller part of the volume of an element is rounding.
-const AT_FACET: f64 = 1e-9;
+const AT_FACE: f64 = 1e-9;
 
 impl Mesh {
     /// Two elements of different parts that overlap if each node is displaced so far (m).
     pub(crate) fn overlap_after(&self, displacement: &[f64]) -> Option<[ElementId; 2]> {
         let (points, part) = (self.displaced(displacement), self.part_of_nodes());
-        let (facets, size) = (&self.facets, self.size);
+        let (faces, size) = (&self.faces, self.size);
         let separated = in_kind!(self, D, N => {
-            separate(simplex::<D, N>(), (points.as_chunks().0, &part), self.nodes_of::<N>(), facets, size)
+            separate(simplex::<D, N>(), (points.as_chunks().0, &part), self.nodes_of::<N>(), faces, size)
         });
         match separated {
             Err(MeshError::PartsTouch { elements }) => Some(elements.map(ElementId::new)),
@@ -91,7 +91,7 @@ impl Mesh {
             let points: &[[f64; D]] = points.as_chunks().0;
             let others = self.nodes_of::<N>().iter().filter(|cell| part[cell[0].index()] != part[node.index()]);
             others.map(|cell| cell.map(|corner| points[corner.index()])).any(|corners| {
-                let least = -AT_FACET * simplex::<D, N>().signed_volume(&corners).abs();
+                let least = -AT_FACE * simplex::<D, N>().signed_volume(&corners).abs();
                 simplex::<D, N>().encloses(&corners, &points[node.index()], least)
             })
         })
@@ -114,14 +114,14 @@ enum Meeting {
 fn touches<const D: usize, const N: usize>(
     mut grid: Grid<D>,
     element_count: usize,
-    facets: &Facets,
+    faces: &Faces,
     part_of: impl Fn(ElementId) -> NodeId,
     corners: impl Fn(ElementId) -> [[f64; D]; N],
     meeting: impl Fn(ElementId, ElementId) -> Option<Meeting>,
 ) -> Result<Vec<[ElementId; 2]>, MeshError> {
     let mut touching = Vec::new();
     let mut outer = vec![false; element_count];
-    for (owner, _) in facets.sides.iter().filter(|(_, neighbour)| neighbour.is_none()) {
+    for (owner, _) in faces.sides.iter().filter(|(_, neighbour)| neighbour.is_none()) {
         outer[owner.index()] = true;
     }
     for at_boundary in [true, false] {

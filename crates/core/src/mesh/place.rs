@@ -2,7 +2,7 @@
 
 use super::{Mesh, in_kind};
 use crate::border::{Vector, cut};
-use crate::ids::{ElementId, FacetId, NodeId};
+use crate::ids::{ElementId, FaceId, NodeId};
 use crate::simplex::Shape;
 use std::f64::consts::PI;
 
@@ -75,7 +75,7 @@ impl Mesh {
     /// The point of the outline that is nearest to a point, and the distance (m).
     #[must_use]
     pub fn nearest_of_outline(&self, point: &Vector) -> (Vector, f64) {
-        let feet = self.boundary().map(|facet| foot(point, &self.ends(facet)));
+        let feet = self.boundary().map(|face| foot(point, &self.ends(face)));
         feet.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((*point, f64::INFINITY))
     }
 
@@ -103,14 +103,14 @@ impl Mesh {
         nodes.filter(|&node| self.angle_of_outline(node).is_some_and(|inside| inside > angle)).collect()
     }
 
-    /// The first and the last node of a facet (m).
-    pub(super) fn ends(&self, facet: FacetId) -> [Vector; 2] {
-        let nodes = self.facet(facet).nodes;
+    /// The first and the last node of a face (m).
+    pub(super) fn ends(&self, face: FaceId) -> [Vector; 2] {
+        let nodes = self.face(face).nodes;
         [nodes[0], nodes[nodes.len() - 1]].map(|node| self.point(node))
     }
 }
 
-/// The nearest point of a facet (a point, or a line between two), and its distance (m).
+/// The nearest point of a face (a point, or a line between two), and its distance (m).
 pub(super) fn foot(point: &Vector, [first, last]: &[Vector; 2]) -> (Vector, f64) {
     let less = |a: &Vector, b: &Vector| -> Vector { std::array::from_fn(|c| a[c] - b[c]) };
     let dot = |a: &Vector, b: &Vector| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };

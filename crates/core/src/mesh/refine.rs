@@ -1,7 +1,7 @@
 //! Nested finer meshes.
 
-use super::{ElementGroups, FacetRows, Mesh, MeshError, Parts, in_kind, room};
-use crate::ids::FacetId;
+use super::{ElementGroups, FaceRows, Mesh, MeshError, Parts, in_kind, room};
+use crate::ids::FaceId;
 use crate::simplex::{Child, simplex};
 
 impl Mesh {
@@ -9,7 +9,7 @@ impl Mesh {
     /// for true errors against a nested mesh.
     ///
     /// Nodes keep their numbers, and the middles of the edges follow in the order of the nodes of these edges; element
-    /// e of n new ones each becomes the elements n e to n e + n − 1; groups name the same facets and elements as
+    /// e of n new ones each becomes the elements n e to n e + n − 1; groups name the same faces and elements as
     /// before. A polygon stays the polygon it was.
     ///
     /// # Errors
@@ -36,17 +36,17 @@ impl Mesh {
         };
         let cells = self.nodes_of::<N>().iter().map(|cell| cell.map(|n| n.index()));
         let cells: Vec<_> = cells.flat_map(|cell| cut(cell, children, &node)).collect();
-        let facet = |facet: FacetId| self.facet_nodes::<D>(facet).map(|n| n.index());
-        let facets = self.facet_groups.iter().map(|(name, group)| {
-            let parts = group.iter().flat_map(|&f| cut(facet(f), simplex.facet_children(), &node));
+        let face = |face: FaceId| self.face_nodes::<D>(face).map(|n| n.index());
+        let faces = self.face_groups.iter().map(|(name, group)| {
+            let parts = group.iter().flat_map(|&f| cut(face(f), simplex.face_children(), &node));
             (name.clone(), parts.flatten().collect())
         });
         let elements = self.element_groups.iter().map(|(name, group)| {
             let parts = group.iter().flat_map(|e| (0..children.len()).map(|part| children.len() * e.index() + part));
             (name.clone(), parts.collect())
         });
-        let (facets, elements): (FacetRows, ElementGroups) = (facets.collect(), elements.collect());
-        Self::checked(points, &cells, (&facets, &elements), Parts::MayTouch)
+        let (faces, elements): (FaceRows, ElementGroups) = (faces.collect(), elements.collect());
+        Self::checked(points, &cells, (&faces, &elements), Parts::MayTouch)
     }
 
     /// The values at the nodes of [`Mesh::refined`] of a field that is linear in the elements, from its values at the
@@ -82,7 +82,7 @@ fn cut<const M: usize>(
 mod tests {
     use super::*;
     use crate::ids::ElementId;
-    use crate::mesh::FacetGroups;
+    use crate::mesh::FaceGroups;
 
     /// Each of the four parts has a quarter of the area and lies in its parent; groups cover what they covered.
     #[test]
@@ -90,10 +90,10 @@ mod tests {
         let groups = ElementGroups::from([("some".to_string(), vec![3, 5])]);
         let disc = Mesh::disc(0.5, 3).unwrap();
         let cells: Vec<_> = disc.nodes_of::<3>().iter().map(|cell| cell.map(|n| n.index())).collect();
-        let rim = FacetGroups::from([("rim".to_string(), vec![[19, 20], [20, 21]])]);
+        let rim = FaceGroups::from([("rim".to_string(), vec![[19, 20], [20, 21]])]);
         let coarse = Mesh::new(disc.points_in::<2>().to_vec(), &cells, &rim, &groups).unwrap();
         let fine = coarse.refined().unwrap();
-        assert_eq!(fine.node_count(), coarse.node_count() + coarse.facets().len());
+        assert_eq!(fine.node_count(), coarse.node_count() + coarse.faces().len());
         assert_eq!(fine.points_in::<2>()[..coarse.node_count()], *coarse.points_in::<2>());
         assert_eq!((fine.element_count(), fine.reoriented_elements()), (4 * coarse.element_count(), 0));
         for e in 0..coarse.element_count() {
@@ -112,8 +112,8 @@ mod tests {
         }
         let parts: Vec<_> = fine.element_groups()["some"].iter().map(|e| e.index()).collect();
         assert_eq!(parts, [12, 13, 14, 15, 20, 21, 22, 23]);
-        let length = |mesh: &Mesh| -> f64 { mesh.facet_groups()["rim"].iter().map(|&f| mesh.facet_normal(f).1).sum() };
-        assert_eq!(fine.facet_groups()["rim"].len(), 4);
+        let length = |mesh: &Mesh| -> f64 { mesh.face_groups()["rim"].iter().map(|&f| mesh.face_normal(f).1).sum() };
+        assert_eq!(fine.face_groups()["rim"].len(), 4);
         // Rounding of four lengths below 1.
         assert!((length(&fine) - length(&coarse)).abs() < 1e-15);
     }
@@ -128,7 +128,7 @@ mod tests {
         );
         let coarse = Mesh::uniform_bar(2.0, 2).unwrap();
         assert_eq!(coarse.prolonged(&[1.0, 2.0, 4.0]), [1.0, 2.0, 4.0, 1.5, 3.0]);
-        let end = fine.facet_groups()["end"][0];
-        assert_eq!(fine.facet_nodes::<1>(end)[0].index(), 2);
+        let end = fine.face_groups()["end"][0];
+        assert_eq!(fine.face_nodes::<1>(end)[0].index(), 2);
     }
 }

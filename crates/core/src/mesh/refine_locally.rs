@@ -5,7 +5,7 @@
 //! was cut from, however often it is refined.
 
 use super::bisection::Twins;
-use super::{ElementGroups, FacetRows, Mesh, MeshError, Parts, in_kind};
+use super::{ElementGroups, FaceRows, Mesh, MeshError, Parts, in_kind};
 use crate::ids::ElementId;
 
 /// The edges that are cut, and the order in which an element is cut by them.
@@ -24,7 +24,7 @@ impl Mesh {
     ///
     /// An element is cut at its longest edge first, and its parts at the others. Nodes keep their numbers, and the
     /// middles of the edges follow in the order of the nodes of these edges. The parts of an element take its place in
-    /// the order of the elements. Groups name the same facets and elements as before.
+    /// the order of the elements. Groups name the same faces and elements as before.
     ///
     /// # Errors
     /// As for [`Mesh::refined`].
@@ -53,16 +53,16 @@ impl Mesh {
             cuts.parts(cell.map(|n| n.index()), &mut cells);
         }
         first.push(cells.len());
-        let facets = self.facet_groups.iter().map(|(name, group)| {
+        let faces = self.face_groups.iter().map(|(name, group)| {
             let mut parts = Vec::new();
-            group.iter().for_each(|&f| cuts.parts(self.facet_nodes::<D>(f).map(|n| n.index()), &mut parts));
+            group.iter().for_each(|&f| cuts.parts(self.face_nodes::<D>(f).map(|n| n.index()), &mut parts));
             (name.clone(), parts.into_flattened())
         });
         let elements = self.element_groups.iter().map(|(name, group)| {
             (name.clone(), group.iter().flat_map(|e| first[e.index()]..first[e.index() + 1]).collect())
         });
-        let (facets, elements): (FacetRows, ElementGroups) = (facets.collect(), elements.collect());
-        Self::checked(points, &cells, (&facets, &elements), Parts::MayTouch)
+        let (faces, elements): (FaceRows, ElementGroups) = (faces.collect(), elements.collect());
+        Self::checked(points, &cells, (&faces, &elements), Parts::MayTouch)
     }
 
     /// All edges of the chosen elements, the longest edge of each element that has an edge that is cut, and the twins
@@ -95,7 +95,7 @@ impl Mesh {
 }
 
 impl Cuts {
-    /// The edges between nodes of an element or facet.
+    /// The edges between nodes of an element or face.
     fn edges_of<const M: usize>(&self, nodes: [usize; M]) -> impl Iterator<Item = usize> {
         let pairs = (0..M).flat_map(move |j| (0..j).map(move |i| [nodes[i].min(nodes[j]), nodes[i].max(nodes[j])]));
         pairs.filter_map(|pair| self.edges.binary_search(&pair).ok())
@@ -144,7 +144,7 @@ impl Cuts {
         }
     }
 
-    /// The parts of an element or facet, cut at the longest edge first; a part's edge inside it is not cut.
+    /// The parts of an element or face, cut at the longest edge first; a part's edge inside it is not cut.
     fn parts<const M: usize>(&self, nodes: [usize; M], parts: &mut Vec<[usize; M]>) {
         let cut = self.edges_of(nodes).filter_map(|edge| Some((self.rank[edge], edge, self.middle[edge]?)));
         let Some((_, edge, middle)) = cut.max() else {
@@ -161,13 +161,13 @@ impl Cuts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::FacetGroups;
+    use crate::mesh::FaceGroups;
 
     /// A skew quadrilateral with a fan of unequal triangles, and groups.
     fn fan() -> Mesh {
         let points = vec![[0.0, 0.0], [1.0, 0.1], [0.9, 0.8], [-0.2, 0.7], [0.35, 0.3], [1.9, 0.3]];
         let cells = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 5, 2]];
-        let edges = FacetGroups::from([
+        let edges = FaceGroups::from([
             ("lower".to_string(), vec![[0, 1], [1, 5]]),
             ("upper".to_string(), vec![[3, 2], [3, 0]]),
         ]);
@@ -199,7 +199,7 @@ mod tests {
         let flat = Mesh::new(
             vec![[0.0, 0.0], [1.0, 0.0], [0.21, 0.12]],
             &[[0, 1, 2]],
-            &FacetGroups::new(),
+            &FaceGroups::new(),
             &ElementGroups::new(),
         );
         for coarse in [fan(), flat.unwrap(), Mesh::disc(0.5, 3).unwrap(), Mesh::rectangle(0.5, 0.4, 5, 4).unwrap()] {
@@ -214,7 +214,7 @@ mod tests {
             // Rounding of a sum of some 10⁴ terms; so below.
             assert!((fine - total).abs() < 1e-11 * total);
             // Both sides of an edge with a node inside it would be boundary.
-            let outline = |mesh: &Mesh| -> f64 { mesh.boundary().map(|f| mesh.facet_normal(f).1).sum() };
+            let outline = |mesh: &Mesh| -> f64 { mesh.boundary().map(|f| mesh.face_normal(f).1).sum() };
             assert!((outline(&mesh) - outline(&coarse)).abs() < 1e-11 * outline(&coarse));
         }
     }
@@ -249,8 +249,7 @@ mod tests {
             assert!((area(&fine) - area(&coarse)).abs() < 1e-15);
         }
         for name in ["lower", "upper"] {
-            let length =
-                |mesh: &Mesh| -> f64 { mesh.facet_groups()[name].iter().map(|&f| mesh.facet_normal(f).1).sum() };
+            let length = |mesh: &Mesh| -> f64 { mesh.face_groups()[name].iter().map(|&f| mesh.face_normal(f).1).sum() };
             assert!((length(&fine) - length(&coarse)).abs() < 1e-15);
         }
     }
@@ -270,7 +269,7 @@ mod tests {
         let coarse = fan();
         let same = coarse.refined_where(|_| false).unwrap();
         assert_eq!((same.points_in::<2>(), same.nodes_of::<3>()), (coarse.points_in::<2>(), coarse.nodes_of::<3>()));
-        assert_eq!((same.facet_groups(), same.element_groups()), (coarse.facet_groups(), coarse.element_groups()));
+        assert_eq!((same.face_groups(), same.element_groups()), (coarse.face_groups(), coarse.element_groups()));
         let (fine, regular) = (coarse.refined_where(|_| true).unwrap(), coarse.refined().unwrap());
         assert_eq!(fine.points_in::<2>(), regular.points_in::<2>());
         for (part, area) in areas(&fine).into_iter().enumerate() {

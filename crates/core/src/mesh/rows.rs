@@ -1,6 +1,6 @@
 //! Meshes from rows of numbers, as they come from files and other languages.
 
-use super::{ElementGroups, FacetRows, Mesh, MeshError, Parts};
+use super::{ElementGroups, FaceRows, Mesh, MeshError, Parts};
 
 impl Mesh {
     /// Builds and checks a mesh of bars (dimension 1) or of triangles (2), from coordinates (m), nodes of the elements
@@ -15,7 +15,7 @@ impl Mesh {
         dimension: usize,
         points: &[f64],
         cells: &[usize],
-        groups: (&FacetRows, &ElementGroups),
+        groups: (&FaceRows, &ElementGroups),
     ) -> Result<Self, MeshError> {
         Self::of(dimension, points, cells, groups, Parts::Apart)
     }
@@ -31,7 +31,7 @@ impl Mesh {
         dimension: usize,
         points: &[f64],
         cells: &[usize],
-        groups: (&FacetRows, &ElementGroups),
+        groups: (&FaceRows, &ElementGroups),
     ) -> Result<Self, MeshError> {
         Self::of(dimension, points, cells, groups, Parts::MayTouch)
     }
@@ -40,7 +40,7 @@ impl Mesh {
         dimension: usize,
         points: &[f64],
         cells: &[usize],
-        groups: (&FacetRows, &ElementGroups),
+        groups: (&FaceRows, &ElementGroups),
         parts: Parts,
     ) -> Result<Self, MeshError> {
         match dimension {

@@ -1,20 +1,20 @@
-//! The elements around each node in counterclockwise order, with the facets between them.
+//! The elements around each node in counterclockwise order, with the faces between them.
 
 use super::MeshError;
-use super::topology::Facets;
-use crate::ids::{ElementId, FacetId, NodeId};
+use super::topology::Faces;
+use crate::ids::{ElementId, FaceId, NodeId};
 use crate::simplex::Simplex;
 
 /// The stars of all nodes, one after the other.
 ///
-/// A star of k elements is a chain: facet, element, facet, …, element, facet, in counterclockwise order (in 1D from
-/// left to right). An interior node of a 2D mesh has a closed chain whose first and last facet are the same; in 1D,
-/// where an element has a single facet at a node, the outer ends of the chain are `None`.
+/// A star of k elements is a chain: face, element, face, …, element, face, in counterclockwise order (in 1D from
+/// left to right). An interior node of a 2D mesh has a closed chain whose first and last face are the same; in 1D,
+/// where an element has a single face at a node, the outer ends of the chain are `None`.
 #[derive(Clone, Debug, Default)]
 pub struct Stars {
     offsets: Vec<u32>,
     elements: Vec<ElementId>,
-    links: Vec<Option<FacetId>>,
+    links: Vec<Option<FaceId>>,
 }
 
 /// The star of one node.
@@ -22,8 +22,8 @@ pub struct Stars {
 pub struct Star<'a> {
     /// Elements in the order of the chain.
     pub elements: &'a [ElementId],
-    /// Facet before, between and after them: one more than elements.
-    pub links: &'a [Option<FacetId>],
+    /// Face before, between and after them: one more than elements.
+    pub links: &'a [Option<FaceId>],
 }
 
 impl Star<'_> {
@@ -61,7 +61,7 @@ impl Stars {
 
     /// The stars after renumbering, which keeps the order around each node: `nodes` has the old number of each new
     /// node. A closed chain begins at its lowest element.
-    pub(super) fn renumbered(&self, nodes: &[NodeId], element: &[u32], facet: &[u32]) -> Self {
+    pub(super) fn renumbered(&self, nodes: &[NodeId], element: &[u32], face: &[u32]) -> Self {
         let mut stars = Self {
             offsets: Vec::with_capacity(self.offsets.len()),
             elements: Vec::with_capacity(self.elements.len()),
@@ -69,12 +69,12 @@ impl Stars {
         };
         stars.offsets.push(0);
         let element = |e: &ElementId| ElementId::new(element[e.index()] as usize);
-        let facet = |f: &Option<FacetId>| f.map(|f| FacetId::new(facet[f.index()] as usize));
+        let face = |f: &Option<FaceId>| f.map(|f| FaceId::new(face[f.index()] as usize));
         for &node in nodes {
             let star = self.star(node);
             let (at, count) = (stars.elements.len(), star.elements.len());
             stars.elements.extend(star.elements.iter().map(element));
-            stars.links.extend(star.links[..count].iter().map(facet));
+            stars.links.extend(star.links[..count].iter().map(face));
             if star.is_closed() {
                 let around = &mut stars.elements[at..];
                 let lowest = (0..count).min_by_key(|&k| around[k]).unwrap_or(0);
@@ -83,7 +83,7 @@ impl Stars {
                 stars.links[links..].rotate_left(lowest);
                 stars.links.push(stars.links[links]);
             } else {
-                stars.links.push(facet(&star.links[count]));
+                stars.links.push(face(&star.links[count]));
             }
             stars.offsets.push(stars.elements.len() as u32);
         }
@@ -95,10 +95,10 @@ impl Stars {
         simplex: &dyn Simplex<D, N>,
         node_count: usize,
         cells: &[[NodeId; N]],
-        facets: &Facets,
-        cell_facets: &[[FacetId; N]],
+        faces: &Faces,
+        cell_faces: &[[FaceId; N]],
     ) -> Result<Self, MeshError> {
-        let (facets_around, (starts, incident)) = (simplex.facets_around(), incident_elements(node_count, cells));
+        let (faces_around, (starts, incident)) = (simplex.faces_around(), incident_elements(node_count, cells));
         let mut stars = Self {
             offsets: Vec::with_capacity(node_count + 1),
             elements: Vec::with_capacity(N * cells.len()),
@@ -107,9 +107,9 @@ impl Stars {
         stars.offsets.push(0);
         let sides = |element: ElementId, node: NodeId| {
             let local = cells[element.index()].iter().position(|&n| n == node).unwrap_or(0);
-            facets_around[local].map(|side| side.map(|k| cell_facets[element.index()][k]))
+            faces_around[local].map(|side| side.map(|k| cell_faces[element.index()][k]))
         };
-        let is_end = |facet: Option<FacetId>| facet.is_none_or(|f| facets.sides[f.index()].1.is_none());
+        let is_end = |face: Option<FaceId>| face.is_none_or(|f| faces.sides[f.index()].1.is_none());
         for i in 0..node_count {
             let (node, around) = (NodeId::new(i), &incident[starts[i] as usize..starts[i + 1] as usize]);
             let first = around.iter().copied().find(|&e| is_end(sides(e, node)[0])).unwrap_or(around[0]);
@@ -122,8 +122,8 @@ impl Stars {
                 stars.elements.push(element);
                 stars.links.push(exit);
                 count += 1;
-                let Some(facet) = exit.filter(|_| exit != start) else { break };
-                let (owner, neighbour) = facets.sides[facet.index()];
+                let Some(face) = exit.filter(|_| exit != start) else { break };
+                let (owner, neighbour) = faces.sides[face.index()];
                 let Some(next) = neighbour.map(|n| if n == element { owner } else { n }) else { break };
                 element = next;
             }
@@ -159,7 +159,7 @@ fn incident_elements<const N: usize>(node_count: usize, cells: &[[NodeId; N]]) -
 #[cfg(test)]
 mod tests {
     use crate::ids::NodeId;
-    use crate::mesh::{ElementGroups, FacetGroups, Mesh, MeshError};
+    use crate::mesh::{ElementGroups, FaceGroups, Mesh, MeshError};
 
     #[test]
     fn stars_of_a_square() {
@@ -172,15 +172,15 @@ mod tests {
         for i in [0, 1, 2, 3, 5, 6, 7, 8] {
             let star = mesh.stars().star(NodeId::new(i));
             for end in [star.links[0], star.links[star.links.len() - 1]] {
-                assert_eq!(mesh.facet(end.unwrap()).neighbour, None);
+                assert_eq!(mesh.face(end.unwrap()).neighbour, None);
             }
         }
     }
 
     #[test]
-    fn elements_on_the_same_side_of_a_facet_overlap() {
+    fn elements_on_the_same_side_of_a_face_overlap() {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [0.5, 1.0], [0.5, 2.0]];
-        let made = Mesh::new(points, &[[0, 1, 2], [0, 1, 3]], &FacetGroups::new(), &ElementGroups::new());
+        let made = Mesh::new(points, &[[0, 1, 2], [0, 1, 3]], &FaceGroups::new(), &ElementGroups::new());
         assert_eq!(made.unwrap_err(), MeshError::Overlap { elements: [0, 1] });
     }
 

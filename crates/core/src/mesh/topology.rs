@@ -1,21 +1,21 @@
-//! Facets shared by elements.
+//! Faces shared by elements.
 
 use super::MeshError;
-use crate::ids::{ElementId, FacetId, NodeId};
+use crate::ids::{ElementId, FaceId, NodeId};
 use std::cmp::Ordering;
 
 /// An edge in 2D, a point in 1D.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Facet<'m> {
+pub struct Face<'m> {
     /// Its nodes, in ascending order.
     pub nodes: &'m [NodeId],
-    /// The element whose outward normal orients the facet.
+    /// The element whose outward normal orients the face.
     pub owner: ElementId,
     /// The element on the other side, none on the boundary.
     pub neighbour: Option<ElementId>,
 }
 
-impl Facet<'_> {
+impl Face<'_> {
     /// +1 seen from the owner, −1 from the neighbour: the sign η of the equilibrated tractions.
     #[inline]
     #[must_use]
@@ -30,7 +30,7 @@ impl Facet<'_> {
         if self.owner == element { self.neighbour } else { Some(self.owner) }
     }
 
-    /// Position of `node` among the facet's nodes.
+    /// Position of `node` among the face's nodes.
     #[inline]
     #[must_use]
     pub fn position(&self, node: NodeId) -> usize {
@@ -38,32 +38,32 @@ impl Facet<'_> {
     }
 }
 
-/// The facets of a mesh, as data.
+/// The faces of a mesh, as data.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Facets {
-    /// Nodes of each facet: the dimension of the mesh.
+pub(super) struct Faces {
+    /// Nodes of each face: the dimension of the mesh.
     pub(super) width: usize,
-    /// Nodes of all facets, in rows.
+    /// Nodes of all faces, in rows.
     pub(super) nodes: Vec<NodeId>,
-    /// The elements of each facet.
+    /// The elements of each face.
     pub(super) sides: Vec<(ElementId, Option<ElementId>)>,
 }
 
-impl Facets {
+impl Faces {
     pub(super) fn len(&self) -> usize {
         self.sides.len()
     }
 
-    pub(super) fn get(&self, facet: usize) -> Facet<'_> {
-        let (owner, neighbour) = self.sides[facet];
-        Facet { nodes: &self.nodes[self.width * facet..self.width * (facet + 1)], owner, neighbour }
+    pub(super) fn get(&self, face: usize) -> Face<'_> {
+        let (owner, neighbour) = self.sides[face];
+        Face { nodes: &self.nodes[self.width * face..self.width * (face + 1)], owner, neighbour }
     }
 
-    pub(super) fn iter(&self) -> impl ExactSizeIterator<Item = Facet<'_>> {
-        (0..self.len()).map(|facet| self.get(facet))
+    pub(super) fn iter(&self) -> impl ExactSizeIterator<Item = Face<'_>> {
+        (0..self.len()).map(|face| self.get(face))
     }
 
-    /// The facet with these nodes, ascending.
+    /// The face with these nodes, ascending.
     pub(super) fn find(&self, nodes: &[NodeId]) -> Option<usize> {
         let (mut low, mut high) = (0, self.len());
         while low < high {
@@ -83,7 +83,7 @@ impl Facets {
     }
 }
 
-/// Nodes of the facet opposite to local node `k`, ascending.
+/// Nodes of the face opposite to local node `k`, ascending.
 fn opposite<const D: usize, const N: usize>(cell: &[NodeId; N], k: usize) -> [NodeId; D] {
     let mut nodes = [cell[0]; D];
     let others = cell.iter().enumerate().filter(|&(i, _)| i != k);
@@ -94,7 +94,7 @@ fn opposite<const D: usize, const N: usize>(cell: &[NodeId; N], k: usize) -> [No
     nodes
 }
 
-/// Whether a facet, seen from its element in counterclockwise order, has its nodes in an even permutation of their
+/// Whether a face, seen from its element in counterclockwise order, has its nodes in an even permutation of their
 /// ascending order; in 1D, whether it is the right end. Two elements on either side differ.
 fn is_even<const D: usize, const N: usize>(cells: &[[NodeId; N]], side: &([NodeId; D], ElementId, u8)) -> bool {
     let (cell, k) = (&cells[side.1.index()], usize::from(side.2));
@@ -105,10 +105,10 @@ fn is_even<const D: usize, const N: usize>(cells: &[[NodeId; N]], side: &([NodeI
     (inversions + k * D).is_multiple_of(2)
 }
 
-/// All facets in the order of their nodes, and those of each element.
-pub(super) fn facets<const D: usize, const N: usize>(
+/// All faces in the order of their nodes, and those of each element.
+pub(super) fn faces<const D: usize, const N: usize>(
     cells: &[[NodeId; N]],
-) -> Result<(Facets, Vec<[FacetId; N]>), MeshError> {
+) -> Result<(Faces, Vec<[FaceId; N]>), MeshError> {
     let mut sides: Vec<([NodeId; D], ElementId, u8)> = Vec::with_capacity(cells.len() * N);
     for (e, cell) in cells.iter().enumerate() {
         for k in 0..N {
@@ -117,11 +117,11 @@ pub(super) fn facets<const D: usize, const N: usize>(
     }
     sides.sort_unstable();
 
-    let mut facets = Facets { width: D, ..Facets::default() };
-    let mut cell_facets = vec![[FacetId::new(0); N]; cells.len()];
+    let mut faces = Faces { width: D, ..Faces::default() };
+    let mut cell_faces = vec![[FaceId::new(0); N]; cells.len()];
     for shared in sides.chunk_by(|a, b| a.0 == b.0) {
         if shared.len() > 2 {
-            return Err(MeshError::NonManifoldFacet {
+            return Err(MeshError::NonManifoldFace {
                 nodes: shared[0].0.iter().map(|n| n.index()).collect(),
                 elements: shared.iter().map(|s| s.1.index()).collect(),
             });
@@ -131,13 +131,13 @@ pub(super) fn facets<const D: usize, const N: usize>(
         {
             return Err(MeshError::Overlap { elements: [one.1.index(), other.1.index()] });
         }
-        let id = FacetId::new(facets.len());
-        facets.push(&shared[0].0, shared[0].1, shared.get(1).map(|s| s.1));
+        let id = FaceId::new(faces.len());
+        faces.push(&shared[0].0, shared[0].1, shared.get(1).map(|s| s.1));
         for side in shared {
-            cell_facets[side.1.index()][usize::from(side.2)] = id;
+            cell_faces[side.1.index()][usize::from(side.2)] = id;
         }
     }
-    facets.nodes.shrink_to_fit();
-    facets.sides.shrink_to_fit();
-    Ok((facets, cell_facets))
+    faces.nodes.shrink_to_fit();
+    faces.sides.shrink_to_fit();
+    Ok((faces, cell_faces))
 }

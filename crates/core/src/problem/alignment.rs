@@ -2,7 +2,7 @@
 
 use crate::border::Vector;
 use crate::contact::dot;
-use crate::ids::FacetId;
+use crate::ids::FaceId;
 use crate::mesh::Mesh;
 
 /// An edge is at least this well aligned with the interface: the cosine of its normal and the common one.
@@ -16,11 +16,11 @@ pub(super) fn unit<const D: usize>(vector: &[f64; D]) -> [f64; D] {
     vector.map(|x| x / length)
 }
 
-/// Σ of outward normals times areas of facets (m or 1).
-pub(super) fn outward(mesh: &Mesh, facets: &[FacetId]) -> Vector {
+/// Σ of outward normals times areas of faces (m or 1).
+pub(super) fn outward(mesh: &Mesh, faces: &[FaceId]) -> Vector {
     let mut sum = [0.0; 3];
-    for &facet in facets {
-        let (normal, area) = mesh.facet_normal(facet);
+    for &face in faces {
+        let (normal, area) = mesh.face_normal(face);
         (0..3).for_each(|c| sum[c] += area * normal[c]);
     }
     sum

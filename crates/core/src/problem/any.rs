@@ -1,10 +1,10 @@
 //! A problem of either dimension, as other crates see it.
 
 use super::{BarProblem, TriangleProblem, statement};
-use super::{BodyLoad, Conditions, FacetLoad, InputError, MovedPlane, Place, PrescribedComponent, Problem, Statement};
+use super::{BodyLoad, Conditions, FaceLoad, InputError, MovedPlane, Place, PrescribedComponent, Problem, Statement};
 use crate::border::{Vector, padded, vectors};
-use crate::contact::{AnyFacing, AnyObstacle, ContactFacet, ContactNode, Frame, Interface};
-use crate::ids::{ElementId, FacetId, NodeId};
+use crate::contact::{AnyFacing, AnyObstacle, ContactFace, ContactNode, Frame, Interface};
+use crate::ids::{ElementId, FaceId, NodeId};
 use crate::load::Table;
 use crate::material::Elastic;
 use crate::mesh::{Mesh, Numbering};
@@ -85,11 +85,11 @@ impl From<TriangleProblem> for AnyProblem {
     }
 }
 
-/// A facet of the contact surface.
+/// A face of the contact surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AnyContactFacet<'p> {
-    /// The facet of the mesh.
-    pub facet: FacetId,
+pub struct AnyContactFace<'p> {
+    /// The face of the mesh.
+    pub face: FaceId,
     /// Its nodes, as positions in the contact surface.
     pub nodes: &'p [usize],
     /// Its area (m²).
@@ -98,11 +98,11 @@ pub struct AnyContactFacet<'p> {
     pub obstacle: usize,
 }
 
-/// A traction on one facet.
+/// A traction on one face.
 #[derive(Clone, Copy, Debug)]
-pub struct AnyFacetLoad<'p> {
-    /// The facet.
-    pub facet: FacetId,
+pub struct AnyFaceLoad<'p> {
+    /// The face.
+    pub face: FaceId,
     /// Factor at each of its nodes.
     pub profile: &'p [f64],
     /// Its table among [`AnyProblem::traction_tables`].
@@ -208,13 +208,13 @@ impl AnyProblem {
         on!(self, problem => problem.motions())
     }
 
-    /// Tractions on facets.
+    /// Tractions on faces.
     #[must_use]
-    pub fn facet_loads(&self) -> Vec<AnyFacetLoad<'_>> {
-        fn of<const D: usize>(load: &FacetLoad<D>) -> AnyFacetLoad<'_> {
-            AnyFacetLoad { facet: load.facet, profile: &load.profile, table: load.table }
+    pub fn face_loads(&self) -> Vec<AnyFaceLoad<'_>> {
+        fn of<const D: usize>(load: &FaceLoad<D>) -> AnyFaceLoad<'_> {
+            AnyFaceLoad { face: load.face, profile: &load.profile, table: load.table }
         }
-        on!(self, problem => problem.facet_loads().iter().map(of).collect())
+        on!(self, problem => problem.face_loads().iter().map(of).collect())
     }
 
     /// Tables of the tractions (Pa).
@@ -304,14 +304,14 @@ impl AnyProblem {
         on!(self, problem => problem.surface().nodes())
     }
 
-    /// The facets of the contact surface.
+    /// The faces of the contact surface.
     #[must_use]
-    pub fn contact_facets(&self) -> Vec<AnyContactFacet<'_>> {
-        fn of<const D: usize>(facet: &ContactFacet<D>) -> AnyContactFacet<'_> {
-            let &ContactFacet { facet, ref nodes, area, obstacle } = facet;
-            AnyContactFacet { facet, nodes, area, obstacle }
+    pub fn contact_faces(&self) -> Vec<AnyContactFace<'_>> {
+        fn of<const D: usize>(face: &ContactFace<D>) -> AnyContactFace<'_> {
+            let &ContactFace { face, ref nodes, area, obstacle } = face;
+            AnyContactFace { face, nodes, area, obstacle }
         }
-        on!(self, problem => problem.surface().facets().iter().map(of).collect())
+        on!(self, problem => problem.surface().faces().iter().map(of).collect())
     }
 
     /// The place of a node of the contact surface in the undeformed body (m).
@@ -405,16 +405,16 @@ impl AnyProblem {
         on!(self, problem => problem.volume(element))
     }
 
-    /// Area of a boundary facet with section or thickness (m²).
+    /// Area of a boundary face with section or thickness (m²).
     #[must_use]
-    pub fn facet_area(&self, facet: FacetId) -> f64 {
-        on!(self, problem => problem.facet_area(facet))
+    pub fn face_area(&self, face: FaceId) -> f64 {
+        on!(self, problem => problem.face_area(face))
     }
 
-    /// Which components of a facet are supported.
+    /// Which components of a face are supported.
     #[must_use]
-    pub fn supported(&self, facet: FacetId) -> &[bool] {
-        on!(self, problem => &problem.supported[facet.index()])
+    pub fn supported(&self, face: FaceId) -> &[bool] {
+        on!(self, problem => &problem.supported[face.index()])
     }
 
     /// Whether each node of the contact surface is on a line of symmetry: [`Problem::on_lines_of_symmetry`].

@@ -1,20 +1,20 @@
-//! Supports and loads, from named groups to facets, nodes and elements.
+//! Supports and loads, from named groups to faces, nodes and elements.
 
-use super::{BodyLoad, Cause, Conditions, FacetLoad, GroupOf, HeldBy, InputError, PrescribedComponent};
-use crate::ids::{ElementId, FacetId, NodeId};
+use super::{BodyLoad, Cause, Conditions, FaceLoad, GroupOf, HeldBy, InputError, PrescribedComponent};
+use crate::ids::{ElementId, FaceId, NodeId};
 use crate::load::{BodyForce, Profile, Support, Table, Traction};
 use crate::mesh::Mesh;
 use crate::message::axis;
 use std::collections::BTreeMap;
 
-/// The members of a group of facets.
-pub(super) fn facet_group<'m>(mesh: &'m Mesh, name: &str) -> Result<&'m [FacetId], Cause> {
-    group(mesh.facet_groups(), name, GroupOf::facets(mesh.shape()), mesh.element_groups(), GroupOf::Elements)
+/// The members of a group of faces.
+pub(super) fn face_group<'m>(mesh: &'m Mesh, name: &str) -> Result<&'m [FaceId], Cause> {
+    group(mesh.face_groups(), name, GroupOf::faces(mesh.shape()), mesh.element_groups(), GroupOf::Elements)
 }
 
 /// The members of a group of elements.
 pub(super) fn element_group<'m>(mesh: &'m Mesh, name: &str) -> Result<&'m [ElementId], Cause> {
-    group(mesh.element_groups(), name, GroupOf::Elements, mesh.facet_groups(), GroupOf::facets(mesh.shape()))
+    group(mesh.element_groups(), name, GroupOf::Elements, mesh.face_groups(), GroupOf::faces(mesh.shape()))
 }
 
 fn group<'m, Id, Other>(
@@ -33,14 +33,14 @@ fn group<'m, Id, Other>(
     }
 }
 
-/// The first support or traction on each facet, which then cannot touch a plane.
+/// The first support or traction on each face, which then cannot touch a plane.
 pub(super) fn held(mesh: &Mesh, stated: &Conditions) -> Vec<Option<HeldBy>> {
-    let mut held = vec![None; mesh.facets().len()];
+    let mut held = vec![None; mesh.faces().len()];
     let supports = stated.supports.iter().enumerate().map(|(i, s)| (HeldBy::Support(i), &s.group));
     let tractions = stated.tractions.iter().enumerate().map(|(i, t)| (HeldBy::Traction(i), &t.group));
     for (by, group) in supports.chain(tractions) {
-        for facet in mesh.facet_groups().get(group).into_iter().flatten() {
-            held[facet.index()].get_or_insert(by);
+        for face in mesh.face_groups().get(group).into_iter().flatten() {
+            held[face.index()].get_or_insert(by);
         }
     }
     held
@@ -51,9 +51,9 @@ fn finite<'v>(numbers: impl IntoIterator<Item = &'v f64>) -> Result<(), Cause> {
     numbers.into_iter().find(|x| !x.is_finite()).map_or(Ok(()), |&value| Err(Cause::NotFinite { value }))
 }
 
-/// Supported facets, prescribed components of nodes, and velocity tables.
+/// Supported faces, prescribed components of nodes, and velocity tables.
 pub(super) struct Supports<const D: usize> {
-    pub(super) facets: Vec<[bool; D]>,
+    pub(super) faces: Vec<[bool; D]>,
     pub(super) prescribed: Vec<PrescribedComponent>,
     pub(super) motions: Vec<Table>,
 }
@@ -69,12 +69,12 @@ impl<const D: usize> Supports<D> {
 
 /// Resolves the supports; two may overlap only if they prescribe the same motion.
 pub(super) fn supports<const D: usize>(mesh: &Mesh, supports: &[Support]) -> Result<Supports<D>, InputError> {
-    let mut facets = vec![[false; D]; mesh.facets().len()];
+    let mut faces = vec![[false; D]; mesh.faces().len()];
     let mut motions: Vec<Table> = Vec::new();
     let mut by_node: BTreeMap<(NodeId, usize), (usize, Option<usize>)> = BTreeMap::new();
     for (index, support) in supports.iter().enumerate() {
         let fail = |cause: Cause, key| cause.at("support", Some(index), key);
-        let members = facet_group(mesh, &support.group).map_err(|c| fail(c, "group"))?;
+        let members = face_group(mesh, &support.group).map_err(|c| fail(c, "group"))?;
         if !support.components[..D].contains(&true) {
             return Err(fail(Cause::NoComponent, "components"));
         }
@@ -82,9 +82,9 @@ pub(super) fn supports<const D: usize>(mesh: &Mesh, supports: &[Support]) -> Res
         finite(velocities).map_err(|cause| fail(cause, "velocity"))?;
         for component in (0..D).filter(|&c| support.components[c]) {
             let motion = support.velocity.as_ref().map(|table| motion_index(&mut motions, table.component(component)));
-            for facet in members {
-                facets[facet.index()][component] = true;
-                for node in mesh.facet_nodes::<D>(*facet) {
+            for face in members {
+                faces[face.index()][component] = true;
+                for node in mesh.face_nodes::<D>(*face) {
                     let (first, earlier) = *by_node.entry((node, component)).or_insert((index, motion));
                     if earlier != motion {
                         let (node, component) = (node.index(), axis(component));
@@ -98,7 +98,7 @@ pub(super) fn supports<const D: usize>(mesh: &Mesh, supports: &[Support]) -> Res
         .into_iter()
         .map(|((node, component), (_, motion))| PrescribedComponent { node, component, motion })
         .collect();
-    Ok(Supports { facets, prescribed, motions })
+    Ok(Supports { faces, prescribed, motions })
 }
 
 /// Position of a motion among those known, added if it is new.
@@ -109,34 +109,34 @@ fn motion_index(motions: &mut Vec<Table>, motion: Table) -> usize {
     })
 }
 
-/// Tractions facet by facet.
+/// Tractions face by face.
 pub(super) fn tractions<const D: usize>(
     mesh: &Mesh,
     tractions: &[Traction],
     supported: &[[bool; D]],
-) -> Result<Vec<FacetLoad<D>>, InputError> {
+) -> Result<Vec<FaceLoad<D>>, InputError> {
     let mut loads = Vec::new();
     for (table, traction) in tractions.iter().enumerate() {
         let fail = |cause: Cause, key| cause.at("traction", Some(table), key);
-        let members = facet_group(mesh, &traction.group).map_err(|c| fail(c, "group"))?;
+        let members = face_group(mesh, &traction.group).map_err(|c| fail(c, "group"))?;
         finite(traction.value.value().iter().flatten()).map_err(|cause| fail(cause, "value"))?;
         let acts = traction.value.acting_components();
-        for &facet in members {
-            if let Some(c) = (0..D).find(|&c| acts[c] && supported[facet.index()][c]) {
-                let nodes = mesh.facet_nodes::<D>(facet).map(NodeId::index).to_vec();
+        for &face in members {
+            if let Some(c) = (0..D).find(|&c| acts[c] && supported[face.index()][c]) {
+                let nodes = mesh.face_nodes::<D>(face).map(NodeId::index).to_vec();
                 return Err(fail(Cause::LoadedSupport { component: axis(c), nodes }, "group"));
             }
-            let profile = profile_on::<D>(mesh, facet, &traction.profile);
+            let profile = profile_on::<D>(mesh, face, &traction.profile);
             finite(&profile).map_err(|cause| fail(cause, "profile"))?;
-            loads.push(FacetLoad { facet, profile, table });
+            loads.push(FaceLoad { face, profile, table });
         }
     }
     Ok(loads)
 }
 
-/// The factor of a traction at each node of a facet.
-pub(super) fn profile_on<const D: usize>(mesh: &Mesh, facet: FacetId, profile: &Profile) -> [f64; D] {
-    mesh.facet_nodes::<D>(facet).map(|node| profile.at(&mesh.points_in::<D>()[node.index()]))
+/// The factor of a traction at each node of a face.
+pub(super) fn profile_on<const D: usize>(mesh: &Mesh, face: FaceId, profile: &Profile) -> [f64; D] {
+    mesh.face_nodes::<D>(face).map(|node| profile.at(&mesh.points_in::<D>()[node.index()]))
 }
 
 /// Body forces with the volume at each node on which they act, and the list of each element.

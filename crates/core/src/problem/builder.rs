@@ -7,7 +7,7 @@ use super::may_touch::{AllContact, all_contact};
 use super::sides::Bodies;
 use super::{Cause, InputError, Problem, sides, start_of_contact, symmetry};
 use crate::contact::{Interface, Obstacle};
-use crate::ids::{ElementId, FacetId};
+use crate::ids::{ElementId, FaceId};
 use crate::load::{BodyForce, Support, Table, Traction};
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
@@ -199,15 +199,15 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let initial_velocity = nodal(&self.velocity, mesh.node_count(), "velocity")?;
         let supports = boundary::supports(mesh, &self.stated.supports)?;
         let fixed = supports.fixed(mesh.node_count());
-        let Supports { facets: supported, prescribed, motions } = supports;
+        let Supports { faces: supported, prescribed, motions } = supports;
         let lines = symmetry::node_lines(mesh, &supported, &prescribed, &motions);
         if prescribed.len() == D * mesh.node_count() {
             return Err(Cause::NoFreedom.at("support", None, ""));
         }
-        let facet_loads = boundary::tractions(mesh, &self.stated.tractions, &supported)?;
+        let face_loads = boundary::tractions(mesh, &self.stated.tractions, &supported)?;
         let (body_loads, element_body_loads) = boundary::body_forces::<N>(mesh, &self.stated.body_forces, volume)?;
 
-        let law = |f: FacetId| &materials[usize::from(element_material[mesh.facet(f).owner.index()])];
+        let law = |f: FaceId| &materials[usize::from(element_material[mesh.face(f).owner.index()])];
         let (body, held, velocity) = (Vec::new(), boundary::held(mesh, &self.stated), &initial_velocity[..]);
         let bodies = Bodies { mesh, body, held, fixed, supported: &supported, lines, velocity, mass: &mass, law: &law };
         let start = Start { displacement: &initial_displacement, velocity: &initial_velocity, mass: &mass };
@@ -226,7 +226,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             supported,
             prescribed,
             motions,
-            facet_loads,
+            face_loads,
             traction_tables: self.stated.tractions.iter().map(|t| t.value.clone()).collect(),
             body_loads,
             element_body_loads,
@@ -243,9 +243,9 @@ impl<const D: usize, const N: usize> Builder<D, N> {
     }
 }
 
-/// The mesh with the groups of facets that contact has added.
-fn with_groups(mesh: Arc<Mesh>, groups: Vec<(String, Vec<FacetId>)>) -> Arc<Mesh> {
-    if groups.is_empty() { mesh } else { Arc::new(Arc::unwrap_or_clone(mesh).with_facet_groups(groups)) }
+/// The mesh with the groups of faces that contact has added.
+fn with_groups(mesh: Arc<Mesh>, groups: Vec<(String, Vec<FaceId>)>) -> Arc<Mesh> {
+    if groups.is_empty() { mesh } else { Arc::new(Arc::unwrap_or_clone(mesh).with_face_groups(groups)) }
 }
 
 /// The mass of each node (kg), from those of the elements.

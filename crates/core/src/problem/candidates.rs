@@ -1,31 +1,31 @@
-//! Candidates of contact: the facets that face an obstacle, and their nodes.
+//! Candidates of contact: the faces that face an obstacle, and their nodes.
 
 use super::{Cause, HeldBy, InputError};
-use crate::contact::{ContactFacet, ContactNode, ContactSurface, Obstacle, Plane, dot};
-use crate::ids::{FacetId, NodeId};
+use crate::contact::{ContactFace, ContactNode, ContactSurface, Obstacle, Plane, dot};
+use crate::ids::{FaceId, NodeId};
 use crate::mesh::Mesh;
 use std::collections::BTreeMap;
 
-/// A facet faces an obstacle if its outward unit normal · n is below this.
+/// A face faces an obstacle if its outward unit normal · n is below this.
 const FACES: f64 = -1e-9;
 /// Angles (degrees) between two planes that a node may touch. Contact was tried from 30 to 150 degrees.
 const OPENINGS: std::ops::RangeInclusive<f64> = 15.0..=165.0;
 /// A prescribed component of which the normal has no more than this is tangential.
 pub(super) const ALIGNED: f64 = 1e-12;
 
-/// Adds an obstacle and the facets that may touch it to the contact surface.
+/// Adds an obstacle and the faces that may touch it to the contact surface.
 pub(super) fn add<const D: usize>(
     surface: &mut ContactSurface<D>,
     mesh: &Mesh,
     (obstacle, plane): (Obstacle<D>, &Plane<D>),
-    held: impl Fn(FacetId) -> Option<HeldBy>,
+    held: impl Fn(FaceId) -> Option<HeldBy>,
     prescribed: impl Fn(NodeId) -> [bool; D],
-    area: impl Fn(FacetId) -> f64,
+    area: impl Fn(FaceId) -> f64,
 ) -> Result<(), InputError> {
     let index = surface.obstacles().len();
     let facing = facing(mesh, &obstacle, held).map_err(|(cause, key)| cause.at("obstacle", Some(index), key))?;
-    if let Some(other) = surface.facets().iter().find(|other| facing.contains(&other.facet)) {
-        let nodes = mesh.facet_nodes::<D>(other.facet).map(NodeId::index).to_vec();
+    if let Some(other) = surface.faces().iter().find(|other| facing.contains(&other.face)) {
+        let nodes = mesh.face_nodes::<D>(other.face).map(NodeId::index).to_vec();
         return Err(Cause::TwoPlanes { nodes, first: other.obstacle + 1 }.at("obstacle", Some(index), "group"));
     }
     let mut nodes: Vec<(ContactNode, [f64; D])> = Vec::new();
@@ -46,16 +46,16 @@ pub(super) fn add<const D: usize>(
         return Err(Cause::HeldNodes { node: first.node.index() }.at("obstacle", Some(index), ""));
     }
     let position: BTreeMap<NodeId, usize> = nodes.iter().enumerate().map(|(at, (c, _))| (c.node, at)).collect();
-    let facet = |facet: FacetId| {
-        let nodes = mesh.facet_nodes::<D>(facet).map(|node| position[&node]);
-        ContactFacet { facet, nodes, area: area(facet), obstacle: index }
+    let face = |face: FaceId| {
+        let nodes = mesh.face_nodes::<D>(face).map(|node| position[&node]);
+        ContactFace { face, nodes, area: area(face), obstacle: index }
     };
-    surface.add(obstacle, nodes, facing.into_iter().map(facet));
+    surface.add(obstacle, nodes, facing.into_iter().map(face));
     Ok(())
 }
 
 /// Refuses a node at two planes, of which the first has it at this position of the surface, without a solution, or at
-/// angles that were not tried. It has two free facets, so that it is never at three.
+/// angles that were not tried. It has two free faces, so that it is never at three.
 fn corner<const D: usize>(
     surface: &ContactSurface<D>,
     at: usize,
@@ -83,19 +83,19 @@ fn corner<const D: usize>(
     Ok(())
 }
 
-/// Free facets that face an obstacle, of its group if it names one. The error has the key of the statement.
+/// Free faces that face an obstacle, of its group if it names one. The error has the key of the statement.
 fn facing<const D: usize>(
     mesh: &Mesh,
     obstacle: &Obstacle<D>,
-    held: impl Fn(FacetId) -> Option<HeldBy>,
-) -> Result<Vec<FacetId>, (Cause, &'static str)> {
-    let nodes = |facet: FacetId| mesh.facet_nodes::<D>(facet).map(NodeId::index).to_vec();
-    let faces = |&facet: &FacetId| dot(&mesh.normal_in::<D>(facet).0, &normal_at(mesh, obstacle, facet)) < FACES;
-    let mut found: Vec<FacetId>;
+    held: impl Fn(FaceId) -> Option<HeldBy>,
+) -> Result<Vec<FaceId>, (Cause, &'static str)> {
+    let nodes = |face: FaceId| mesh.face_nodes::<D>(face).map(NodeId::index).to_vec();
+    let faces = |&face: &FaceId| dot(&mesh.normal_in::<D>(face).0, &normal_at(mesh, obstacle, face)) < FACES;
+    let mut found: Vec<FaceId>;
     if let Some(name) = obstacle.group() {
-        let group = super::boundary::facet_group(mesh, name).map_err(|cause| (cause, "group"))?;
-        if let Some((facet, by)) = group.iter().find_map(|&facet| Some((facet, held(facet)?))) {
-            return Err((Cause::NotFree { nodes: nodes(facet), by }, "group"));
+        let group = super::boundary::face_group(mesh, name).map_err(|cause| (cause, "group"))?;
+        if let Some((face, by)) = group.iter().find_map(|&face| Some((face, held(face)?))) {
+            return Err((Cause::NotFree { nodes: nodes(face), by }, "group"));
         }
         found = group.iter().copied().filter(faces).collect();
         if found.is_empty() {
@@ -103,22 +103,22 @@ fn facing<const D: usize>(
         }
     } else {
         found = mesh.boundary().filter(faces).collect();
-        // A closed boundary has facets in all directions: some always face the obstacle.
-        let first = found.first().and_then(|&facet| Some((facet, held(facet)?)));
-        found.retain(|&facet| held(facet).is_none());
-        if let (Some((facet, by)), true) = (first, found.is_empty()) {
-            return Err((Cause::AllHeld { nodes: nodes(facet), by }, ""));
+        // A closed boundary has faces in all directions: some always face the obstacle.
+        let first = found.first().and_then(|&face| Some((face, held(face)?)));
+        found.retain(|&face| held(face).is_none());
+        if let (Some((face, by)), true) = (first, found.is_empty()) {
+            return Err((Cause::AllHeld { nodes: nodes(face), by }, ""));
         }
     }
     Ok(found)
 }
 
 /// The normal of a group that does not face the obstacle, and the groups that do face it.
-fn nothing_faces<const D: usize>(mesh: &Mesh, obstacle: &Obstacle<D>, name: &str, group: &[FacetId]) -> Cause {
-    let mean = |facets: &[FacetId]| {
+fn nothing_faces<const D: usize>(mesh: &Mesh, obstacle: &Obstacle<D>, name: &str, group: &[FaceId]) -> Cause {
+    let mean = |faces: &[FaceId]| {
         let mut sum = [0.0; D];
-        for &facet in facets {
-            let (normal, area) = mesh.normal_in::<D>(facet);
+        for &face in faces {
+            let (normal, area) = mesh.normal_in::<D>(face);
             (0..D).for_each(|c| sum[c] += area * normal[c]);
         }
         let length = dot(&sum, &sum).sqrt();
@@ -126,25 +126,25 @@ fn nothing_faces<const D: usize>(mesh: &Mesh, obstacle: &Obstacle<D>, name: &str
         sum.map(|s| if length > 0.0 { (1e3 * s / length).round() / 1e3 } else { 0.0 })
     };
     let (outward, normal) = (mean(group), normal_at(mesh, obstacle, group[0]));
-    let looks = |facets: &[FacetId]| dot(&mean(facets), &normal) < FACES;
-    let facing = mesh.facet_groups().iter().filter(|(_, facets)| looks(facets)).map(|(name, _)| name.clone()).collect();
+    let looks = |faces: &[FaceId]| dot(&mean(faces), &normal) < FACES;
+    let facing = mesh.face_groups().iter().filter(|(_, faces)| looks(faces)).map(|(name, _)| name.clone()).collect();
     let normal = normal.map(|n| (1e3 * n).round() / 1e3);
     Cause::NothingFaces { group: name.to_string(), outward: Box::new(outward), normal: Box::new(normal), facing }
 }
 
-/// Normal of an obstacle at the centroid of a facet.
-fn normal_at<const D: usize>(mesh: &Mesh, obstacle: &Obstacle<D>, facet: FacetId) -> [f64; D] {
-    let points = mesh.facet_nodes::<D>(facet).map(|node| mesh.points_in::<D>()[node.index()]);
+/// Normal of an obstacle at the centroid of a face.
+fn normal_at<const D: usize>(mesh: &Mesh, obstacle: &Obstacle<D>, face: FaceId) -> [f64; D] {
+    let points = mesh.face_nodes::<D>(face).map(|node| mesh.points_in::<D>()[node.index()]);
     let centroid = std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / D as f64);
     *obstacle.frame_at(&centroid).normal()
 }
 
-/// Nodes of the facets, piece by piece. In 2D a piece is a chain from one end to the other: not all facets of a closed
+/// Nodes of the faces, piece by piece. In 2D a piece is a chain from one end to the other: not all faces of a closed
 /// curve face the same obstacle.
-pub(super) fn along_the_boundary(mesh: &Mesh, facets: &[FacetId]) -> Vec<NodeId> {
+pub(super) fn along_the_boundary(mesh: &Mesh, faces: &[FaceId]) -> Vec<NodeId> {
     let mut neighbours: BTreeMap<NodeId, Vec<NodeId>> = BTreeMap::new();
-    for facet in facets {
-        let nodes = mesh.facet(*facet).nodes;
+    for face in faces {
+        let nodes = mesh.face(*face).nodes;
         for node in nodes {
             neighbours.entry(*node).or_default().extend(nodes.iter().filter(|n| *n != node));
         }

@@ -6,7 +6,7 @@ use super::joined::{Member, Proposal, Source, joined, listed};
 use super::sides::Bodies;
 use super::{Cause, InputError, Place};
 use crate::contact::{Interface, ObstacleError};
-use crate::ids::{FacetId, NodeId};
+use crate::ids::{FaceId, NodeId};
 use crate::material::Law;
 use crate::mesh::Mesh;
 use std::collections::BTreeSet;
@@ -19,8 +19,8 @@ const SLIDES: f64 = 0.1;
 pub(super) struct Surfaces {
     /// The interfaces, and where they are stated.
     pub(super) choices: Vec<(Choice, Place)>,
-    /// Groups of facets that the mesh does not have, as many as the choices may need.
-    pub(super) groups: Vec<(String, Vec<FacetId>)>,
+    /// Groups of faces that the mesh does not have, as many as the choices may need.
+    pub(super) groups: Vec<(String, Vec<FaceId>)>,
 }
 
 /// An interface, and another one if the nodes of the first one do not face each other in pairs.
@@ -36,12 +36,12 @@ pub(super) struct Stated<'a> {
     pub(super) automatic: bool,
 }
 
-/// The pairs of surfaces of all contacts, beside the facets that may touch planes.
+/// The pairs of surfaces of all contacts, beside the faces that may touch planes.
 pub(super) fn surfaces<const D: usize>(
     bodies: &Bodies<'_, D>,
     stated: &Stated<'_>,
     start: &Start<'_, D>,
-    facing_planes: &BTreeSet<FacetId>,
+    facing_planes: &BTreeSet<FaceId>,
 ) -> Result<Surfaces, InputError> {
     let Stated { contacts, automatic } = stated;
     let mut made = Surfaces::default();
@@ -67,7 +67,7 @@ pub(super) fn surfaces<const D: usize>(
             }
             Between::All => continue,
         };
-        proposals.push(Proposal { contact, place, source, facets: source.facets(bodies.mesh) });
+        proposals.push(Proposal { contact, place, source, faces: source.faces(bodies.mesh) });
     }
     let default = contacts.iter().position(|contact| contact.between == Between::All);
     let place = Place { table: "contact", index: default, key: "" };
@@ -77,7 +77,7 @@ pub(super) fn surfaces<const D: usize>(
             return Err(Cause::NoFriction { bodies }.at("contact", None, "friction"));
         };
         let source = Source::Found(found);
-        proposals.push(Proposal { contact, place, source, facets: source.facets(bodies.mesh) });
+        proposals.push(Proposal { contact, place, source, faces: source.faces(bodies.mesh) });
     }
     for members in joined(bodies, &proposals)? {
         let place = proposals[members[0].contact].place;
@@ -126,7 +126,7 @@ impl Surfaces {
         (names, found): (&[String], &Found),
     ) -> Result<Option<Choice>, ObstacleError> {
         let shortest =
-            found.seeing.iter().flatten().map(|&facet| mesh.facet_normal(facet).1).fold(f64::INFINITY, f64::min);
+            found.seeing.iter().flatten().map(|&face| mesh.face_normal(face).1).fold(f64::INFINITY, f64::min);
         let stays = found.slide <= SLIDES * shortest;
         let mut make = |matching: bool| {
             let groups = self.groups_of(mesh, names, found, matching);
@@ -153,9 +153,9 @@ impl Surfaces {
         let nearest = [0, 1].map(|side| found.nearest.iter().map(|nearest| nearest[side]).collect());
         let mut sides = FacingEdges { mesh, nearest, across: found.across }.of(&sides)?;
         Some([0, 1].map(|side| {
-            let facets = std::mem::take(&mut sides[side]);
+            let faces = std::mem::take(&mut sides[side]);
             let [own, other] = [side, 1 - side].map(|k| &names[found.pair[k]]);
-            self.group(mesh, format!("{own} {relation} {other}"), facets)
+            self.group(mesh, format!("{own} {relation} {other}"), faces)
         }))
     }
 
@@ -166,7 +166,7 @@ impl Surfaces {
         (proposals, members): (&[Proposal<'_>], &[Member]),
         names: &[String],
     ) -> Result<Choice, ObstacleError> {
-        let facets = facets_of_several(mesh, proposals, members);
+        let faces = faces_of_several(mesh, proposals, members);
         let mut make = |is_common: bool| {
             let (mut own, mut others) = (Vec::new(), Vec::new());
             for Member { contact, common } in members {
@@ -180,7 +180,7 @@ impl Surfaces {
                 }
             }
             let relation = if others.is_empty() { String::new() } else { format!(" towards {}", listed(&others)) };
-            self.group(mesh, listed(&own) + &relation, facets[usize::from(!is_common)].clone())
+            self.group(mesh, listed(&own) + &relation, faces[usize::from(!is_common)].clone())
         };
         // The sides stay in the order of the first contact.
         let groups = if members[0].common == 0 { [make(true), make(false)] } else { [make(false), make(true)] };
@@ -189,25 +189,25 @@ impl Surfaces {
         Ok(Choice { first, otherwise: None })
     }
 
-    /// The name of a group of these facets: one of the mesh, or a new one.
-    fn group(&mut self, mesh: &Mesh, name: String, facets: Vec<FacetId>) -> String {
-        if let Some((name, _)) = mesh.facet_groups().iter().find(|(_, group)| **group == facets) {
+    /// The name of a group of these faces: one of the mesh, or a new one.
+    fn group(&mut self, mesh: &Mesh, name: String, faces: Vec<FaceId>) -> String {
+        if let Some((name, _)) = mesh.face_groups().iter().find(|(_, group)| **group == faces) {
             return name.clone();
         }
-        self.groups.push((name.clone(), facets));
+        self.groups.push((name.clone(), faces));
         name
     }
 }
 
-/// The facets of the common surface of several contacts, and those of the others. All those that the user named stay.
-fn facets_of_several(mesh: &Mesh, proposals: &[Proposal<'_>], members: &[Member]) -> [Vec<FacetId>; 2] {
+/// The faces of the common surface of several contacts, and those of the others. All those that the user named stay.
+fn faces_of_several(mesh: &Mesh, proposals: &[Proposal<'_>], members: &[Member]) -> [Vec<FaceId>; 2] {
     let mut sides = [BTreeSet::new(), BTreeSet::new()];
     let mut nearest = [Vec::new(), Vec::new()];
     let (mut named, mut across) = (false, None);
     for Member { contact, common } in members {
-        let Proposal { facets, source, .. } = &proposals[*contact];
+        let Proposal { faces, source, .. } = &proposals[*contact];
         for (side, all) in [*common, 1 - common].into_iter().zip(&mut sides) {
-            all.extend(&facets[side]);
+            all.extend(&faces[side]);
             match source {
                 Source::Groups(_) => named = true,
                 Source::Found(found) => {
@@ -216,9 +216,9 @@ fn facets_of_several(mesh: &Mesh, proposals: &[Proposal<'_>], members: &[Member]
                 }
             }
         }
-        if let Source::Found(Found { nearest: Some(facets), .. }) = source {
-            nearest[0].push(facets[*common]);
-            nearest[1].push(facets[1 - common]);
+        if let Source::Found(Found { nearest: Some(faces), .. }) = source {
+            nearest[0].push(faces[*common]);
+            nearest[1].push(faces[1 - common]);
         }
     }
     let sides = sides.map(|side| side.into_iter().collect());
@@ -248,7 +248,7 @@ impl Pairs {
         bodies: &Bodies<'_, D>,
         stated: &Stated<'_>,
         start: &Start<'_, D>,
-        facing_planes: &BTreeSet<FacetId>,
+        facing_planes: &BTreeSet<FaceId>,
     ) -> Result<Self, InputError> {
         let (mesh, names, of_node) = (bodies.mesh, bodies.mesh.part_names(), bodies.mesh.part_numbers());
         let (mut wanted, mut contact): (Vec<Wanted>, Vec<Option<usize>>) = (Vec::new(), Vec::new());
@@ -256,9 +256,9 @@ impl Pairs {
         for (index, one) in stated.contacts.iter().enumerate() {
             match &one.between {
                 Between::Groups(groups) => {
-                    let facets =
-                        groups.each_ref().map(|group| mesh.facet_groups().get(group).map_or(&[][..], Vec::as_slice));
-                    let nodes = facets.map(|all| all.iter().flat_map(|facet| mesh.facet_nodes::<D>(*facet)));
+                    let faces =
+                        groups.each_ref().map(|group| mesh.face_groups().get(group).map_or(&[][..], Vec::as_slice));
+                    let nodes = faces.map(|all| all.iter().flat_map(|face| mesh.face_nodes::<D>(*face)));
                     let nodes: [Vec<NodeId>; 2] = nodes.map(Iterator::collect);
                     if let [Some(a), Some(b)] = nodes.each_ref().map(|nodes| nodes.first()) {
                         known.insert(ordered([a, b].map(|node| of_node[node.index()])));
@@ -286,10 +286,10 @@ impl Pairs {
             contact.extend(rest.iter().map(|_| None));
             wanted.extend(rest.into_iter().map(|pair| unnamed::<D>(pair, common)));
         }
-        let law = |facet| (bodies.law)(facet);
-        let free = |facet: FacetId| bodies.held[facet.index()].is_none();
+        let law = |face| (bodies.law)(face);
+        let free = |face: FaceId| bodies.held[face.index()].is_none();
         let outlines =
-            outlines(mesh, names.clone(), start, free, |facet| law(facet).wave_speed(), |facet| bodies.line_of(facet));
+            outlines(mesh, names.clone(), start, free, |face| law(face).wave_speed(), |face| bodies.line_of(face));
         let held = |node: NodeId| {
             let held = &bodies.fixed[node.index()];
             [held[0], held.get(1).copied().unwrap_or(false)]

@@ -7,7 +7,7 @@ pub use terms::{GroupOf, HeldBy};
 use crate::contact::ObstacleError;
 use crate::load::TableError;
 use crate::material::MaterialError;
-use crate::message::{counted, facet, named, quoted, short, trimmed, vector};
+use crate::message::{counted, face, named, quoted, short, trimmed, vector};
 use std::fmt;
 use thiserror::Error;
 
@@ -138,23 +138,23 @@ pub enum Cause {
     /// A load on a supported component.
     #[error(
         "the {} is loaded along {component}, where a support prescribes its motion; take it out of one of the two \
-         groups, or leave {component} to the load or to the support", facet(.nodes)
+         groups, or leave {component} to the load or to the support", face(.nodes)
     )]
     LoadedSupport { component: char, nodes: Vec<usize> },
-    /// Contact on a supported or loaded facet (the paper's §2.1 excludes it).
+    /// Contact on a supported or loaded face (the paper's §2.1 excludes it).
     #[error(
         "the {} is {by} and cannot touch a plane or another body too; take it out of one of the two groups{}",
-        facet(.nodes),
+        face(.nodes),
         if .nodes.len() == 1 { ", or give a plane in place of a bar that is held there" } else { "" }
     )]
     NotFree { nodes: Vec<usize>, by: HeldBy },
-    /// The facets that face a plane are all supported or loaded.
+    /// The faces that face a plane are all supported or loaded.
     #[error(
         "nothing can touch the plane: the {} faces it but is {by}, and no other part of the boundary is free; \
-         leave the edges free that are to touch the plane", facet(.nodes)
+         leave the edges free that are to touch the plane", face(.nodes)
     )]
     AllHeld {
-        /// Nodes of the first facet.
+        /// Nodes of the first face.
         nodes: Vec<usize>,
         by: HeldBy,
     },
@@ -171,11 +171,11 @@ pub enum Cause {
         vector(.outward), vector(.normal), named(.facing)
     )]
     NothingFaces { group: String, outward: Box<[f64]>, normal: Box<[f64]>, facing: Box<[String]> },
-    /// A facet that could touch two planes.
+    /// A face that could touch two planes.
     #[error(
         "the {} faces obstacle {first} as well as this one; name for each obstacle a `group` so that no edge lies \
          in two",
-        facet(.nodes)
+        face(.nodes)
     )]
     TwoPlanes {
         nodes: Vec<usize>,
@@ -254,7 +254,7 @@ pub enum Cause {
     /// An edge that could touch two bodies.
     #[error(
         "the {} of \"{}\" or \"{}\" {}, and a node can touch one only; name the surfaces by `groups` that share no \
-         node, or give the bodies a gap of more than an edge", facet(.nodes), .bodies[0], .bodies[1],
+         node, or give the bodies a gap of more than an edge", face(.nodes), .bodies[0], .bodies[1],
         if *.stated {
             "is already in a contact by `groups`: if that is the contact of these two, leave one of the two out; else \
              it would touch two"
@@ -275,18 +275,18 @@ pub enum Cause {
     )]
     SameBody { groups: [String; 2] },
     /// A side of an interface that is not on the boundary.
-    #[error("the {} is inside the body; only the boundary can touch another body", facet(.nodes))]
-    InnerFacet { nodes: Vec<usize> },
+    #[error("the {} is inside the body; only the boundary can touch another body", face(.nodes))]
+    InnerFace { nodes: Vec<usize> },
     /// A side of an interface that lies on several bodies.
     #[error(
         "group \"{group}\" lies on several bodies; it may do so if \"{other}\" is of one body and surfaces slide along \
          each other (`matching = false`); else give each of them a contact of its own"
     )]
     SeveralBodies { group: String, other: String },
-    /// A facet that does not face the other side of its interface.
+    /// A face that does not face the other side of its interface.
     #[error(
         "the {} does not face the other body: outward normals of the two groups must be within 60° of {} and {}; take \
-         it out of the group", facet(.nodes), vector(&.outward[0]), vector(&.outward[1])
+         it out of the group", face(.nodes), vector(&.outward[0]), vector(&.outward[1])
     )]
     TurnedAway { nodes: Vec<usize>, outward: Box<[Vec<f64>; 2]> },
     /// Nodes of an interface that do not face each other.
@@ -299,7 +299,7 @@ pub enum Cause {
     NotMatching { counts: [usize; 2], node: usize, offset: f64 },
     /// Edges of an interface that do not face each other.
     #[error(
-        "no edge of the other group faces the {}; give both groups the same edges, each once", facet(.nodes)
+        "no edge of the other group faces the {}; give both groups the same edges, each once", face(.nodes)
     )]
     EdgesDiffer { nodes: Vec<usize> },
     /// An interface of plane stress with plane strain.
@@ -321,13 +321,13 @@ pub enum Cause {
     #[error(
         "the {} and the {} slope by more than 10° at a line of symmetry, where contact forces cannot be normal to both \
          slopes of the whole model; take both out of their groups, with shorter edges if they are the only ones",
-        facet(&.edges[0]), facet(&.edges[1])
+        face(&.edges[0]), face(&.edges[1])
     )]
     TwoSlopes { edges: Box<[Vec<usize>; 2]> },
     /// Edges of one side of an interface that cover each other.
     #[error(
         "the {} and the {} of one group lie one above the other along the interface; take one of them out of the group",
-        facet(&.nodes[0]), facet(&.nodes[1])
+        face(&.nodes[0]), face(&.nodes[1])
     )]
     Covered { nodes: Box<[Vec<usize>; 2]> },
     /// Contacts that share nodes with different friction.

@@ -7,7 +7,7 @@ use super::bodies::{Contact, Found, ONE_DIRECTION};
 use super::sides::Bodies;
 use super::{Cause, InputError, Place};
 use crate::contact::dot;
-use crate::ids::{FacetId, NodeId};
+use crate::ids::{FaceId, NodeId};
 use crate::mesh::Mesh;
 use std::collections::BTreeMap;
 
@@ -16,8 +16,8 @@ pub(super) struct Proposal<'a> {
     pub(super) contact: &'a Contact,
     pub(super) place: Place,
     pub(super) source: Source<'a>,
-    /// The facets of both sides.
-    pub(super) facets: [Vec<FacetId>; 2],
+    /// The faces of both sides.
+    pub(super) faces: [Vec<FaceId>; 2],
 }
 
 /// Where a proposal is from.
@@ -28,10 +28,10 @@ pub(super) enum Source<'a> {
 }
 
 impl Source<'_> {
-    pub(super) fn facets(&self, mesh: &Mesh) -> [Vec<FacetId>; 2] {
+    pub(super) fn faces(&self, mesh: &Mesh) -> [Vec<FaceId>; 2] {
         match self {
             Self::Groups(groups) => {
-                groups.each_ref().map(|group| mesh.facet_groups().get(group).cloned().unwrap_or_default())
+                groups.each_ref().map(|group| mesh.face_groups().get(group).cloned().unwrap_or_default())
             }
             Self::Found(found) => found.seeing.clone(),
         }
@@ -55,8 +55,8 @@ pub(super) fn joined<const D: usize>(
     let mut owner: BTreeMap<NodeId, Member> = BTreeMap::new();
     for (contact, proposal) in proposals.iter().enumerate() {
         made.push(vec![Member { contact, common: 0 }]);
-        for (common, facets) in proposal.facets.iter().enumerate() {
-            for node in facets.iter().flat_map(|facet| bodies.mesh.facet_nodes::<D>(*facet)) {
+        for (common, faces) in proposal.faces.iter().enumerate() {
+            for node in faces.iter().flat_map(|face| bodies.mesh.face_nodes::<D>(*face)) {
                 let one = Member { contact, common };
                 let other = *owner.entry(node).or_insert(one);
                 if other.contact != contact && join(bodies, proposals, &mut made, [other, one]) {
@@ -84,7 +84,7 @@ fn join<const D: usize>(
         return false;
     }
     // Two contacts of the same bodies are one too many.
-    let body = |one: &Member| proposals[one.contact].facets[1 - one.common].first().map(|&facet| bodies.body_of(facet));
+    let body = |one: &Member| proposals[one.contact].faces[1 - one.common].first().map(|&face| bodies.body_of(face));
     let others = |at: usize, one: Member| -> Vec<Option<NodeId>> {
         if made[at].len() == 1 { vec![body(&one)] } else { made[at].iter().map(body).collect() }
     };
@@ -111,7 +111,7 @@ fn one_direction(mesh: &Mesh, pair: [(&Proposal<'_>, usize); 2]) -> bool {
     if let [Source::Found(first), Source::Found(second)] = pair.map(|(proposal, _)| proposal.source) {
         return first.shared == second.shared;
     }
-    let [a, b] = pair.map(|(proposal, common)| unit(&outward(mesh, &proposal.facets[common])));
+    let [a, b] = pair.map(|(proposal, common)| unit(&outward(mesh, &proposal.faces[common])));
     dot(&a, &b) >= ONE_DIRECTION
 }
 

@@ -5,7 +5,7 @@ use super::contacts::{self, Choice, Stated, Surfaces};
 use super::sides::Bodies;
 use super::{Cause, InputError, Place, candidates, pairs, sliding};
 use crate::contact::{ContactSurface, Interface, Obstacle, Plane};
-use crate::ids::{FacetId, NodeId};
+use crate::ids::{FaceId, NodeId};
 use crate::mesh::Mesh;
 
 /// All contact of a problem.
@@ -14,8 +14,8 @@ pub(super) struct AllContact<const D: usize> {
     pub(super) interfaces: Vec<Interface>,
     /// Where each interface is stated.
     pub(super) places: Vec<Place>,
-    /// Groups of facets of the interfaces that the mesh does not have.
-    pub(super) groups: Vec<(String, Vec<FacetId>)>,
+    /// Groups of faces of the interfaces that the mesh does not have.
+    pub(super) groups: Vec<(String, Vec<FaceId>)>,
 }
 
 /// Finds the surfaces that may touch, and makes the contact surface of them.
@@ -30,19 +30,19 @@ pub(super) fn all_contact<const D: usize>(
     let none = stated.contacts.is_empty() && !stated.automatic;
     let body = if none { Vec::new() } else { bodies.mesh.part_of_nodes() };
     let bodies = Bodies { body, ..bodies };
-    let facing_planes = surface.facets().iter().map(|facet| facet.facet).collect();
+    let facing_planes = surface.faces().iter().map(|face| face.face).collect();
     let Surfaces { choices, mut groups } = contacts::surfaces(&bodies, &stated, start, &facing_planes)?;
-    let with_groups = (!groups.is_empty()).then(|| bodies.mesh.clone().with_facet_groups(groups.clone()));
+    let with_groups = (!groups.is_empty()).then(|| bodies.mesh.clone().with_face_groups(groups.clone()));
     let Bodies { mesh, law, .. } = bodies;
     let mesh = with_groups.as_ref().unwrap_or(mesh);
-    let bodies = Bodies { mesh, law: &|facet| law(facet), ..bodies };
+    let bodies = Bodies { mesh, law: &|face| law(face), ..bodies };
     let (surface, interfaces) = with_interfaces(surface, &bodies, &choices, start.displacement)?;
     groups.retain(|(name, _)| interfaces.iter().any(|interface| interface.groups().contains(&name.as_str())));
     let places = choices.into_iter().map(|(_, place)| place).collect();
     Ok(AllContact { surface, interfaces, places, groups })
 }
 
-/// The planes with the facets that face them.
+/// The planes with the faces that face them.
 fn planes<const D: usize>(
     bodies: &Bodies<'_, D>,
     obstacles: Vec<Obstacle<D>>,
@@ -54,7 +54,7 @@ fn planes<const D: usize>(
         if obstacle.gap_to_place().is_none() {
             in_front(bodies.mesh, &plane, displacement).map_err(|cause| cause.at("obstacle", Some(index), "normal"))?;
         }
-        let (held, fixed) = (|f: FacetId| bodies.held[f.index()], |node: NodeId| bodies.fixed[node.index()]);
+        let (held, fixed) = (|f: FaceId| bodies.held[f.index()], |node: NodeId| bodies.fixed[node.index()]);
         candidates::add(&mut surface, bodies.mesh, (obstacle, &plane), held, fixed, |f| bodies.area(f))?;
         surface.place(surface.obstacles().len() - 1, displacement);
     }

@@ -25,7 +25,7 @@ mod start_of_contact;
 mod statement;
 pub(crate) mod symmetry;
 
-pub use any::{AnyContactFacet, AnyFacetLoad, AnyProblem, ProblemRef};
+pub use any::{AnyContactFace, AnyFaceLoad, AnyProblem, ProblemRef};
 pub use bodies::{Between, Contact};
 pub use builder::{Builder, Conditions, Initial};
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
@@ -37,7 +37,7 @@ pub use rigid_motion::RigidMotion;
 pub use statement::Statement;
 
 use crate::contact::{ContactSurface, Facing, Interface, Obstacle};
-use crate::ids::{ElementId, FacetId, NodeId};
+use crate::ids::{ElementId, FaceId, NodeId};
 use crate::load::Table;
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
@@ -55,12 +55,12 @@ pub struct PrescribedComponent {
     pub motion: Option<usize>,
 }
 
-/// A traction on one facet.
+/// A traction on one face.
 #[derive(Clone, Copy, Debug)]
-pub struct FacetLoad<const D: usize> {
-    /// The facet.
-    pub facet: FacetId,
-    /// Factor at each of the facet's nodes.
+pub struct FaceLoad<const D: usize> {
+    /// The face.
+    pub face: FaceId,
+    /// Factor at each of the face's nodes.
     pub profile: [f64; D],
     /// The table of the traction among [`Problem::traction_tables`].
     pub table: usize,
@@ -88,7 +88,7 @@ pub struct Problem<const D: usize, const N: usize> {
     supported: Vec<[bool; D]>,
     prescribed: Vec<PrescribedComponent>,
     motions: Vec<Table>,
-    facet_loads: Vec<FacetLoad<D>>,
+    face_loads: Vec<FaceLoad<D>>,
     traction_tables: Vec<Table>,
     body_loads: Vec<BodyLoad>,
     element_body_loads: Vec<Vec<u16>>,
@@ -172,11 +172,11 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         &self.initial_velocity
     }
 
-    /// Which components of a facet are supported.
+    /// Which components of a face are supported.
     #[inline]
     #[must_use]
-    pub fn supported(&self, facet: FacetId) -> [bool; D] {
-        self.supported[facet.index()]
+    pub fn supported(&self, face: FaceId) -> [bool; D] {
+        self.supported[face.index()]
     }
 
     /// All prescribed components of nodes, eq. \[4\], by node.
@@ -197,10 +197,10 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         which.motion.map_or(0.0, |m| self.motions[m].at(t)[0])
     }
 
-    /// Tractions on facets.
+    /// Tractions on faces.
     #[must_use]
-    pub fn facet_loads(&self) -> &[FacetLoad<D>] {
-        &self.facet_loads
+    pub fn face_loads(&self) -> &[FaceLoad<D>] {
+        &self.face_loads
     }
 
     /// Tables of the tractions (Pa).
@@ -234,10 +234,10 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     /// Forces of the tractions and body forces at an instant (N).
     pub fn external_forces(&self, t: f64, force: &mut [[f64; D]]) {
         force.fill([0.0; D]);
-        for load in &self.facet_loads {
-            let area = self.facet_area(load.facet);
-            let moments = Self::facet_moments(area, &self.facet_traction_at(load, t));
-            let nodes = self.mesh.facet_nodes::<D>(load.facet);
+        for load in &self.face_loads {
+            let area = self.face_area(load.face);
+            let moments = Self::face_moments(area, &self.face_traction_at(load, t));
+            let nodes = self.mesh.face_nodes::<D>(load.face);
             for (node, moment) in nodes.iter().zip(moments) {
                 (0..D).for_each(|c| force[node.index()][c] += moment[c]);
             }
@@ -253,7 +253,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     /// Whether any traction or body force acts.
     #[must_use]
     pub fn is_loaded(&self) -> bool {
-        !self.facet_loads.is_empty() || !self.body_loads.is_empty()
+        !self.face_loads.is_empty() || !self.body_loads.is_empty()
     }
 
     /// The obstacles.
@@ -374,11 +374,11 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         self.mesh.volume(element) * self.material(element).extent()
     }
 
-    /// Area of a boundary facet with section or thickness (m²).
+    /// Area of a boundary face with section or thickness (m²).
     #[must_use]
-    pub fn facet_area(&self, facet: FacetId) -> f64 {
-        let owner = self.mesh.facet(facet).owner;
-        self.mesh.normal_in::<D>(facet).1 * self.material(owner).extent()
+    pub fn face_area(&self, face: FaceId) -> f64 {
+        let owner = self.mesh.face(face).owner;
+        self.mesh.normal_in::<D>(face).1 * self.material(owner).extent()
     }
 
     /// Distances below this count as touching (m): 1e-12 of the body's size, so that landing
@@ -395,10 +395,10 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         1e-12 * self.initial_velocity.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()))
     }
 
-    /// Moments ∫ F φ_i (N) on a facet of area `area` of a density that is linear with these nodal values (Pa).
+    /// Moments ∫ F φ_i (N) on a face of area `area` of a density that is linear with these nodal values (Pa).
     #[inline]
     #[must_use]
-    pub fn facet_moments(area: f64, density: &[[f64; D]; D]) -> [[f64; D]; D] {
+    pub fn face_moments(area: f64, density: &[[f64; D]; D]) -> [[f64; D]; D] {
         let mut moments = [[0.0; D]; D];
         let factor = area / (D * (D + 1)) as f64;
         for c in 0..D {
@@ -410,9 +410,9 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         moments
     }
 
-    /// The traction on a loaded facet's nodes at an instant (Pa).
+    /// The traction on a loaded face's nodes at an instant (Pa).
     #[must_use]
-    pub fn facet_traction_at(&self, load: &FacetLoad<D>, t: f64) -> [[f64; D]; D] {
+    pub fn face_traction_at(&self, load: &FaceLoad<D>, t: f64) -> [[f64; D]; D] {
         let value = self.traction_tables[load.table].at(t);
         load.profile.map(|factor| std::array::from_fn(|c| factor * value[c]))
     }

@@ -2,8 +2,8 @@
 
 use super::Cause;
 use super::sides::{Bodies, Side, check_nodes};
-use crate::contact::{ContactFacet, ContactNode, ContactSurface, Frame, Interface, Obstacle, dot};
-use crate::ids::{FacetId, NodeId};
+use crate::contact::{ContactFace, ContactNode, ContactSurface, Frame, Interface, Obstacle, dot};
+use crate::ids::{FaceId, NodeId};
 use std::collections::BTreeMap;
 
 /// Nodes of a pair differ by less than this part of the shortest edge, but for a gap along the normal.
@@ -39,12 +39,12 @@ pub(super) fn add<const D: usize>(
         };
         let contacts = nodes.iter().enumerate().map(contact).collect::<Result<Vec<_>, Cause>>()?;
         let position: BTreeMap<NodeId, usize> = nodes.iter().enumerate().map(|(at, &node)| (node, at)).collect();
-        let facets = side.facets.iter().map(|&facet| {
-            let nodes = bodies.mesh.facet_nodes::<D>(facet).map(|node| position[&node]);
-            ContactFacet { facet, nodes, area: bodies.area(facet), obstacle }
+        let faces = side.faces.iter().map(|&face| {
+            let nodes = bodies.mesh.face_nodes::<D>(face).map(|node| position[&node]);
+            ContactFace { face, nodes, area: bodies.area(face), obstacle }
         });
         let facing = Obstacle::surface(frame, interface.law(), interface.groups()[k].to_string(), None);
-        surface.add(facing, contacts, facets);
+        surface.add(facing, contacts, faces);
     }
     Ok(())
 }
@@ -75,8 +75,7 @@ impl<const D: usize> Bodies<'_, D> {
         if counts[0] != counts[1] {
             return Err(Cause::NotMatching { counts, node: first.nodes[0].index(), offset: 0.0 });
         }
-        let shortest =
-            first.facets.iter().map(|&facet| self.mesh.normal_in::<D>(facet).1).fold(f64::INFINITY, f64::min);
+        let shortest = first.faces.iter().map(|&face| self.mesh.normal_in::<D>(face).1).fold(f64::INFINITY, f64::min);
         let frame = Frame::new(*normal);
         let offset = |a: NodeId, b: NodeId| {
             let apart = std::array::from_fn(|c| points[a.index()][c] - points[b.index()][c]);
@@ -91,19 +90,19 @@ impl<const D: usize> Bodies<'_, D> {
         };
         let partners = first.nodes.iter().map(partner).collect::<Result<Vec<_>, _>>()?;
         let of: BTreeMap<NodeId, NodeId> = first.nodes.iter().copied().zip(partners.iter().copied()).collect();
-        let edges = |facets: &[FacetId], image: &dyn Fn(NodeId) -> NodeId| -> BTreeMap<Vec<NodeId>, FacetId> {
-            let sorted = |facet: &FacetId| {
-                let mut nodes = self.mesh.facet_nodes::<D>(*facet).map(image).to_vec();
+        let edges = |faces: &[FaceId], image: &dyn Fn(NodeId) -> NodeId| -> BTreeMap<Vec<NodeId>, FaceId> {
+            let sorted = |face: &FaceId| {
+                let mut nodes = self.mesh.face_nodes::<D>(*face).map(image).to_vec();
                 nodes.sort_unstable();
-                (nodes, *facet)
+                (nodes, *face)
             };
-            facets.iter().map(sorted).collect()
+            faces.iter().map(sorted).collect()
         };
-        let (ours, theirs) = (edges(&first.facets, &|node| of[&node]), edges(&second.facets, &|node| node));
+        let (ours, theirs) = (edges(&first.faces, &|node| of[&node]), edges(&second.faces, &|node| node));
         let alone = ours.iter().find(|(nodes, _)| !theirs.contains_key(*nodes));
         match alone.or_else(|| theirs.iter().find(|(nodes, _)| !ours.contains_key(*nodes))) {
-            Some((_, facet)) => {
-                Err(Cause::EdgesDiffer { nodes: self.mesh.facet_nodes::<D>(*facet).map(NodeId::index).to_vec() })
+            Some((_, face)) => {
+                Err(Cause::EdgesDiffer { nodes: self.mesh.face_nodes::<D>(*face).map(NodeId::index).to_vec() })
             }
             None => Ok(partners),
         }

@@ -1,6 +1,6 @@
 //! The same problem under other numbers of nodes and elements.
 
-use super::{BodyLoad, FacetLoad, PrescribedComponent, Problem};
+use super::{BodyLoad, FaceLoad, PrescribedComponent, Problem};
 use crate::mesh::Numbering;
 
 impl<const D: usize, const N: usize> Problem<D, N> {
@@ -13,16 +13,16 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         let nodal = |field: &[[f64; D]]| nodes.iter().map(|node| field[node.index()]).collect();
 
         let mut supported = vec![[false; D]; self.supported.len()];
-        new.facet.iter().zip(&self.supported).for_each(|(&facet, held)| supported[facet as usize] = *held);
+        new.face.iter().zip(&self.supported).for_each(|(&face, held)| supported[face as usize] = *held);
         let renamed = |p: &PrescribedComponent| PrescribedComponent { node: new.node(p.node), ..*p };
         let mut prescribed: Vec<_> = self.prescribed.iter().map(renamed).collect();
         prescribed.sort_unstable_by_key(|p| (p.node, p.component));
-        let facet_load = |load: &FacetLoad<D>| {
-            let nodes = &self.mesh.facet_nodes::<D>(load.facet);
-            FacetLoad { facet: new.facet(load.facet), profile: new.along(nodes, load.profile), ..*load }
+        let face_load = |load: &FaceLoad<D>| {
+            let nodes = &self.mesh.face_nodes::<D>(load.face);
+            FaceLoad { face: new.face(load.face), profile: new.along(nodes, load.profile), ..*load }
         };
-        let mut facet_loads: Vec<_> = self.facet_loads.iter().map(facet_load).collect();
-        facet_loads.sort_unstable_by_key(|load| (load.table, load.facet));
+        let mut face_loads: Vec<_> = self.face_loads.iter().map(face_load).collect();
+        face_loads.sort_unstable_by_key(|load| (load.table, load.face));
         let body_load = |load: &BodyLoad| {
             let mut nodal_volume: Vec<_> = load.nodal_volume.iter().map(|&(node, v)| (new.node(node), v)).collect();
             nodal_volume.sort_unstable_by_key(|(node, _)| *node);
@@ -39,7 +39,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
             supported,
             prescribed,
             motions: self.motions.clone(),
-            facet_loads,
+            face_loads,
             traction_tables: self.traction_tables.clone(),
             body_loads: self.body_loads.iter().map(body_load).collect(),
             element_body_loads: self.element_body_loads.first().map_or_else(Vec::new, body_forces),

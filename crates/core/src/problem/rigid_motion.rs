@@ -89,7 +89,7 @@ impl RigidMotion {
 mod tests {
     use super::*;
     use crate::material::Elastic;
-    use crate::mesh::{ElementGroups, FacetGroups, Mesh};
+    use crate::mesh::{ElementGroups, FaceGroups, Mesh};
     use crate::problem::{BarProblem, TriangleProblem};
 
     /// Two squares of 1 m, apart, of 2 kg each.
@@ -97,7 +97,7 @@ mod tests {
         let here = Mesh::rectangle(1.0, 1.0, 3, 2).unwrap();
         let points = here.points_in::<2>().iter().map(|[x, y]| [x + 5.0, *y]).collect();
         let cells: Vec<_> = here.nodes_of::<3>().iter().map(|cell| cell.map(|node| node.index())).collect();
-        let there = Mesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new()).unwrap();
+        let there = Mesh::new(points, &cells, &FaceGroups::new(), &ElementGroups::new()).unwrap();
         let mesh = Mesh::joined(&[("a", &here), ("b", &there)]).unwrap();
         let law = Elastic::plane_strain(1.0, 0.2, 2.0, 1.0).unwrap();
         TriangleProblem::builder(mesh).material(law).build().unwrap()

@@ -55,8 +55,8 @@ impl<const D: usize> Bodies<'_, D> {
         if (outside[0] - outside[1]).abs() > OVERHANG * lengths[0].max(lengths[1]) {
             return on_flatter(usize::from(outside[1] < outside[0]));
         }
-        if sides[0].facets.len() != sides[1].facets.len() {
-            return on_flatter(usize::from(sides[1].facets.len() > sides[0].facets.len()));
+        if sides[0].faces.len() != sides[1].faces.len() {
+            return on_flatter(usize::from(sides[1].faces.len() > sides[0].faces.len()));
         }
         on_flatter(self.weaker(sides, &direction, displacement).unwrap_or_else(|| usize::from(!is_upward(&direction))))
     }
@@ -97,8 +97,8 @@ impl<const D: usize> Bodies<'_, D> {
     fn spread(&self, side: &Side<D>) -> f64 {
         let mean = unit(&side.of_whole);
         let (mut sum, mut length) = (0.0, 0.0);
-        for &facet in &side.facets {
-            let (normal, area) = self.mesh.normal_in::<D>(facet);
+        for &face in &side.faces {
+            let (normal, area) = self.mesh.normal_in::<D>(face);
             let apart: [f64; D] = std::array::from_fn(|c| normal[c] - mean[c]);
             sum += area * dot(&apart, &apart);
             length += area;
@@ -126,8 +126,8 @@ impl<const D: usize> Bodies<'_, D> {
     /// The mean modulus λ + 2G = ρc² at the edges of a side, by length (Pa).
     fn modulus(&self, side: &Side<D>) -> f64 {
         let (mut sum, mut length) = (0.0, 0.0);
-        for &facet in &side.facets {
-            let (law, area) = ((self.law)(facet), self.mesh.normal_in::<D>(facet).1);
+        for &face in &side.faces {
+            let (law, area) = ((self.law)(face), self.mesh.normal_in::<D>(face).1);
             sum += area * law.wave_modulus();
             length += area;
         }
@@ -147,7 +147,7 @@ impl<const D: usize> Bodies<'_, D> {
 
     /// The ends of the edges of a side (m).
     fn edges(&self, side: &Side<D>, displacement: &[[f64; D]]) -> Vec<[[f64; D]; 2]> {
-        let nodes = side.facets.iter().map(|facet| self.mesh.facet_nodes::<D>(*facet));
+        let nodes = side.faces.iter().map(|face| self.mesh.face_nodes::<D>(*face));
         nodes.map(|nodes| std::array::from_fn(|k| self.place(nodes[k.min(nodes.len() - 1)], displacement))).collect()
     }
 

@@ -6,7 +6,7 @@ use super::symmetry::{self, Motion, NodeLines, SymmetryLine};
 use super::{Cause, HeldBy, boundary};
 use crate::border::cut;
 use crate::contact::{ContactSurface, Interface, Obstacle, dot};
-use crate::ids::{ElementId, FacetId, NodeId};
+use crate::ids::{ElementId, FaceId, NodeId};
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ pub(super) struct Bodies<'m, const D: usize> {
     pub(super) body: Vec<NodeId>,
     pub(super) held: Vec<Option<HeldBy>>,
     pub(super) fixed: Vec<[bool; D]>,
-    /// Which components of each facet supports hold.
+    /// Which components of each face supports hold.
     pub(super) supported: &'m [[bool; D]],
     /// The lines of symmetry on which each node is.
     pub(super) lines: Vec<NodeLines<D>>,
@@ -26,8 +26,8 @@ pub(super) struct Bodies<'m, const D: usize> {
     pub(super) velocity: &'m [[f64; D]],
     /// The mass of each node (kg).
     pub(super) mass: &'m [f64],
-    /// The law of the element that a facet belongs to.
-    pub(super) law: &'m dyn Fn(FacetId) -> &'m Elastic,
+    /// The law of the element that a face belongs to.
+    pub(super) law: &'m dyn Fn(FaceId) -> &'m Elastic,
 }
 
 /// A normal with a smaller component stands across the others.
@@ -36,7 +36,7 @@ const UPRIGHT: f64 = 1e-9;
 /// One side of an interface.
 pub(super) struct Side<const D: usize> {
     /// Those of one body after those of the other.
-    pub(super) facets: Vec<FacetId>,
+    pub(super) faces: Vec<FaceId>,
     /// Nodes along the boundary.
     pub(super) nodes: Vec<NodeId>,
     /// Σ of outward normals times areas (m² or 1).
@@ -48,14 +48,14 @@ pub(super) struct Side<const D: usize> {
 }
 
 impl<const D: usize> Bodies<'_, D> {
-    /// Area of a facet with section or thickness (m²).
-    pub(super) fn area(&self, facet: FacetId) -> f64 {
-        self.mesh.normal_in::<D>(facet).1 * (self.law)(facet).extent()
+    /// Area of a face with section or thickness (m²).
+    pub(super) fn area(&self, face: FaceId) -> f64 {
+        self.mesh.normal_in::<D>(face).1 * (self.law)(face).extent()
     }
 
-    /// ρc² of the element at a facet, times its section or thickness (Pa·m in the plane).
-    pub(super) fn stiffness(&self, facet: FacetId) -> f64 {
-        let law = (self.law)(facet);
+    /// ρc² of the element at a face, times its section or thickness (Pa·m in the plane).
+    pub(super) fn stiffness(&self, face: FaceId) -> f64 {
+        let law = (self.law)(face);
         law.wave_modulus() * law.extent()
     }
 
@@ -74,9 +74,9 @@ impl<const D: usize> Bodies<'_, D> {
             let group = interface.groups()[usize::from(!several[0])].to_string();
             return Err(Cause::SeveralBodies { group, other: interface.groups()[usize::from(several[0])].to_string() });
         }
-        let hypothesis = |facet: &FacetId| (self.law)(*facet).hypothesis();
-        let first = hypothesis(&sides[0].facets[0]);
-        let all = sides.iter().flat_map(|side| &side.facets).all(|facet| hypothesis(facet) == first);
+        let hypothesis = |face: &FaceId| (self.law)(*face).hypothesis();
+        let first = hypothesis(&sides[0].faces[0]);
+        let all = sides.iter().flat_map(|side| &side.faces).all(|face| hypothesis(face) == first);
         if all { Ok(sides) } else { Err(Cause::PlanesDiffer) }
     }
 
@@ -98,9 +98,9 @@ impl<const D: usize> Bodies<'_, D> {
     pub(super) fn check_directions(&self, sides: [&Side<D>; 2], normal: &[f64; D]) -> Result<(), Cause> {
         let away = normal.map(|n| -n);
         for (side, outward) in sides.into_iter().zip([&away, normal]) {
-            let faces = |&facet: &FacetId| dot(&self.mesh.normal_in::<D>(facet).0, outward) >= FACES;
-            if let Some(facet) = side.facets.iter().find(|facet| !faces(facet)) {
-                let nodes = self.mesh.facet_nodes::<D>(*facet).map(NodeId::index).to_vec();
+            let faces = |&face: &FaceId| dot(&self.mesh.normal_in::<D>(face).0, outward) >= FACES;
+            if let Some(face) = side.faces.iter().find(|face| !faces(face)) {
+                let nodes = self.mesh.face_nodes::<D>(*face).map(NodeId::index).to_vec();
                 let outward = Box::new([away.to_vec(), normal.to_vec()]);
                 return Err(Cause::TurnedAway { nodes, outward });
             }
@@ -108,28 +108,28 @@ impl<const D: usize> Bodies<'_, D> {
         Ok(())
     }
 
-    /// The facets of a group, which are free.
+    /// The faces of a group, which are free.
     fn side(&self, group: &str) -> Result<Side<D>, Cause> {
-        let mut facets = boundary::facet_group(self.mesh, group)?.to_vec();
-        let nodes_of = |facet: FacetId| self.mesh.facet_nodes::<D>(facet);
-        let shown = |facet: FacetId| nodes_of(facet).map(NodeId::index).to_vec();
-        if let Some(&facet) = facets.iter().find(|&&facet| self.mesh.facet(facet).neighbour.is_some()) {
-            return Err(Cause::InnerFacet { nodes: shown(facet) });
+        let mut faces = boundary::face_group(self.mesh, group)?.to_vec();
+        let nodes_of = |face: FaceId| self.mesh.face_nodes::<D>(face);
+        let shown = |face: FaceId| nodes_of(face).map(NodeId::index).to_vec();
+        if let Some(&face) = faces.iter().find(|&&face| self.mesh.face(face).neighbour.is_some()) {
+            return Err(Cause::InnerFace { nodes: shown(face) });
         }
-        if let Some((facet, by)) = facets.iter().find_map(|&facet| Some((facet, self.held[facet.index()]?))) {
-            return Err(Cause::NotFree { nodes: shown(facet), by });
+        if let Some((face, by)) = faces.iter().find_map(|&face| Some((face, self.held[face.index()]?))) {
+            return Err(Cause::NotFree { nodes: shown(face), by });
         }
-        facets.sort_by_key(|&facet| self.body_of(facet));
-        let mut bodies: Vec<NodeId> = facets.iter().map(|&facet| self.body_of(facet)).collect();
+        faces.sort_by_key(|&face| self.body_of(face));
+        let mut bodies: Vec<NodeId> = faces.iter().map(|&face| self.body_of(face)).collect();
         bodies.dedup();
-        let nodes = along_the_boundary(self.mesh, &facets);
-        let outward = cut(&outward(self.mesh, &facets));
-        Ok(Side { of_whole: outward, nodes, facets, outward, bodies })
+        let nodes = along_the_boundary(self.mesh, &faces);
+        let outward = cut(&outward(self.mesh, &faces));
+        Ok(Side { of_whole: outward, nodes, faces, outward, bodies })
     }
 
     /// The line of symmetry on which an edge is, if its way is known before the run.
-    pub(super) fn line_of(&self, facet: FacetId) -> Option<SymmetryLine> {
-        let line = symmetry::line_of(self.mesh, &self.supported[facet.index()], &self.lines, facet)?;
+    pub(super) fn line_of(&self, face: FaceId) -> Option<SymmetryLine> {
+        let line = symmetry::line_of(self.mesh, &self.supported[face.index()], &self.lines, face)?;
         matches!(line.motion, Motion::Uniform(_)).then_some(line)
     }
 
@@ -152,9 +152,9 @@ impl<const D: usize> Bodies<'_, D> {
         line.has((&self.mesh.points_in::<D>()[node.index()], &self.lines[node.index()]), self.mesh.size())
     }
 
-    /// The body of a facet, by its first node.
-    pub(super) fn body_of(&self, facet: FacetId) -> NodeId {
-        self.body[self.mesh.facet_nodes::<D>(facet)[0].index()]
+    /// The body of a face, by its first node.
+    pub(super) fn body_of(&self, face: FaceId) -> NodeId {
+        self.body[self.mesh.face_nodes::<D>(face)[0].index()]
     }
 }
 

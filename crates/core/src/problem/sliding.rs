@@ -6,17 +6,17 @@ use super::sides::{Bodies, Side, check_nodes};
 use super::symmetry::{Motion, ONE_PLACE};
 use super::{Cause, candidates};
 use crate::contact::{
-    ContactFacet, ContactNode, ContactSurface, Interface, Obstacle, Side as Line, SlidingSurfaces, dot, tangent,
+    ContactFace, ContactNode, ContactSurface, Interface, Obstacle, Side as Line, SlidingSurfaces, dot, tangent,
 };
-use crate::ids::{FacetId, NodeId};
+use crate::ids::{FaceId, NodeId};
 
 /// The cosine of 10°: an edge with a larger slope does not stand across a line of symmetry.
 const RIDGE: f64 = 0.984_807_753_012_208;
 /// Velocities that differ by less than this part of the largest are one.
 const ONE_SPEED: f64 = 1e-9;
 
-/// Facets of a body in ascending order of ξ, each with its nodes and their ξ (m).
-type Chain = Vec<(FacetId, [(f64, NodeId); 2])>;
+/// Faces of a body in ascending order of ξ, each with its nodes and their ξ (m).
+type Chain = Vec<(FaceId, [(f64, NodeId); 2])>;
 
 /// Adds an interface to the contact surface, as two obstacles: for the first group the surface of the second one, and
 /// the other way round.
@@ -87,12 +87,12 @@ impl<const D: usize> Bodies<'_, D> {
     /// two slopes.
     fn check_ridge(&self, sides: &[Side<D>; 2], normal: &[f64; D]) -> Result<(), Cause> {
         for line in self.common_lines(sides) {
-            let slopes = |&&facet: &&FacetId| {
-                let meets_line = self.mesh.facet_nodes::<D>(facet).iter().any(|node| self.is_on(&line, *node));
-                meets_line && dot(&self.mesh.normal_in::<D>(facet).0, normal).abs() < RIDGE
+            let slopes = |&&face: &&FaceId| {
+                let meets_line = self.mesh.face_nodes::<D>(face).iter().any(|node| self.is_on(&line, *node));
+                meets_line && dot(&self.mesh.normal_in::<D>(face).0, normal).abs() < RIDGE
             };
-            if let [Some(first), Some(second)] = sides.each_ref().map(|side| side.facets.iter().find(slopes)) {
-                let edges = [first, second].map(|facet| self.mesh.facet_nodes::<D>(*facet));
+            if let [Some(first), Some(second)] = sides.each_ref().map(|side| side.faces.iter().find(slopes)) {
+                let edges = [first, second].map(|face| self.mesh.face_nodes::<D>(*face));
                 let edges = edges.map(|nodes| nodes.map(NodeId::index).to_vec());
                 return Err(Cause::TwoSlopes { edges: Box::new(edges) });
             }
@@ -113,12 +113,12 @@ impl<const D: usize> Bodies<'_, D> {
         let along = tangent(normal);
         let chains = self.chains(side, |node| dot(&from_origin(node), &along))?;
         let (start, obstacle) = (surface.nodes().len(), surface.obstacles().len());
-        let (mut nodes, mut xi, mut edges, mut facets) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut nodes, mut xi, mut edges, mut faces) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut compliance = Vec::new();
         let mut starts = Vec::with_capacity(chains.len());
         for chain in chains {
             starts.push(nodes.len());
-            for (facet, ends) in chain {
+            for (face, ends) in chain {
                 if nodes.last() != Some(&ends[0].1) {
                     nodes.push(ends[0].1);
                     xi.push(ends[0].0);
@@ -127,9 +127,9 @@ impl<const D: usize> Bodies<'_, D> {
                 nodes.push(ends[1].1);
                 xi.push(ends[1].0);
                 edges.push(first);
-                compliance.push(1.0 / self.stiffness(facet));
-                let nodes = self.mesh.facet_nodes::<D>(facet).map(|node| first + usize::from(node == ends[1].1));
-                facets.push(ContactFacet { facet, nodes, area: self.area(facet), obstacle });
+                compliance.push(1.0 / self.stiffness(face));
+                let nodes = self.mesh.face_nodes::<D>(face).map(|node| first + usize::from(node == ends[1].1));
+                faces.push(ContactFace { face, nodes, area: self.area(face), obstacle });
             }
         }
         let contact = |&node: &NodeId| {
@@ -149,28 +149,28 @@ impl<const D: usize> Bodies<'_, D> {
         let steady: Vec<bool> = nodes.iter().map(|node| self.lines[node.index()].iter().any(uniform)).collect();
         let fastest = velocity.iter().fold(0.0_f64, |most, v| most.max(dot(v, v).sqrt()));
         let velocity: Vec<f64> = velocity.iter().map(|velocity| dot(velocity, &along)).collect();
-        surface.add(facing, contacts, facets);
+        surface.add(facing, contacts, faces);
         let line = Line::new(start, [xi, eta], edges, &starts).held(&velocity, &steady, ONE_SPEED * fastest);
         Ok(line.with_compliance(compliance))
     }
 
-    /// The facets of each body of a side, of bodies in ascending order of their first ξ.
+    /// The faces of each body of a side, of bodies in ascending order of their first ξ.
     fn chains(&self, side: &Side<D>, xi: impl Fn(NodeId) -> f64) -> Result<Vec<Chain>, Cause> {
-        let of_body = side.facets.chunk_by(|&a, &b| self.body_of(a) == self.body_of(b));
-        let mut chains = of_body.map(|facets| self.chain(facets, &xi)).collect::<Result<Vec<_>, Cause>>()?;
+        let of_body = side.faces.chunk_by(|&a, &b| self.body_of(a) == self.body_of(b));
+        let mut chains = of_body.map(|faces| self.chain(faces, &xi)).collect::<Result<Vec<_>, Cause>>()?;
         chains.sort_by(|a, b| a[0].1[0].0.total_cmp(&b[0].1[0].0));
         Ok(chains)
     }
 
-    /// Facets of a body along the interface, of which none covers another one.
-    fn chain(&self, facets: &[FacetId], xi: impl Fn(NodeId) -> f64) -> Result<Chain, Cause> {
-        let ends = |&facet: &FacetId| {
-            let nodes = &self.mesh.facet_nodes::<D>(facet);
+    /// Faces of a body along the interface, of which none covers another one.
+    fn chain(&self, faces: &[FaceId], xi: impl Fn(NodeId) -> f64) -> Result<Chain, Cause> {
+        let ends = |&face: &FaceId| {
+            let nodes = &self.mesh.face_nodes::<D>(face);
             let mut ends = [nodes[0], nodes[D - 1]].map(|node| (xi(node), node));
             ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-            (facet, ends)
+            (face, ends)
         };
-        let mut chain: Chain = facets.iter().map(ends).collect();
+        let mut chain: Chain = faces.iter().map(ends).collect();
         chain.sort_by(|a, b| a.1[0].0.total_cmp(&b.1[0].0));
         for pair in chain.windows(2) {
             let [low, high] = [pair[1].1[0].0, pair[0].1[1].0];

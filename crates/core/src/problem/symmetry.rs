@@ -2,7 +2,7 @@
 
 use super::{PrescribedComponent, Problem};
 use crate::contact::ContactNode;
-use crate::ids::FacetId;
+use crate::ids::FaceId;
 use crate::load::Table;
 use crate::mesh::Mesh;
 
@@ -66,9 +66,9 @@ pub(crate) fn node_lines<const D: usize>(
 fn mirrors<const D: usize>(mesh: &Mesh, supported: &[[bool; D]]) -> Vec<[bool; D]> {
     let mut mirrors = vec![[false; D]; mesh.node_count()];
     for (index, supported) in supported.iter().enumerate().filter(|(_, supported)| supported.contains(&true)) {
-        let facet = FacetId::new(index);
-        for c in (0..D).filter(|&c| supported[c] && mesh.stands_across(facet, c)) {
-            mesh.facet(facet).nodes.iter().for_each(|node| mirrors[node.index()][c] = true);
+        let face = FaceId::new(index);
+        for c in (0..D).filter(|&c| supported[c] && mesh.stands_across(face, c)) {
+            mesh.face(face).nodes.iter().for_each(|node| mirrors[node.index()][c] = true);
         }
     }
     mirrors
@@ -96,12 +96,12 @@ pub(crate) fn line_of<const D: usize>(
     mesh: &Mesh,
     supported: &[bool; D],
     lines: &[NodeLines<D>],
-    facet: FacetId,
+    face: FaceId,
 ) -> Option<SymmetryLine> {
     let mut held = (0..D).filter(|&c| supported[c]);
     let across = held.next().filter(|_| D == 2 && held.next().is_none())?;
-    let nodes = mesh.facet_nodes::<D>(facet);
-    let motion = lines[nodes[0].index()][across].filter(|_| mesh.stands_across(facet, across))?;
+    let nodes = mesh.face_nodes::<D>(face);
+    let motion = lines[nodes[0].index()][across].filter(|_| mesh.stands_across(face, across))?;
     Some(SymmetryLine { across, place: mesh.points_in::<D>()[nodes[0].index()][across], motion })
 }
 

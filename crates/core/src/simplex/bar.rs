@@ -20,7 +20,7 @@ impl Simplex<1, 2> for Bar {
     }
 
     /// From left to right.
-    fn facets_around(&self) -> [[Option<usize>; 2]; 2] {
+    fn faces_around(&self) -> [[Option<usize>; 2]; 2] {
         [[Some(1), None], [None, Some(0)]]
     }
 
@@ -28,7 +28,7 @@ impl Simplex<1, 2> for Bar {
         &[[[0, 0], [0, 1]], [[0, 1], [1, 1]]]
     }
 
-    fn facet_children(&self) -> &'static [Child<1>] {
+    fn face_children(&self) -> &'static [Child<1>] {
         &[[[0, 0]]]
     }
 }

@@ -70,10 +70,10 @@ pub fn simplex<const D: usize, const N: usize>() -> &'static dyn Simplex<D, N> {
 /// between them.
 pub type Child<const N: usize> = [[usize; 2]; N];
 
-/// Mean over a facet of a quantity, given at the weights of the facet's nodes: exact if it is quadratic on each piece
+/// Mean over a face of a quantity, given at the weights of the face's nodes: exact if it is quadratic on each piece
 /// on which the linear `switch` with these nodal values keeps its sign. On a line, two Gauss points on each side of the
 /// place where the sign changes.
-pub fn facet_mean<const D: usize>(switch: &[f64; D], quantity: impl Fn(&[f64; D]) -> f64) -> f64 {
+pub fn face_mean<const D: usize>(switch: &[f64; D], quantity: impl Fn(&[f64; D]) -> f64) -> f64 {
     let (first, last) = (switch[0], switch[D - 1]);
     if D == 1 {
         return quantity(&[1.0; D]);
@@ -96,7 +96,7 @@ mod sealed {
     impl Sealed for super::Triangle {}
 }
 
-/// One kind of element. Facet k lies opposite to node k.
+/// One kind of element. Face k lies opposite to node k.
 pub trait Simplex<const D: usize, const N: usize>: sealed::Sealed + Debug + Send + Sync {
     /// Its shape.
     fn shape(&self) -> Shape;
@@ -110,15 +110,15 @@ pub trait Simplex<const D: usize, const N: usize>: sealed::Sealed + Debug + Send
     /// Directions, of any length, one of which separates two elements if no line from corner to corner does.
     fn separating_directions(&self, a: &[[f64; D]; N], b: &[[f64; D]; N]) -> Vec<[f64; D]>;
 
-    /// For each node, the first and the last facet of the element at it, in counterclockwise order around the node; a
+    /// For each node, the first and the last face of the element at it, in counterclockwise order around the node; a
     /// bar has one of them.
-    fn facets_around(&self) -> [[Option<usize>; 2]; N];
+    fn faces_around(&self) -> [[Option<usize>; 2]; N];
 
     /// The elements that an element is cut into by the middles of its edges.
     fn children(&self) -> &'static [Child<N>];
 
-    /// The facets that a facet is cut into by the middles of its edges.
-    fn facet_children(&self) -> &'static [Child<D>];
+    /// The faces that a face is cut into by the middles of its edges.
+    fn face_children(&self) -> &'static [Child<D>];
 
     /// Whether a point is in the element with these corners, positively oriented: with the point in place of a corner,
     /// no signed volume is below `least` (m or m²).
@@ -154,9 +154,9 @@ pub struct CellGeometry<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> CellGeometry<D, N> {
-    /// Outward unit normal and measure of the facet opposite to local node `k`: −∇φ_k/|∇φ_k| and D·|E|·|∇φ_k|.
+    /// Outward unit normal and measure of the face opposite to local node `k`: −∇φ_k/|∇φ_k| and D·|E|·|∇φ_k|.
     #[must_use]
-    pub fn facet_normal(&self, k: usize) -> ([f64; D], f64) {
+    pub fn face_normal(&self, k: usize) -> ([f64; D], f64) {
         let norm = self.gradients[k].iter().map(|g| g * g).sum::<f64>().sqrt();
         (self.gradients[k].map(|g| -g / norm), D as f64 * self.volume * norm)
     }
@@ -181,11 +181,11 @@ mod tests {
     fn normals_close_the_boundary() {
         let cell = Triangle {}.geometry(&[[0.0, 0.0], [2.0, 0.1], [0.3, 1.7]]);
         for c in 0..2 {
-            let sum: f64 = (0..3).map(|k| cell.facet_normal(k)).map(|(n, length)| n[c] * length).sum();
+            let sum: f64 = (0..3).map(|k| cell.face_normal(k)).map(|(n, length)| n[c] * length).sum();
             assert!(sum.abs() < 1e-14);
         }
         let bar = Bar {}.geometry(&[[1.0], [3.0]]);
-        assert_eq!(bar.facet_normal(0), ([1.0], 1.0));
-        assert_eq!(bar.facet_normal(1), ([-1.0], 1.0));
+        assert_eq!(bar.face_normal(0), ([1.0], 1.0));
+        assert_eq!(bar.face_normal(1), ([-1.0], 1.0));
     }
 }

@@ -24,7 +24,7 @@ impl Simplex<2, 3> for Triangle {
         [a, b].into_iter().flat_map(|t| [[&t[0], &t[1]], [&t[1], &t[2]], [&t[2], &t[0]]]).map(normal).collect()
     }
 
-    fn facets_around(&self) -> [[Option<usize>; 2]; 3] {
+    fn faces_around(&self) -> [[Option<usize>; 2]; 3] {
         [[Some(2), Some(1)], [Some(0), Some(2)], [Some(1), Some(0)]]
     }
 
@@ -32,7 +32,7 @@ impl Simplex<2, 3> for Triangle {
         &[[[0, 0], [0, 1], [0, 2]], [[0, 1], [1, 1], [1, 2]], [[0, 2], [1, 2], [2, 2]], [[0, 1], [1, 2], [0, 2]]]
     }
 
-    fn facet_children(&self) -> &'static [Child<2>] {
+    fn face_children(&self) -> &'static [Child<2>] {
         &[[[0, 0], [0, 1]], [[0, 1], [1, 1]]]
     }
 }

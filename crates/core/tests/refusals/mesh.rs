@@ -1,22 +1,22 @@
 //! Each [`MeshError`] from a bad mesh.
 
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh, MeshError};
+use percute_core::mesh::{ElementGroups, FaceGroups, Mesh, MeshError};
 
 fn triangles(points: &[[f64; 2]], cells: &[[usize; 3]]) -> Result<Mesh, MeshError> {
-    Mesh::new(points.to_vec(), cells, &FacetGroups::new(), &ElementGroups::new())
+    Mesh::new(points.to_vec(), cells, &FaceGroups::new(), &ElementGroups::new())
 }
 
 fn bars(points: &[[f64; 1]], cells: &[[usize; 2]]) -> Result<Mesh, MeshError> {
-    Mesh::new(points.to_vec(), cells, &FacetGroups::new(), &ElementGroups::new())
+    Mesh::new(points.to_vec(), cells, &FaceGroups::new(), &ElementGroups::new())
 }
 
 /// The corners of a unit square, and (2, 0).
 const CORNERS: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [2.0, 0.0]];
 
-fn square_with(facets: &[(&str, [usize; 2])], elements: &[(&str, usize)]) -> Result<Mesh, MeshError> {
-    let facets = facets.iter().map(|(name, nodes)| (name.to_string(), vec![*nodes])).collect();
+fn square_with(faces: &[(&str, [usize; 2])], elements: &[(&str, usize)]) -> Result<Mesh, MeshError> {
+    let faces = faces.iter().map(|(name, nodes)| (name.to_string(), vec![*nodes])).collect();
     let elements = elements.iter().map(|(name, element)| (name.to_string(), vec![*element])).collect();
-    Mesh::new(CORNERS[..4].to_vec(), &[[0, 1, 2], [0, 2, 3]], &facets, &elements)
+    Mesh::new(CORNERS[..4].to_vec(), &[[0, 1, 2], [0, 2, 3]], &faces, &elements)
 }
 
 #[test]
@@ -88,12 +88,12 @@ fn degenerate_elements() {
 }
 
 #[test]
-fn facets_of_three_elements() {
+fn faces_of_three_elements() {
     let points = [[0.0, 0.0], [1.0, 0.0], [0.5, 1.0], [0.5, -1.0], [0.5, 2.0]];
     let error = triangles(&points, &[[0, 1, 2], [0, 3, 1], [0, 1, 4]]).unwrap_err();
-    assert_eq!(error, MeshError::NonManifoldFacet { nodes: vec![0, 1], elements: vec![0, 1, 2] });
+    assert_eq!(error, MeshError::NonManifoldFace { nodes: vec![0, 1], elements: vec![0, 1, 2] });
     let error = bars(&[[0.0], [1.0], [2.0], [3.0]], &[[0, 1], [1, 2], [1, 3]]).unwrap_err();
-    assert_eq!(error, MeshError::NonManifoldFacet { nodes: vec![1], elements: vec![0, 1, 2] });
+    assert_eq!(error, MeshError::NonManifoldFace { nodes: vec![1], elements: vec![0, 1, 2] });
 }
 
 /// A bow tie of two and one triangles.
@@ -108,7 +108,7 @@ fn parts_that_hang_together_by_a_point() {
 
 #[test]
 fn groups_of_what_is_not_there() {
-    let missing = |nodes: [usize; 2]| MeshError::NoSuchFacet { group: "side".to_string(), nodes: nodes.to_vec() };
+    let missing = |nodes: [usize; 2]| MeshError::NoSuchFace { group: "side".to_string(), nodes: nodes.to_vec() };
     // Inside, across the other diagonal, a node too many; the order of the nodes does not matter.
     assert_eq!(square_with(&[("side", [0, 2])], &[]).unwrap_err(), missing([0, 2]));
     assert_eq!(square_with(&[("side", [1, 3])], &[]).unwrap_err(), missing([1, 3]));
@@ -127,7 +127,7 @@ fn orientation_is_corrected() {
     assert_eq!(bars(&[[1.0], [0.0]], &[[0, 1]]).unwrap().reoriented_elements(), 1);
 }
 
-/// Two elements on the same side of the facet they share cover each other: the boundary between
+/// Two elements on the same side of the face they share cover each other: the boundary between
 /// them is none, and normals are wrong.
 #[test]
 fn elements_that_cover_each_other() {

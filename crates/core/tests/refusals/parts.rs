@@ -1,6 +1,6 @@
 //! Parts of a mesh that touch or overlap without common nodes, and parts that are apart.
 
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh, MeshError};
+use percute_core::mesh::{ElementGroups, FaceGroups, Mesh, MeshError};
 use proptest::prelude::*;
 
 type Body = (Vec<[f64; 2]>, Vec<[usize; 3]>);
@@ -18,7 +18,7 @@ fn together(bodies: &[Body]) -> Result<Mesh, MeshError> {
         cells.extend(elements.iter().map(|cell| cell.map(|n| n + points.len())));
         points.extend(places);
     }
-    Mesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new())
+    Mesh::new(points, &cells, &FaceGroups::new(), &ElementGroups::new())
 }
 
 /// Refused in either order, by one element of each; the elements of `a` come first.
@@ -98,7 +98,7 @@ fn parts_that_are_apart_are_accepted() {
 fn bars() {
     let bars = |points: &[f64], cells: &[[usize; 2]]| {
         let points = points.iter().map(|&x| [x]).collect();
-        Mesh::new(points, cells, &FacetGroups::new(), &ElementGroups::new())
+        Mesh::new(points, cells, &FaceGroups::new(), &ElementGroups::new())
     };
     let touch = |elements| MeshError::PartsTouch { elements };
     // The second inside the first; across its end; a third that covers both.

@@ -3,18 +3,18 @@
 use percute_core::contact::Obstacle;
 use percute_core::load::{BodyForce, Profile, Support, Table, TableError, Traction};
 use percute_core::material::Elastic;
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
+use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
 use percute_core::problem::{Builder, Cause, GroupOf, HeldBy, Initial, InputError, Place, TriangleProblem};
 
 /// A unit square of two triangles, 0-1-2 below the diagonal and 0-2-3 above it, with its sides, an
 /// empty group, the groups of elements `lower` and `all`, and no material.
 fn square() -> Builder<2, 3> {
     let sides = [("bottom", [0, 1]), ("right", [1, 2]), ("top", [2, 3]), ("left", [3, 0])];
-    let mut facets: FacetGroups<2> = sides.iter().map(|(name, nodes)| (name.to_string(), vec![*nodes])).collect();
-    facets.insert("nothing".to_string(), vec![]);
+    let mut faces: FaceGroups<2> = sides.iter().map(|(name, nodes)| (name.to_string(), vec![*nodes])).collect();
+    faces.insert("nothing".to_string(), vec![]);
     let elements = ElementGroups::from([("lower".to_string(), vec![0]), ("all".to_string(), vec![0, 1])]);
     let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-    TriangleProblem::builder(Mesh::new(points, &[[0, 1, 2], [0, 2, 3]], &facets, &elements).unwrap())
+    TriangleProblem::builder(Mesh::new(points, &[[0, 1, 2], [0, 2, 3]], &faces, &elements).unwrap())
 }
 
 fn elastic() -> Elastic {
@@ -197,7 +197,7 @@ fn loads_on_supports() {
 }
 
 #[test]
-fn contact_on_facets_that_are_not_free() {
+fn contact_on_faces_that_are_not_free() {
     let cause = |by| Cause::NotFree { nodes: vec![0, 1], by };
     let at = place("obstacle", Some(0), "group");
     let held = solid().support(support("bottom", [true, false], None)).obstacle(floor(-1.0, Some("bottom")));

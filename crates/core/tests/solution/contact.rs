@@ -99,8 +99,8 @@ fn two_planes_share_the_nodes_by_groups() {
         (mesh.points_in::<2>().to_vec(), mesh.nodes_of::<3>().iter().map(|c| c.map(|n| n.index())).collect());
     // The corner node belongs to the bottom only.
     let side = |group: &str, keep: &dyn Fn(&[f64; 2]) -> bool| {
-        let facets = mesh.facet_groups()[group].iter().map(|f| mesh.facet_nodes::<2>(*f).map(|n| n.index()));
-        facets.filter(|nodes| nodes.iter().all(|&n| keep(&points[n]))).collect::<Vec<_>>()
+        let faces = mesh.face_groups()[group].iter().map(|f| mesh.face_nodes::<2>(*f).map(|n| n.index()));
+        faces.filter(|nodes| nodes.iter().all(|&n| keep(&points[n]))).collect::<Vec<_>>()
     };
     let groups =
         [("floor".to_string(), side("bottom", &|_| true)), ("wall".to_string(), side("left", &|p| p[1] > 0.0))];

@@ -338,7 +338,7 @@ fn doubled(half: &Mesh) -> Mesh {
     }
     let cells = half.nodes_of::<3>().iter().map(|c| c.map(|n| n.index()));
     let cells: Vec<_> = cells.clone().chain(cells.map(|c| c.map(|n| image[n]))).collect();
-    let bottom = half.facet_groups()["bottom"].iter().map(|f| half.facet_nodes::<2>(*f).map(|n| n.index()));
+    let bottom = half.face_groups()["bottom"].iter().map(|f| half.face_nodes::<2>(*f).map(|n| n.index()));
     let bottom = bottom.clone().chain(bottom.map(|f| f.map(|n| image[n]))).collect();
     Mesh::new(points, &cells, &[("bottom".to_string(), bottom)].into(), &Default::default()).unwrap()
 }

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use percute_core::dynamics::{Stiffness, critical_time_step, element_time_step};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
+use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
 use percute_core::problem::{BarProblem, Problem, TriangleProblem};
 use percute_testkit::{disc, random_rectangle};
 use std::f64::consts::PI;
@@ -101,7 +101,7 @@ fn mixed_materials_match_the_dense_solver() {
     let cells: Vec<_> = base.nodes_of::<3>().iter().map(|c| c.map(|n| n.index())).collect();
     let groups =
         ElementGroups::from([("soft".to_string(), (0..20).collect()), ("hard".to_string(), (20..50).collect())]);
-    let mesh = Mesh::new(base.points_in::<2>().to_vec(), &cells, &FacetGroups::new(), &groups).unwrap();
+    let mesh = Mesh::new(base.points_in::<2>().to_vec(), &cells, &FaceGroups::new(), &groups).unwrap();
     let problem = TriangleProblem::builder(mesh)
         .material_of("soft", Elastic::plane_stress(3e9, 0.4, 1200.0, 1.0).unwrap())
         .material_of("hard", Elastic::plane_stress(400e9, 0.2, 3900.0, 1.0).unwrap())

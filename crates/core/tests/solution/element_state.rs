@@ -113,7 +113,7 @@ fn energies_of_the_elements_sum_to_those_of_the_balance() {
     let other: Vec<usize> = (0..mesh.element_count()).filter(|e| e % 2 == 1).collect();
     let cells: Vec<[usize; 3]> = mesh.nodes_of::<3>().iter().map(|nodes| nodes.map(|n| n.index())).collect();
     let bottom: Vec<[usize; 2]> =
-        mesh.facet_groups()["bottom"].iter().map(|facet| mesh.facet_nodes::<2>(*facet).map(|n| n.index())).collect();
+        mesh.face_groups()["bottom"].iter().map(|face| mesh.face_nodes::<2>(*face).map(|n| n.index())).collect();
     let edges = [("bottom".to_string(), bottom)].into();
     let groups = [("soft".to_string(), half), ("hard".to_string(), other)].into();
     let mesh = Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &edges, &groups).unwrap();

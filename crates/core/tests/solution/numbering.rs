@@ -22,19 +22,18 @@ fn shuffle(mesh: &Mesh, seed: u64) -> Numbering {
 /// The mesh that its points, elements and groups make.
 fn rebuilt(mesh: &Mesh) -> Mesh {
     let cells: Vec<_> = mesh.cell_rows().iter().map(|node| node.index()).collect();
-    let facet = |f: &percute_core::ids::FacetId| mesh.facet(*f).nodes.iter().map(|node| node.index());
-    let facets =
-        mesh.facet_groups().iter().map(|(name, f)| (name.clone(), f.iter().flat_map(facet).collect())).collect();
+    let face = |f: &percute_core::ids::FaceId| mesh.face(*f).nodes.iter().map(|node| node.index());
+    let faces = mesh.face_groups().iter().map(|(name, f)| (name.clone(), f.iter().flat_map(face).collect())).collect();
     let elements = mesh.element_groups().iter();
     let elements = elements.map(|(name, e)| (name.clone(), e.iter().map(|e| e.index()).collect())).collect();
-    Mesh::from_rows(mesh.dimension(), mesh.points(), &cells, (&facets, &elements)).unwrap()
+    Mesh::from_rows(mesh.dimension(), mesh.points(), &cells, (&faces, &elements)).unwrap()
 }
 
 fn assert_same(one: &Mesh, other: &Mesh) {
     assert_eq!((one.points(), one.cell_rows()), (other.points(), other.cell_rows()));
-    assert!(one.facets().eq(other.facets()));
-    assert!(one.elements().all(|e| one.cell_facets(e) == other.cell_facets(e)));
-    assert_eq!((one.facet_groups(), one.element_groups()), (other.facet_groups(), other.element_groups()));
+    assert!(one.faces().eq(other.faces()));
+    assert!(one.elements().all(|e| one.cell_faces(e) == other.cell_faces(e)));
+    assert_eq!((one.face_groups(), one.element_groups()), (other.face_groups(), other.element_groups()));
     assert_eq!((one.size(), one.parts()), (other.size(), other.parts()));
     for node in (0..one.node_count()).map(NodeId::new) {
         let (star, again) = (one.stars().star(node), other.stars().star(node));
@@ -46,11 +45,11 @@ fn assert_same(one: &Mesh, other: &Mesh) {
 fn loaded() -> TriangleProblem {
     let mesh = random_rectangle(1.0, 0.7, 8, 5).unwrap();
     let cells: Vec<_> = mesh.nodes_of::<3>().iter().map(|cell| cell.map(NodeId::index)).collect();
-    let facet = |f: &percute_core::ids::FacetId| mesh.facet_nodes::<2>(*f).map(NodeId::index);
-    let facets = mesh.facet_groups().iter().map(|(name, f)| (name.clone(), f.iter().map(facet).collect())).collect();
+    let face = |f: &percute_core::ids::FaceId| mesh.face_nodes::<2>(*f).map(NodeId::index);
+    let faces = mesh.face_groups().iter().map(|(name, f)| (name.clone(), f.iter().map(face).collect())).collect();
     let (low, high) = (0..cells.len()).partition(|e| e % 3 == 0);
     let groups = [("low".to_string(), low), ("high".to_string(), high)].into();
-    let mesh = Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &facets, &groups).unwrap();
+    let mesh = Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &faces, &groups).unwrap();
     let pull = Table::new(vec![0.0, 1e-3], vec![[2e6, 3e6], [-2e6, 1e6]]).unwrap();
     let profile = Profile { value: 0.3, gradient: [1.0, 0.0, 0.0] };
     let body = BodyForce { group: Some("low".to_string()), value: Table::constant([1e7, -3e7]) };
@@ -95,10 +94,10 @@ fn what_was_stated_follows_the_numbers() {
     };
     let old = |node: NodeId| numbering.nodes()[node.index()];
     assert_eq!(contact(&image, &old), contact(&problem, &|node| node));
-    for (facet, same) in image.surface().facets().iter().zip(problem.surface().facets()) {
-        let nodes = image.mesh().facet_nodes::<2>(facet.facet);
-        assert_eq!(nodes, facet.nodes.map(|at| image.surface().nodes()[at].node));
-        assert_eq!((facet.area, facet.obstacle), (same.area, same.obstacle));
+    for (face, same) in image.surface().faces().iter().zip(problem.surface().faces()) {
+        let nodes = image.mesh().face_nodes::<2>(face.face);
+        assert_eq!(nodes, face.nodes.map(|at| image.surface().nodes()[at].node));
+        assert_eq!((face.area, face.obstacle), (same.area, same.obstacle));
     }
     assert!(image.prescribed().is_sorted_by_key(|p| (p.node, p.component)));
     let mut held: Vec<_> = image.prescribed().iter().map(|p| old(p.node)).collect();

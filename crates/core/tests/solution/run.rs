@@ -129,10 +129,10 @@ pub(crate) fn on_rollers(mesh: Mesh, material: Elastic) -> percute_core::problem
         .support(fixed("top", [false, true]))
 }
 
-/// Nodes of a group of facets.
+/// Nodes of a group of faces.
 pub(crate) fn nodes_of(mesh: &Mesh, group: &str) -> Vec<usize> {
-    let facets = mesh.facet_groups()[group].iter();
-    let mut nodes: Vec<usize> = facets.flat_map(|f| mesh.facet_nodes::<2>(*f)).map(NodeId::index).collect();
+    let faces = mesh.face_groups()[group].iter();
+    let mut nodes: Vec<usize> = faces.flat_map(|f| mesh.face_nodes::<2>(*f)).map(NodeId::index).collect();
     nodes.sort_unstable();
     nodes.dedup();
     nodes

@@ -5,7 +5,7 @@ use crate::solution::run::{aluminium, run};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::Support;
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
+use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
 use percute_core::problem::{Initial, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::random_rectangle;
@@ -27,7 +27,7 @@ fn doubled(half: &Mesh) -> Mesh {
         .collect();
     let cells = half.nodes_of::<3>().iter().map(|c| c.map(|n| n.index()));
     let cells: Vec<_> = cells.clone().chain(cells.map(|c| c.map(|n| image[n]))).collect();
-    Mesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new()).unwrap()
+    Mesh::new(points, &cells, &FaceGroups::new(), &ElementGroups::new()).unwrap()
 }
 
 fn dropped(mesh: Mesh, guide: bool) -> TriangleProblem {

@@ -3,10 +3,10 @@
 //! Each element is cut at its centroid. The triangles between the node and the other points of the cut are cut into
 //! rings and a core. Rings of one ratio of radii are similar, and so are their sub-triangles.
 
-/// The side of its layer on which facet 0 of a sub-triangle lies.
+/// The side of its layer on which face 0 of a sub-triangle lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Arc {
-    /// The outline of the star; the other two facets are those of a ring.
+    /// The outline of the star; the other two faces are those of a ring.
     Outline,
     /// Towards the outline.
     Outer,
@@ -28,7 +28,7 @@ pub(super) struct SubTriangle {
 }
 
 impl SubTriangle {
-    /// Its facets at its left and right side and at its arc, and whether they run against the direction of the edge,
+    /// Its faces at its left and right side and at its arc, and whether they run against the direction of the edge,
     /// which is that of the other sub-triangle there. At the outline: the arcs of two sectors, and the outline.
     pub(super) fn sides(&self) -> [(usize, bool); 3] {
         match self.arc {

@@ -28,7 +28,7 @@ impl StarFrame {
 /// element, which has this corner there; `frame` is that of the vectors.
 pub(super) fn in_element(own: &[f64; LOADS], at: usize, frame: StarFrame) -> [f64; LOADS] {
     let mut all = [0.0; LOADS];
-    // Vectors at both ends of three facets, then at three nodes.
+    // Vectors at both ends of three faces, then at three nodes.
     for (first, each) in [(0, 2), (6, 1)] {
         for k in 0..3 * each {
             let from = 2 * (first + k);

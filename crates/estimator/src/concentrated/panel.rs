@@ -59,18 +59,18 @@ impl Panel {
 
     /// The loading by one column of loads.
     pub(super) fn loading(&self, loads: &[f64]) -> Loading<2, 3> {
-        let mut by_facet = [0.0; LOADS];
-        order(&self.triangle).into_iter().zip(loads).for_each(|(k, load)| by_facet[k] = *load);
-        tractions(&by_facet)
+        let mut by_face = [0.0; LOADS];
+        order(&self.triangle).into_iter().zip(loads).for_each(|(k, load)| by_face[k] = *load);
+        tractions(&by_face)
     }
 }
 
-/// The numbers of the loads among those of the facets.
+/// The numbers of the loads among those of the faces.
 fn order(triangle: &SubTriangle) -> [usize; LOADS] {
     let sides = triangle.sides();
     std::array::from_fn(|k| {
-        let (facet, reversed) = sides[k / 4];
-        4 * facet + 2 * ((k / 2 % 2) ^ usize::from(reversed)) + k % 2
+        let (face, reversed) = sides[k / 4];
+        4 * face + 2 * ((k / 2 % 2) ^ usize::from(reversed)) + k % 2
     })
 }
 
@@ -92,7 +92,7 @@ pub(super) fn tractions(loads: &[f64; LOADS]) -> Loading<2, 3> {
     Loading { traction, volume: [[0.0; 2]; 3] }
 }
 
-/// The resultants of the loads on the facets of a triangle: two forces, and the moment about its first corner over its
+/// The resultants of the loads on the faces of a triangle: two forces, and the moment about its first corner over its
 /// size.
 fn resultants(corners: &[[f64; 2]; 3]) -> SMatrix<f64, 3, LOADS> {
     let size = (0..3).map(|k| (corners[k][0] - corners[(k + 1) % 3][0]).hypot(corners[k][1] - corners[(k + 1) % 3][1]));

@@ -1,18 +1,18 @@
-//! Friction on facets with a node at two planes.
+//! Friction on faces with a node at two planes.
 //!
 //! Sliding along one plane is motion towards the other there. It is known when problem P_CA is solved at the other.
 
-use super::{Densities, FacetDensity, NarrowHat, facet_power};
+use super::{Densities, FaceDensity, NarrowHat, face_power};
 use crate::kinematic::{ContactTrack, at_both_planes};
 use crate::numbers::Reader;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 
-/// The densities and velocities on such a facet over a step.
+/// The densities and velocities on such a face over a step.
 #[derive(Clone, Debug)]
 pub(crate) struct CornerSliding<const D: usize> {
-    /// Position among the candidate facets.
-    pub(crate) facet: usize,
+    /// Position among the candidate faces.
+    pub(crate) face: usize,
     /// The step at whose instant it begins.
     pub(crate) step: usize,
     /// Velocities of the simulation at its nodes at its beginning, middle and end (m/s).
@@ -33,13 +33,13 @@ impl<const D: usize> CornerSliding<D> {
         densities: [&Densities<D>; 2],
     ) -> Vec<Self> {
         let surface = problem.surface();
-        let corners = surface.facets().iter().enumerate().filter(|(_, facet)| surface.reaches_a_corner(facet));
-        let one = |(f, facet): (usize, &percute_core::contact::ContactFacet<D>)| Self {
-            facet: f,
+        let corners = surface.faces().iter().enumerate().filter(|(_, face)| surface.reaches_a_corner(face));
+        let one = |(f, face): (usize, &percute_core::contact::ContactFace<D>)| Self {
+            face: f,
             step,
-            velocity: velocities.map(|velocity| facet.nodes.map(|at| surface.against_obstacle(at, velocity))),
+            velocity: velocities.map(|velocity| face.nodes.map(|at| surface.against_obstacle(at, velocity))),
             wide: densities.map(|density| density.wide()[f]),
-            hats: densities.map(|density| density.hats().iter().filter(|hat| hat.facet == f).copied().collect()),
+            hats: densities.map(|density| density.hats().iter().filter(|hat| hat.face == f).copied().collect()),
         };
         corners.map(one).collect()
     }
@@ -51,13 +51,13 @@ impl<const D: usize> CornerSliding<D> {
         times: &TimeGrid,
         tracks: &[ContactTrack],
     ) -> [f64; 2] {
-        let nodes = problem.surface().facets()[self.facet].nodes;
-        let density = |k: usize| FacetDensity { wide: &self.wide[k], hats: [&self.hats[k][..]; 1] };
+        let nodes = problem.surface().faces()[self.face].nodes;
+        let density = |k: usize| FaceDensity { wide: &self.wide[k], hats: [&self.hats[k][..]; 1] };
         let [start, end] = [density(0), density(1)];
-        let power = |half: usize, densities: &[&FacetDensity<'_, D, 1>]| {
+        let power = |half: usize, densities: &[&FaceDensity<'_, D, 1>]| {
             let instant = 2 * self.step + half;
             let at = |p: usize| at_both_planes(problem, nodes[p], &self.velocity[half][p], tracks, instant);
-            facet_power(problem, self.facet, &std::array::from_fn(at), densities)
+            face_power(problem, self.face, &std::array::from_fn(at), densities)
         };
         let powers = [power(0, &[&start]), power(1, &[&start, &end]), power(2, &[&end])];
         trapezoids(times.step(self.step), powers)
@@ -65,7 +65,7 @@ impl<const D: usize> CornerSliding<D> {
 
     /// Appends it to numbers.
     pub(crate) fn append(&self, numbers: &mut Vec<f64>) {
-        numbers.extend([self.facet, self.step, self.hats[0].len(), self.hats[1].len()].map(|count| count as f64));
+        numbers.extend([self.face, self.step, self.hats[0].len(), self.hats[1].len()].map(|count| count as f64));
         numbers.extend_from_slice(self.velocity.as_flattened().as_flattened());
         numbers.extend_from_slice(self.wide.as_flattened().as_flattened());
         self.hats.iter().flatten().for_each(|hat| hat.append(numbers));
@@ -73,11 +73,11 @@ impl<const D: usize> CornerSliding<D> {
 
     /// One that was appended.
     pub(crate) fn read(numbers: &mut Reader<'_>) -> Self {
-        let [facet, step, from, to] = [(); 4].map(|()| numbers.count());
+        let [face, step, from, to] = [(); 4].map(|()| numbers.count());
         let velocity = [(); 3].map(|()| numbers.vectors());
         let wide = [(); 2].map(|()| numbers.vectors());
         let hats = [from, to].map(|count| (0..count).map(|_| NarrowHat::read(numbers)).collect());
-        Self { facet, step, velocity, wide, hats }
+        Self { face, step, velocity, wide, hats }
     }
 }
 

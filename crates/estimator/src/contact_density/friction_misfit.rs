@@ -1,53 +1,53 @@
-//! The misfit of the contact law on a facet, for densities and velocities that are linear along it.
+//! The misfit of the contact law on a face, for densities and velocities that are linear along it.
 
 use super::NarrowHat;
 use crate::direction::{along, tangent};
-use percute_core::contact::ContactFacet;
+use percute_core::contact::ContactFace;
 use percute_core::problem::Problem;
-use percute_core::simplex::facet_mean;
+use percute_core::simplex::face_mean;
 
-/// A density on one facet.
+/// A density on one face.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FacetDensity<'a, const D: usize, const M: usize> {
+pub(crate) struct FaceDensity<'a, const D: usize, const M: usize> {
     /// The part that is linear (Pa at its nodes).
     pub(crate) wide: &'a [[f64; D]; D],
-    /// Hats, among them those of the facet.
+    /// Hats, among them those of the face.
     pub(crate) hats: [&'a [NarrowHat<D>]; M],
 }
 
-impl<const D: usize, const M: usize> FacetDensity<'_, D, M> {
-    /// Whether nothing acts on the facet and on those beside it.
+impl<const D: usize, const M: usize> FaceDensity<'_, D, M> {
+    /// Whether nothing acts on the face and on those beside it.
     pub(crate) fn is_zero(&self) -> bool {
         *self.wide == [[0.0; D]; D] && self.hats.iter().all(|hats| hats.is_empty())
     }
 }
 
-/// The power of the misfit of the mean of densities on a facet (W), with this velocity at its nodes (m/s): hats keep
+/// The power of the misfit of the mean of densities on a face (W), with this velocity at its nodes (m/s): hats keep
 /// their shapes.
-pub(crate) fn facet_power<const D: usize, const N: usize, const M: usize>(
+pub(crate) fn face_power<const D: usize, const N: usize, const M: usize>(
     problem: &Problem<D, N>,
     f: usize,
     velocity: &[[f64; D]; D],
-    densities: &[&FacetDensity<'_, D, M>],
+    densities: &[&FaceDensity<'_, D, M>],
 ) -> f64 {
     let (surface, share) = (problem.surface(), 1.0 / densities.len() as f64);
-    let facet = &surface.facets()[f];
+    let face = &surface.faces()[f];
     let mut mean = [[0.0; D]; D];
     let mut power = 0.0;
     for density in densities {
         (0..D).for_each(|p| (0..D).for_each(|c| mean[p][c] += share * density.wide[p][c]));
-        let hats = density.hats.iter().copied().flatten().filter(|hat| hat.facet == f);
+        let hats = density.hats.iter().copied().flatten().filter(|hat| hat.face == f);
         power += hats.map(|hat| share * hat_misfit_power(problem, hat, velocity)).sum::<f64>();
     }
-    surface.part_of_contact(facet.nodes[0]) * (power + misfit_power(problem, facet, &mean, velocity))
+    surface.part_of_contact(face.nodes[0]) * (power + misfit_power(problem, face, &mean, velocity))
 }
 
-/// Power of ∫[b(−w, F) + w·F] on a facet: μF_n‖w_t‖ + w_t·F_t (W). The normal part vanishes where F is zero
+/// Power of ∫[b(−w, F) + w·F] on a face: μF_n‖w_t‖ + w_t·F_t (W). The normal part vanishes where F is zero
 /// unless both nodes stay on the plane; elsewhere [`NormalMisfit`](super::NormalMisfit) measures it. In 2D both factors
 /// are linear along the edge.
 fn misfit_power<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
-    facet: &ContactFacet<D>,
+    face: &ContactFace<D>,
     density: &[[f64; D]; D],
     velocity: &[[f64; D]; D],
 ) -> f64 {
@@ -57,14 +57,14 @@ fn misfit_power<const D: usize, const N: usize>(
     if density.iter().flatten().all(|f| *f == 0.0) {
         return 0.0;
     }
-    let obstacle = &problem.obstacles()[facet.obstacle];
+    let obstacle = &problem.obstacles()[face.obstacle];
     let (law, frame) = (obstacle.law(), obstacle.flat_frame());
     let tangent = tangent(&frame);
     let (normal, tangential) = (density.map(|f| frame.split(&f).0), density.map(|f| along(&f, &tangent)));
     let sliding = velocity.map(|v| along(&v, &tangent));
     let power =
         |weights: &[f64; D]| law.misfit(along(weights, &normal), along(weights, &tangential), along(weights, &sliding));
-    facet.area * facet_mean(&sliding, power)
+    face.area * face_mean(&sliding, power)
 }
 
 /// The same of a hat (W).
@@ -73,7 +73,7 @@ fn hat_misfit_power<const D: usize, const N: usize>(
     hat: &NarrowHat<D>,
     velocity: &[[f64; D]; D],
 ) -> f64 {
-    let obstacle = &problem.obstacles()[problem.surface().facets()[hat.facet].obstacle];
+    let obstacle = &problem.obstacles()[problem.surface().faces()[hat.face].obstacle];
     let (law, frame) = (obstacle.law(), obstacle.flat_frame());
     let tangent = tangent(&frame);
     let sliding = velocity.map(|v| along(&v, &tangent));

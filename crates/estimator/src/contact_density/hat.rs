@@ -10,9 +10,9 @@ pub(crate) struct NarrowHat<const D: usize> {
     pub(crate) node: usize,
     /// The first entry of its node in the contact surface: those of a node at two planes have one star.
     pub(crate) star: usize,
-    /// Its edge, by the position among the candidate facets.
-    pub(crate) facet: usize,
-    /// Position of the node in the facet.
+    /// Its edge, by the position among the candidate faces.
+    pub(crate) face: usize,
+    /// Position of the node in the face.
     pub(crate) end: usize,
     /// Position of the edge among the candidate edges of the star.
     pub(crate) edge: usize,
@@ -25,15 +25,15 @@ pub(crate) struct NarrowHat<const D: usize> {
 impl<const D: usize> NarrowHat<D> {
     /// Appends it to numbers.
     pub(crate) fn append(&self, numbers: &mut Vec<f64>) {
-        let counts = [self.node, self.star, self.facet, self.end, self.edge, self.halvings];
+        let counts = [self.node, self.star, self.face, self.end, self.edge, self.halvings];
         numbers.extend(counts.map(|count| count as f64));
         numbers.extend_from_slice(&self.resultant);
     }
 
     /// A hat that was appended.
     pub(crate) fn read(numbers: &mut Reader<'_>) -> Self {
-        let [node, star, facet, end, edge, halvings] = [(); 6].map(|()| numbers.count());
-        Self { node, star, facet, end, edge, halvings, resultant: numbers.take() }
+        let [node, star, face, end, edge, halvings] = [(); 6].map(|()| numbers.count());
+        Self { node, star, face, end, edge, halvings, resultant: numbers.take() }
     }
 
     /// Half of each of two tractions: both shapes, superposed. Sorted by stars, if they are.
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn the_equivalent_has_resultant_and_moment() {
-        let hat = NarrowHat { node: 0, star: 0, facet: 0, end: 1, edge: 0, halvings: 3, resultant: [2.0, -1.0] };
+        let hat = NarrowHat { node: 0, star: 0, face: 0, end: 1, edge: 0, halvings: 3, resultant: [2.0, -1.0] };
         let [near, far] = hat.equivalent();
         for c in 0..2 {
             assert!((0.5 * (near[c] + far[c]) - hat.resultant[c]).abs() < 1e-15);

@@ -1,4 +1,4 @@
-//! Contact densities F_DA on the candidate facets: the forces that they do on nodes, and their misfit of the contact
+//! Contact densities F_DA on the candidate faces: the forces that they do on nodes, and their misfit of the contact
 //! law.
 
 mod corner_sliding;
@@ -9,23 +9,23 @@ mod sliding;
 
 use crate::residual::worse;
 pub(crate) use corner_sliding::{CornerSliding, trapezoids};
-pub(crate) use friction_misfit::{FacetDensity, facet_power};
+pub(crate) use friction_misfit::{FaceDensity, face_power};
 pub(crate) use hat::NarrowHat;
-pub(crate) use normal_misfit::{FacetPressures, NormalMisfit, OffContact};
-use percute_core::contact::ContactFacet;
+pub(crate) use normal_misfit::{FacePressures, NormalMisfit, OffContact};
+use percute_core::contact::ContactFace;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
-pub(crate) use sliding::{BesideStress, SlaveHat, SlidingDensity, SlidingFacets};
+pub(crate) use sliding::{BesideStress, SlaveHat, SlidingDensity, SlidingFaces};
 use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
-/// A density on the candidate facets. Constant once a reconstruction has made it.
+/// A density on the candidate faces. Constant once a reconstruction has made it.
 ///
-/// It derefs to the nodal values (Pa) on each facet of the linear density with its moments.
+/// It derefs to the nodal values (Pa) on each face of the linear density with its moments.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Densities<const D: usize> {
     linear: Vec<[[f64; D]; D]>,
-    /// The part that is linear on each facet, if hats or surfaces that slide come with it.
+    /// The part that is linear on each face, if hats or surfaces that slide come with it.
     wide: Option<Vec<[[f64; D]; D]>>,
     hats: Vec<NarrowHat<D>>,
     shares: f64,
@@ -37,7 +37,7 @@ pub(crate) struct Densities<const D: usize> {
 #[derive(Debug)]
 struct Sliding<const D: usize> {
     densities: Vec<SlidingDensity<D>>,
-    facets: Arc<[SlidingFacets]>,
+    faces: Arc<[SlidingFaces]>,
     /// Elements in which these have stresses beside that of linear tractions, in order: made at first use, for sampled
     /// instants alone.
     beside: OnceLock<Vec<(ElementId, BesideStress)>>,
@@ -68,29 +68,29 @@ impl<const D: usize> Deref for Densities<D> {
 }
 
 impl<const D: usize> Densities<D> {
-    /// The values on each candidate facet, by its position.
+    /// The values on each candidate face, by its position.
     pub(crate) fn new<const N: usize>(
         problem: &Problem<D, N>,
-        value: impl Fn(usize, &ContactFacet<D>) -> [[f64; D]; D],
+        value: impl Fn(usize, &ContactFace<D>) -> [[f64; D]; D],
     ) -> Self {
         Self::with_hats(problem, value, Vec::new())
     }
 
-    /// The values of the part that is linear on each facet, and hats.
+    /// The values of the part that is linear on each face, and hats.
     pub(crate) fn with_hats<const N: usize>(
         problem: &Problem<D, N>,
-        value: impl Fn(usize, &ContactFacet<D>) -> [[f64; D]; D],
+        value: impl Fn(usize, &ContactFace<D>) -> [[f64; D]; D],
         mut hats: Vec<NarrowHat<D>>,
     ) -> Self {
         // In the order of the nodes already, but for those at two planes.
         hats.sort_by_key(|hat| hat.star);
-        let facets = problem.surface().facets();
-        let mut linear: Vec<_> = facets.iter().enumerate().map(|(f, facet)| value(f, facet)).collect();
+        let faces = problem.surface().faces();
+        let mut linear: Vec<_> = faces.iter().enumerate().map(|(f, face)| value(f, face)).collect();
         let wide = (!hats.is_empty()).then(|| linear.clone());
         for hat in &hats {
             let [near, far] = hat.equivalent();
             for (end, force) in [(hat.end, near), (1 - hat.end, far)] {
-                (0..D).for_each(|c| linear[hat.facet][end][c] += force[c] / facets[hat.facet].area);
+                (0..D).for_each(|c| linear[hat.face][end][c] += force[c] / faces[hat.face].area);
             }
         }
         Self { linear, wide, hats, shares: 0.0, sliding: None }
@@ -100,17 +100,17 @@ impl<const D: usize> Densities<D> {
     pub(crate) fn with_sliding<const N: usize>(
         mut self,
         problem: &Problem<D, N>,
-        facets: &Arc<[SlidingFacets]>,
+        faces: &Arc<[SlidingFaces]>,
         densities: Vec<SlidingDensity<D>>,
     ) -> Self {
         if densities.is_empty() {
             return self;
         }
         self.wide.get_or_insert_with(|| self.linear.clone());
-        for (k, (facets, density)) in facets.iter().zip(&densities).enumerate() {
-            density.apply((problem, &problem.surface().sliding()[k]), facets, &mut self.linear);
+        for (k, (faces, density)) in faces.iter().zip(&densities).enumerate() {
+            density.apply((problem, &problem.surface().sliding()[k]), faces, &mut self.linear);
         }
-        let sliding = Sliding { densities, facets: Arc::clone(facets), beside: OnceLock::new() };
+        let sliding = Sliding { densities, faces: Arc::clone(faces), beside: OnceLock::new() };
         Self { sliding: Some(Arc::new(sliding)), ..self }
     }
 
@@ -129,7 +129,7 @@ impl<const D: usize> Densities<D> {
         Self::new(problem, |_, _| [[0.0; D]; D])
     }
 
-    /// The part that is linear on each facet.
+    /// The part that is linear on each face.
     pub(crate) fn wide(&self) -> &[[[f64; D]; D]] {
         self.wide.as_deref().unwrap_or(&self.linear)
     }
@@ -147,9 +147,9 @@ impl<const D: usize> Densities<D> {
     /// The residuals of surfaces that slide: of Coulomb's cone, and of opposite forces.
     pub(crate) fn sliding_residuals<const N: usize>(&self, problem: &Problem<D, N>) -> [f64; 2] {
         let Some(sliding) = &self.sliding else { return [0.0; 2] };
-        let all = sliding.densities.iter().zip(&*sliding.facets).zip(problem.surface().sliding());
-        let one = |((density, facets), surfaces): ((&SlidingDensity<D>, &SlidingFacets), _)| {
-            density.residuals((problem, surfaces), facets, &self.linear)
+        let all = sliding.densities.iter().zip(&*sliding.faces).zip(problem.surface().sliding());
+        let one = |((density, faces), surfaces): ((&SlidingDensity<D>, &SlidingFaces), _)| {
+            density.residuals((problem, surfaces), faces, &self.linear)
         };
         all.map(one).fold([0.0; 2], |a, b| [0, 1].map(|k| worse(a[k], b[k])))
     }
@@ -158,9 +158,9 @@ impl<const D: usize> Densities<D> {
     pub(crate) fn beside<const N: usize>(&self, problem: &Problem<D, N>, element: ElementId) -> BesideStress {
         let Some(sliding) = &self.sliding else { return BesideStress::NONE };
         let beside = sliding.beside.get_or_init(|| {
-            let all = sliding.densities.iter().zip(&*sliding.facets).zip(problem.surface().sliding());
+            let all = sliding.densities.iter().zip(&*sliding.faces).zip(problem.surface().sliding());
             let mut beside: Vec<_> =
-                all.flat_map(|((density, facets), surfaces)| density.beside((problem, surfaces), facets)).collect();
+                all.flat_map(|((density, faces), surfaces)| density.beside((problem, surfaces), faces)).collect();
             beside.sort_by_key(|(element, _)| *element);
             beside
         });
@@ -183,15 +183,15 @@ impl<const D: usize> Densities<D> {
     }
 }
 
-/// ∫F φ_k over all facets, for each node of the contact surface (N).
+/// ∫F φ_k over all faces, for each node of the contact surface (N).
 pub(crate) fn nodal_forces<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     densities: &Densities<D>,
 ) -> Vec<[f64; D]> {
     let mut forces = vec![[0.0; D]; problem.surface().nodes().len()];
-    for (facet, density) in problem.surface().facets().iter().zip(densities.iter()) {
-        let moments = Problem::<D, N>::facet_moments(facet.area, density);
-        for (node, moment) in facet.nodes.iter().zip(moments) {
+    for (face, density) in problem.surface().faces().iter().zip(densities.iter()) {
+        let moments = Problem::<D, N>::face_moments(face.area, density);
+        for (node, moment) in face.nodes.iter().zip(moments) {
             (0..D).for_each(|c| forces[*node][c] += moment[c]);
         }
     }

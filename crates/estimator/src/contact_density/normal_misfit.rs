@@ -14,7 +14,7 @@ use crate::numbers::Reader;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 
-/// A normal force on a facet: linear along it, and hats.
+/// A normal force on a face: linear along it, and hats.
 #[derive(Clone, Debug)]
 struct NormalForce<const D: usize> {
     /// Pressure at the nodes (Pa).
@@ -59,7 +59,7 @@ impl<const D: usize> NormalForce<D> {
     }
 }
 
-/// The normal forces on a facet at one instant.
+/// The normal forces on a face at one instant.
 #[derive(Clone, Debug)]
 struct Normal<const D: usize> {
     /// Of the density.
@@ -68,10 +68,10 @@ struct Normal<const D: usize> {
     sudden: NormalForce<D>,
 }
 
-/// The part of a normal force that is linear on a facet: at the beginning and the end of a step, at the nodes (Pa).
+/// The part of a normal force that is linear on a face: at the beginning and the end of a step, at the nodes (Pa).
 #[derive(Clone, Debug)]
 struct LinearForce<const D: usize> {
-    facet: usize,
+    face: usize,
     ends: [[f64; D]; 2],
 }
 
@@ -86,11 +86,11 @@ struct HatForce<const D: usize> {
 impl<const D: usize> HatForce<D> {
     /// Its place in the order.
     fn place(&self) -> (usize, usize) {
-        (self.end, self.hat.facet)
+        (self.end, self.hat.face)
     }
 }
 
-/// Normal forces at the beginning and the end of one step, where there are any, in the order of the facets; those of
+/// Normal forces at the beginning and the end of one step, where there are any, in the order of the faces; those of
 /// hats at the beginning come first.
 #[derive(Clone, Debug)]
 struct NormalForces<const D: usize> {
@@ -103,49 +103,49 @@ impl<const D: usize> NormalForces<D> {
 
     /// Those of the densities at both ends of a step.
     fn new<const N: usize>(problem: &Problem<D, N>, densities: [&Densities<D>; 2]) -> Self {
-        let normal = |facet: usize, force: &[f64; D]| {
-            problem.obstacles()[problem.surface().facets()[facet].obstacle].flat_frame().split(force).0
+        let normal = |face: usize, force: &[f64; D]| {
+            problem.obstacles()[problem.surface().faces()[face].obstacle].flat_frame().split(force).0
         };
-        let linear = (0..problem.surface().facets().len()).filter_map(|facet| {
-            let wide = densities.map(|density| &density.wide()[facet]);
+        let linear = (0..problem.surface().faces().len()).filter_map(|face| {
+            let wide = densities.map(|density| &density.wide()[face]);
             if wide == [&[[0.0; D]; D]; 2] {
                 return None;
             }
-            let ends = wide.map(|forces| forces.map(|force| normal(facet, &force)));
-            (ends != [[0.0; D]; 2]).then_some(LinearForce { facet, ends })
+            let ends = wide.map(|forces| forces.map(|force| normal(face, &force)));
+            (ends != [[0.0; D]; 2]).then_some(LinearForce { face, ends })
         });
         let mut linear: Vec<_> = linear.collect();
         linear.shrink_to_fit();
         let hats = |end: usize| {
             // Surfaces that slide have a measure of their own.
             let hats = densities[end].hats().iter().filter(|hat| problem.surface().sliding_of(hat.node).is_none());
-            hats.map(move |hat| HatForce { end, hat: *hat, force: normal(hat.facet, &hat.resultant) })
+            hats.map(move |hat| HatForce { end, hat: *hat, force: normal(hat.face, &hat.resultant) })
         };
         let mut hats: Vec<_> = hats(0).chain(hats(1)).collect();
-        // Hats of one facet keep their order.
+        // Hats of one face keep their order.
         hats.sort_by_key(HatForce::place);
         Self { linear, hats }
     }
 
-    /// Whether there are any on one facet.
-    fn act_on(&self, facet: usize) -> bool {
-        let linear = self.linear.binary_search_by_key(&facet, |linear| linear.facet);
-        linear.is_ok() || self.hats.iter().any(|hat| hat.hat.facet == facet)
+    /// Whether there are any on one face.
+    fn act_on(&self, face: usize) -> bool {
+        let linear = self.linear.binary_search_by_key(&face, |linear| linear.face);
+        linear.is_ok() || self.hats.iter().any(|hat| hat.hat.face == face)
     }
 
-    /// Those on one facet.
-    fn on(&self, facet: usize) -> [NormalForce<D>; 2] {
-        let linear = self.linear.binary_search_by_key(&facet, |linear| linear.facet);
+    /// Those on one face.
+    fn on(&self, face: usize) -> [NormalForce<D>; 2] {
+        let linear = self.linear.binary_search_by_key(&face, |linear| linear.face);
         let ends = linear.map_or([[0.0; D]; 2], |at| self.linear[at].ends);
         [0, 1].map(|k| {
-            let start = self.hats.partition_point(|hat| hat.place() < (k, facet));
-            let hats = self.hats[start..].iter().take_while(|hat| hat.place() == (k, facet));
+            let start = self.hats.partition_point(|hat| hat.place() < (k, face));
+            let hats = self.hats[start..].iter().take_while(|hat| hat.place() == (k, face));
             NormalForce { linear: ends[k], hats: hats.map(|hat| (hat.hat, hat.force)).collect() }
         })
     }
 }
 
-/// Normal forces on the candidate facets at the beginning and the end of one step.
+/// Normal forces on the candidate faces at the beginning and the end of one step.
 #[derive(Clone, Debug)]
 pub(crate) struct OffContact<const D: usize> {
     /// Of the density.
@@ -164,9 +164,9 @@ impl<const D: usize> OffContact<D> {
         Self { acting: NormalForces::new(problem, acting), sudden: NormalForces::new(problem, sudden) }
     }
 
-    /// Whether there are any on one facet.
-    pub(crate) fn act_on(&self, facet: usize) -> bool {
-        self.acting.act_on(facet) || self.sudden.act_on(facet)
+    /// Whether there are any on one face.
+    pub(crate) fn act_on(&self, face: usize) -> bool {
+        self.acting.act_on(face) || self.sudden.act_on(face)
     }
 
     /// Adds a step to those of an interval. Energies are measured at the ends of the interval and in the middle of its
@@ -178,17 +178,17 @@ impl<const D: usize> OffContact<D> {
         steps.push(self);
     }
 
-    /// About how many bytes a step takes while all of so many facets touch.
-    pub(crate) const fn memory(facets: usize) -> usize {
-        size_of::<Self>() + facets * size_of::<LinearForce<D>>()
+    /// About how many bytes a step takes while all of so many faces touch.
+    pub(crate) const fn memory(faces: usize) -> usize {
+        size_of::<Self>() + faces * size_of::<LinearForce<D>>()
     }
 }
 
-/// Normal forces on one candidate facet over the steps of an interval between samples.
+/// Normal forces on one candidate face over the steps of an interval between samples.
 #[derive(Clone, Debug)]
-pub(crate) struct FacetPressures<const D: usize> {
-    /// Position among the candidate facets.
-    facet: usize,
+pub(crate) struct FacePressures<const D: usize> {
+    /// Position among the candidate faces.
+    face: usize,
     /// First step of the interval.
     first: usize,
     /// At the beginning and the end of each step; the acting force is that of the first and the last one only.
@@ -205,7 +205,7 @@ pub(crate) struct NormalMisfit {
 }
 
 impl NormalMisfit {
-    /// Adds that of another facet.
+    /// Adds that of another face.
     pub(crate) fn add(&mut self, other: &Self) {
         for k in 0..3 {
             self.energy[k] += other.energy[k];
@@ -214,14 +214,14 @@ impl NormalMisfit {
     }
 }
 
-impl<const D: usize> FacetPressures<D> {
-    /// Those of one facet over consecutive steps.
-    pub(crate) fn gather(facet: usize, first: usize, steps: &[OffContact<D>]) -> Self {
+impl<const D: usize> FacePressures<D> {
+    /// Those of one face over consecutive steps.
+    pub(crate) fn gather(face: usize, first: usize, steps: &[OffContact<D>]) -> Self {
         let both = |step: &OffContact<D>| {
-            let ([a, b], [c, d]) = (step.acting.on(facet), step.sudden.on(facet));
+            let ([a, b], [c, d]) = (step.acting.on(face), step.sudden.on(face));
             [Normal { acting: a, sudden: c }, Normal { acting: b, sudden: d }]
         };
-        Self { facet, first, steps: steps.iter().map(both).collect() }
+        Self { face, first, steps: steps.iter().map(both).collect() }
     }
 
     /// Whether there is no force.
@@ -233,7 +233,7 @@ impl<const D: usize> FacetPressures<D> {
     pub(crate) fn append(&self, numbers: &mut Vec<f64>) {
         let hats = |normal: &Normal<D>| normal.acting.hats.len() + normal.sudden.hats.len();
         let has_hats = self.steps.as_flattened().iter().any(|normal| hats(normal) > 0);
-        numbers.extend([self.facet, self.first, self.steps.len(), usize::from(has_hats)].map(|count| count as f64));
+        numbers.extend([self.face, self.first, self.steps.len(), usize::from(has_hats)].map(|count| count as f64));
         for (k, step) in self.steps.iter().enumerate() {
             for normal in step {
                 if k == 0 || k + 1 == self.steps.len() {
@@ -246,14 +246,14 @@ impl<const D: usize> FacetPressures<D> {
 
     /// Pressures that were appended.
     pub(crate) fn read(numbers: &mut Reader<'_>) -> Self {
-        let [facet, first, steps, has_hats] = [(); 4].map(|()| numbers.count());
+        let [face, first, steps, has_hats] = [(); 4].map(|()| numbers.count());
         let has_hats = has_hats == 1;
         let mut end = |k: usize| {
             let outer = k == 0 || k + 1 == steps;
             let acting = if outer { NormalForce::read(numbers, has_hats) } else { NormalForce::NONE };
             Normal { acting, sudden: NormalForce::read(numbers, has_hats) }
         };
-        Self { facet, first, steps: (0..steps).map(|k| [end(k), end(k)]).collect() }
+        Self { face, first, steps: (0..steps).map(|k| [end(k), end(k)]).collect() }
     }
 
     /// The misfit over the interval, for the motion in the tracks; work by the trapezoidal rule over all half-step
@@ -265,15 +265,15 @@ impl<const D: usize> FacetPressures<D> {
         tracks: &[ContactTrack],
         weight_of_work: f64,
     ) -> NormalMisfit {
-        let facet = &problem.surface().facets()[self.facet];
+        let face = &problem.surface().faces()[self.face];
         let mut misfit = NormalMisfit::default();
         for (k, [start, end]) in self.steps.iter().enumerate() {
             let instant = 2 * (self.first + k);
             let at = |half: usize, normal: &Normal<D>| {
-                let motion = facet.nodes.map(|at| tracks[at].at(instant + half));
-                let energy = normal.acting.gap_energy(facet.area, &motion.map(|(_, gap)| gap));
+                let motion = face.nodes.map(|at| tracks[at].at(instant + half));
+                let energy = normal.acting.gap_energy(face.area, &motion.map(|(_, gap)| gap));
                 let speed = motion.map(|(speed, _)| speed);
-                (energy, normal.sudden.power(facet.area, &speed))
+                (energy, normal.sudden.power(face.area, &speed))
             };
             let ([(before, p0), (after, p2)], [a, b]) = ([at(0, start), at(2, end)], [at(1, start), at(1, end)]);
             // Forces are linear in time over a step.
@@ -287,20 +287,20 @@ impl<const D: usize> FacetPressures<D> {
             misfit.energy[2] = after;
             misfit.work[2] += 0.5 * half * (p0 + 2.0 * p1 + p2);
         }
-        let part = problem.surface().part_of_contact(facet.nodes[0]);
+        let part = problem.surface().part_of_contact(face.nodes[0]);
         misfit.energy.iter_mut().for_each(|energy| *energy *= part);
         misfit.work.iter_mut().for_each(|work| *work *= part * weight_of_work);
         misfit
     }
 }
 
-/// ∫F_n gap over a facet (J), both linear, the force in Pa.
+/// ∫F_n gap over a face (J), both linear, the force in Pa.
 fn gap_energy<const D: usize>(area: f64, force: &[f64; D], gap: &[f64; D]) -> f64 {
     let products: f64 = force.iter().zip(gap).map(|(f, g)| f * g).sum();
     area * (products + force.iter().sum::<f64>() * gap.iter().sum::<f64>()) / (D * (D + 1)) as f64
 }
 
-/// ΣF_k|w_k| over the nodes of a facet (W), F_k = ∫F_nφ_k of the part F_kφ_k of a linear force (Pa).
+/// ΣF_k|w_k| over the nodes of a face (W), F_k = ∫F_nφ_k of the part F_kφ_k of a linear force (Pa).
 fn normal_power<const D: usize>(area: f64, force: &[f64; D], speed: &[f64; D]) -> f64 {
     area / D as f64 * force.iter().zip(speed).map(|(force, speed)| force * speed.abs()).sum::<f64>()
 }

@@ -8,7 +8,7 @@
 
 mod beside;
 mod beside_stress;
-mod facets;
+mod faces;
 mod load;
 mod slave_hat;
 
@@ -17,11 +17,11 @@ use crate::partition::{Break, Piece, pieces};
 use crate::residual::worse;
 use beside::{Stresses, of_edge};
 pub(crate) use beside_stress::BesideStress;
-pub(crate) use facets::SlidingFacets;
+pub(crate) use faces::SlidingFaces;
 use load::Load;
 use percute_core::contact::{Coupling, SlidingSurfaces};
 use percute_core::problem::Problem;
-use percute_core::simplex::facet_mean;
+use percute_core::simplex::face_mean;
 pub(crate) use slave_hat::SlaveHat;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -114,20 +114,20 @@ impl<const D: usize> SlidingDensity<D> {
         })
     }
 
-    /// Adds the linear tractions with the same moments to those of facets (Pa), but those of narrow hats on the slave,
+    /// Adds the linear tractions with the same moments to those of faces (Pa), but those of narrow hats on the slave,
     /// which are hats of their node.
     pub(crate) fn apply<const N: usize>(
         &self,
         (problem, sliding): (&Problem<D, N>, &SlidingSurfaces<D>),
-        facets: &SlidingFacets,
+        faces: &SlidingFaces,
         linear: &mut [[[f64; D]; D]],
     ) {
         let narrow: Vec<&SlaveHat<D>> = self.hats.iter().filter(|hat| hat.is_narrow()).collect();
         for ((side, edge), load) in self.wide(sliding).into_iter().chain(self.narrow(sliding, &narrow)) {
-            let edge = &facets.edges[side][edge];
-            let area = problem.surface().facets()[edge.facet].area;
+            let edge = &faces.edges[side][edge];
+            let area = problem.surface().faces()[edge.face].area;
             for k in 0..2 {
-                let (value, nodal) = (&mut linear[edge.facet][edge.ends[k]], load.nodal(k));
+                let (value, nodal) = (&mut linear[edge.face][edge.ends[k]], load.nodal(k));
                 (0..D).for_each(|c| value[c] += nodal[c] / area);
             }
         }
@@ -138,7 +138,7 @@ impl<const D: usize> SlidingDensity<D> {
     pub(crate) fn residuals<const N: usize>(
         &self,
         (problem, sliding): (&Problem<D, N>, &SlidingSurfaces<D>),
-        facets: &SlidingFacets,
+        faces: &SlidingFaces,
         linear: &[[[f64; D]; D]],
     ) -> [f64; 2] {
         let size = |f: &[f64; D]| f.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -157,12 +157,12 @@ impl<const D: usize> SlidingDensity<D> {
         let outside = worse(outside(&self.multipliers), outside(&resultants));
         let (mut force, mut couple, mut scale) = ([0.0; D], 0.0, 0.0);
         let xi = [sliding.slave().xi(), sliding.master().xi()];
-        for (side, edges) in facets.edges.iter().enumerate() {
+        for (side, edges) in faces.edges.iter().enumerate() {
             for (edge, first) in edges.iter().zip([sliding.slave(), sliding.master()][side].edges()) {
-                let facet = &problem.surface().facets()[edge.facet];
+                let face = &problem.surface().faces()[edge.face];
                 // Places on the slave are those of the master that it faces.
                 let moved = if side == 0 { self.coupling.shifts()[sliding.slave().part_of(*first)] } else { 0.0 };
-                let moments = Problem::<D, N>::facet_moments(facet.area, &linear[edge.facet]);
+                let moments = Problem::<D, N>::face_moments(face.area, &linear[edge.face]);
                 for k in 0..2 {
                     let moment = moments[edge.ends[k]];
                     (0..D).for_each(|c| force[c] += moment[c]);
@@ -179,11 +179,11 @@ impl<const D: usize> SlidingDensity<D> {
     pub(crate) fn beside<const N: usize>(
         &self,
         (problem, sliding): (&Problem<D, N>, &SlidingSurfaces<D>),
-        facets: &SlidingFacets,
+        faces: &SlidingFaces,
     ) -> Stresses {
         let of_edge = |loads: Loads<D>| {
             let one =
-                |((side, edge), load): (&(usize, usize), &Load<D>)| of_edge(problem, &facets.edges[*side][*edge], load);
+                |((side, edge), load): (&(usize, usize), &Load<D>)| of_edge(problem, &faces.edges[*side][*edge], load);
             loads.iter().flat_map(one).collect::<Stresses>()
         };
         // Each node with hats by itself: they have one place on the master.
@@ -229,7 +229,7 @@ impl<const D: usize> SlidingDensity<D> {
         loads
     }
 
-    /// The power of the misfit of Coulomb's law, μF_n|w_t| + w_t·F_t, half of it on each of the facets of a piece (W).
+    /// The power of the misfit of Coulomb's law, μF_n|w_t| + w_t·F_t, half of it on each of the faces of a piece (W).
     /// `slip` has the tangential velocity of the nodes of slave and master (m/s).
     pub(crate) fn friction_power(
         &self,
@@ -250,7 +250,7 @@ impl<const D: usize> SlidingDensity<D> {
             let power = |weights: &[f64; D]| {
                 law.misfit(along(weights, &press), along(weights, &drag), along(weights, &sliding))
             };
-            add(&piece, piece.length * facet_mean(&sliding, power));
+            add(&piece, piece.length * face_mean(&sliding, power));
         }
     }
 }

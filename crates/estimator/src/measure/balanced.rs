@@ -1,12 +1,12 @@
 //! The dynamically admissible fields of an element.
 
 use crate::lanes::Value;
-use crate::stress::{Loading, facet_node};
+use crate::stress::{Loading, face_node};
 
 /// The fields of an element that tractions and Γ_DA are made of.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NodalBalance<const D: usize, const N: usize, T = f64> {
-    /// Outward moments of each facet at its nodes (N).
+    /// Outward moments of each face at its nodes (N).
     pub(crate) moments: [[[T; D]; D]; N],
     /// ã at the nodes; a_c with `split` (m/s²).
     pub(crate) acceleration: [[T; D]; N],
@@ -73,7 +73,7 @@ impl<const D: usize, const N: usize, T: Value> Balanced<D, N, T> {
     }
 }
 
-/// Outward moments of each facet at its nodes, from those by which the star of each node enters and leaves the element:
+/// Outward moments of each face at its nodes, from those by which the star of each node enters and leaves the element:
 /// entering moments have the other sign.
 #[inline(always)]
 pub(crate) fn outward<T: Value, const D: usize, const N: usize>(
@@ -83,7 +83,7 @@ pub(crate) fn outward<T: Value, const D: usize, const N: usize>(
     let mut moments = [[entry; D]; N];
     for k in 0..N {
         for p in 0..D {
-            let [entry, exit] = around(facet_node::<N>(k, p));
+            let [entry, exit] = around(face_node::<N>(k, p));
             for c in 0..D {
                 moments[k][p][c] = if enters::<D>(k, p) { -entry[c] } else { exit[c] };
             }
@@ -92,7 +92,7 @@ pub(crate) fn outward<T: Value, const D: usize, const N: usize>(
     moments
 }
 
-/// Whether the star of the p-th node of facet k enters the element by it.
+/// Whether the star of the p-th node of face k enters the element by it.
 const fn enters<const D: usize>(k: usize, p: usize) -> bool {
     if D == 1 { k == 1 } else { p == 0 }
 }
@@ -103,11 +103,11 @@ mod tests {
     use percute_core::simplex::{Simplex, simplex};
 
     fn check<const D: usize, const N: usize>(simplex: &dyn Simplex<D, N>) {
-        for (i, facets) in simplex.facets_around().iter().enumerate() {
-            for (exit, facet) in facets.iter().enumerate() {
-                let Some(k) = *facet else { continue };
-                let p = (0..D).find(|&p| facet_node::<N>(k, p) == i).unwrap();
-                assert_eq!(enters::<D>(k, p), exit == 0, "node {i}, facet {k}");
+        for (i, faces) in simplex.faces_around().iter().enumerate() {
+            for (exit, face) in faces.iter().enumerate() {
+                let Some(k) = *face else { continue };
+                let p = (0..D).find(|&p| face_node::<N>(k, p) == i).unwrap();
+                assert_eq!(enters::<D>(k, p), exit == 0, "node {i}, face {k}");
             }
         }
     }

@@ -12,7 +12,7 @@ use crate::inertia::{Inertia, arms, mass_product};
 use crate::kinematic::ElementMotion;
 use crate::lanes::Value;
 use crate::options::Acceleration;
-use crate::stress::{FluctuationForm, LOADS, Loading, StressMap, facet_node, hooke};
+use crate::stress::{FluctuationForm, LOADS, Loading, StressMap, face_node, hooke};
 use crate::time_level::{Side, Velocities};
 use crate::traction::{EquilibratedLevel, Equilibration};
 pub(crate) use admissible_stress::AdmissibleStress;
@@ -307,7 +307,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         self.law.stress(&strain)
     }
 
-    /// |e|F̂ at the nodes of each facet, from its outward moments there.
+    /// |e|F̂ at the nodes of each face, from its outward moments there.
     #[inline(always)]
     pub(crate) fn tractions<T: Value>(&self, moments: &[[[T; D]; D]; N]) -> [[[T; D]; D]; N] {
         let mut traction = *moments;
@@ -371,7 +371,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
                     sum += t[c];
                 }
                 for p in 0..D {
-                    forces[facet_node::<N>(k, p)].outer[c] += (traction[k][p][c] + sum) * (1.0 / (D * (D + 1)) as f64);
+                    forces[face_node::<N>(k, p)].outer[c] += (traction[k][p][c] + sum) * (1.0 / (D * (D + 1)) as f64);
                 }
             }
         }

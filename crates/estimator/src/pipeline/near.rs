@@ -42,8 +42,8 @@ pub(super) struct NearElement<const D: usize, const N: usize> {
     form: KeptForm,
     /// Position of each node in the contact surface, the first one of a node at two planes.
     contact: [Option<usize>; N],
-    /// Candidate facets that the element owns.
-    facets: Vec<usize>,
+    /// Candidate faces that the element owns.
+    faces: Vec<usize>,
     /// Where the next interval to be sampled begins.
     start: Option<ContactInstant<D, N>>,
     /// ∫∫F_n|w_n| so far (J).
@@ -76,17 +76,17 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
     for (at, contact) in problem.surface().nodes().iter().enumerate() {
         of_node[contact.node.index()].get_or_insert(at);
     }
-    let mut facets = vec![Vec::new(); mesh.element_count()];
-    for (f, facet) in problem.surface().facets().iter().enumerate() {
-        facets[mesh.facet(facet.facet).owner.index()].push(f);
+    let mut faces = vec![Vec::new(); mesh.element_count()];
+    for (f, face) in problem.surface().faces().iter().enumerate() {
+        faces[mesh.face(face.face).owner.index()].push(f);
     }
-    let near = |(e, facets): (usize, Vec<usize>)| {
+    let near = |(e, faces): (usize, Vec<usize>)| {
         let contact = mesh.nodes_of::<N>()[e].map(|n| of_node[n.index()]);
         contact.iter().any(Option::is_some).then(|| NearElement {
             element: ElementId::new(e),
             form: KeptForm::new(problem, ElementId::new(e)),
             contact,
-            facets,
+            faces,
             start: None,
             normal_work: 0.0,
             corner_friction: 0.0,
@@ -98,7 +98,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
             residuals: Residuals::default(),
         })
     };
-    facets.into_iter().enumerate().filter_map(near).collect()
+    faces.into_iter().enumerate().filter_map(near).collect()
 }
 
 /// The data that all near elements share.
@@ -190,7 +190,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
     ) -> [ContactPart; 3] {
         let mut normal = NormalMisfit::default();
         let (surface, weight) = (context.shared.problem.surface(), context.reconstruction.weight_of_work());
-        for &f in self.facets.iter().filter(|&&f| surface.sliding_of(surface.facets()[f].nodes[0]).is_some()) {
+        for &f in self.faces.iter().filter(|&&f| surface.sliding_of(surface.faces()[f].nodes[0]).is_some()) {
             normal.add(&context.sliding.over(f, steps, context.shared.times, weight));
         }
         for pressures in &waiting.pressures {

@@ -13,7 +13,7 @@ use crate::element::Element;
 use crate::error::EstimateError;
 use crate::estimate::Given;
 use crate::kinematic::{ContactTracks, FreeMotion, NodalMotion, NormalStep, half_way};
-use crate::loaded::LoadedFacets;
+use crate::loaded::LoadedFaces;
 use crate::nodal_field::{FieldPool, NodalField};
 use crate::options::Options;
 use crate::reconstruction::{self, BalancedFields, ReconstructionMethod, SimulatedStep};
@@ -37,7 +37,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
     times: &'p TimeGrid,
     dynamics: Dynamics<'p, D, N>,
-    loaded: LoadedFacets<'p, D, N>,
+    loaded: LoadedFaces<'p, D, N>,
     reconstruction: Box<dyn ReconstructionMethod<D, N> + 'p>,
     schedule: Schedule,
     motion: FreeMotion<D>,
@@ -77,7 +77,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             problem,
             times,
             dynamics: Dynamics::new(problem, times),
-            loaded: LoadedFacets::new(problem),
+            loaded: LoadedFaces::new(problem),
             reconstruction: reconstruction::new(problem, times, options),
             schedule: Schedule::new(options, problem.mesh().element_count(), times.step_count()),
             motion: FreeMotion::new(problem, &pool),

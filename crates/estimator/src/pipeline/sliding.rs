@@ -3,24 +3,24 @@
 //! It is measured on the partition of an instant, with the admissible motion of both surfaces. Half of each piece
 //! counts in each of its elements.
 
-use crate::contact_density::{LevelDensities, NormalMisfit, SlaveHat, SlidingDensity, SlidingFacets};
+use crate::contact_density::{LevelDensities, NormalMisfit, SlaveHat, SlidingDensity, SlidingFaces};
 use crate::direction::along;
 use crate::kinematic::{ContactTracks, NormalMotions, SlidingInstant};
 use crate::partition::{Break, pieces};
 use crate::scratch_file::{ScratchError, ScratchFile};
 use percute_core::contact::{Coupling, SlidingSurfaces};
 use percute_core::problem::Problem;
-use percute_core::simplex::facet_mean;
+use percute_core::simplex::face_mean;
 use percute_core::time::TimeGrid;
 use std::sync::Arc;
 
 /// The misfits of all surfaces that slide, at the instants at hand.
 #[derive(Debug)]
 pub(crate) struct SlidingMisfit {
-    facets: Vec<SlidingFacets>,
+    faces: Vec<SlidingFaces>,
     /// The normal densities of the nodes of each slave at each step, of F_DA and of the reactions: see [`numbers`].
     pressures: Vec<NormalMotions>,
-    /// The first half-step instant at hand, and ∫F_n gap (J) and ∫F_n|ẋ| (W) from there on, for each candidate facet.
+    /// The first half-step instant at hand, and ∫F_n gap (J) and ∫F_n|ẋ| (W) from there on, for each candidate face.
     first: usize,
     shown: Vec<Vec<[f64; 2]>>,
 }
@@ -31,7 +31,7 @@ impl SlidingMisfit {
             NormalMotions::new(NUMBERS * sliding.slave().len(), span, ScratchFile::default())
         };
         Self {
-            facets: SlidingFacets::all(problem),
+            faces: SlidingFaces::all(problem),
             pressures: problem.surface().sliding().iter().map(store).collect(),
             first: 0,
             shown: Vec::new(),
@@ -63,11 +63,11 @@ impl SlidingMisfit {
         tracks: &mut ContactTracks,
         [first, last]: [usize; 2],
     ) -> Result<(), ScratchError> {
-        if self.facets.is_empty() {
+        if self.faces.is_empty() {
             return Ok(());
         }
         self.first = first;
-        self.shown = vec![vec![[0.0; 2]; problem.surface().facets().len()]; last + 1 - first];
+        self.shown = vec![vec![[0.0; 2]; problem.surface().faces().len()]; last + 1 - first];
         for (index, sliding) in problem.surface().sliding().iter().enumerate() {
             let instants = tracks.sliding(problem, index, first..last + 1)?;
             let steps = first / 2..last.div_ceil(2) + 1;
@@ -85,19 +85,19 @@ impl SlidingMisfit {
                     let [a, b] = ends.map(|end| density(sliding, &coupling, |place| pressures[place][end][which]));
                     if ends[0] == ends[1] { a } else { SlidingDensity::mean(&a, &b, &coupling) }
                 });
-                measure(sliding, &self.facets[index], (&coupling, instant), &densities, shown);
+                measure(sliding, &self.faces[index], (&coupling, instant), &densities, shown);
             }
         }
         Ok(())
     }
 
-    /// The misfit on a candidate facet over the interval between two steps, with this weight of the work.
-    pub(super) fn over(&self, facet: usize, steps: [usize; 2], times: &TimeGrid, weight: f64) -> NormalMisfit {
+    /// The misfit on a candidate face over the interval between two steps, with this weight of the work.
+    pub(super) fn over(&self, face: usize, steps: [usize; 2], times: &TimeGrid, weight: f64) -> NormalMisfit {
         let mut misfit = NormalMisfit::default();
         if self.shown.is_empty() {
             return misfit;
         }
-        let at = |instant: usize| self.shown[instant - self.first][facet];
+        let at = |instant: usize| self.shown[instant - self.first][face];
         for step in steps[0]..steps[1] {
             let [p0, p1, p2] = [0, 1, 2].map(|k| at(2 * step + k)[1]);
             let half = 0.5 * weight * times.step(step);
@@ -146,7 +146,7 @@ fn density<const D: usize>(
 /// Adds ∫F_n gap and ∫F_n|ẋ| at an instant, of the densities of F_DA and of the reactions.
 fn measure<const D: usize>(
     sliding: &SlidingSurfaces<D>,
-    facets: &SlidingFacets,
+    faces: &SlidingFaces,
     (coupling, instant): (&Coupling, &SlidingInstant),
     densities: &[SlidingDensity<1>; 2],
     sums: &mut [[f64; 2]],
@@ -165,10 +165,10 @@ fn measure<const D: usize>(
         let [own, other] = [piece.slave_values(|node| own[node]), piece.master_values(|node| other[node])];
         let (force, speed) = (at_ends(sudden), at_ends([0, 1].map(|end| own[end] + other[end])));
         let power = |weights: &[f64; D]| along(weights, &force) * along(weights, &speed).abs();
-        let power = piece.length * facet_mean(&speed, power);
-        for facet in facets.of(&piece) {
-            sums[facet][0] += 0.5 * energy;
-            sums[facet][1] += 0.5 * power;
+        let power = piece.length * face_mean(&speed, power);
+        for face in faces.of(&piece) {
+            sums[face][0] += 0.5 * energy;
+            sums[face][1] += 0.5 * power;
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Intervals of near elements that wait until the motion of their nodes is known, as numbers.
 
 use super::sampling::{ElementVelocities, SampledStress};
-use crate::contact_density::{BesideStress, CornerSliding, FacetPressures, NarrowHat};
+use crate::contact_density::{BesideStress, CornerSliding, FacePressures, NarrowHat};
 use crate::numbers::Reader;
 
 /// An element at a half-step instant; until contact is solved for, its normal components are those of the simulation.
@@ -28,9 +28,9 @@ pub(super) struct Waiting<const D: usize, const N: usize> {
     pub(super) stop: WaitingSample<D, N>,
     /// Which nodes touch at the beginning and at the end: the plane of their first entry, and a second one.
     pub(super) touching: [[[bool; 2]; N]; 2],
-    /// Pressures on its candidate facets, where they act off contact.
-    pub(super) pressures: Vec<FacetPressures<D>>,
-    /// Sliding on its candidate facets beside a node at two planes, step by step.
+    /// Pressures on its candidate faces, where they act off contact.
+    pub(super) pressures: Vec<FacePressures<D>>,
+    /// Sliding on its candidate faces beside a node at two planes, step by step.
     pub(super) sliding: Vec<CornerSliding<D>>,
     /// Stresses beside σ_DA at the beginning and the end, of surfaces that slide.
     pub(super) beside: [BesideStress; 2],
@@ -93,7 +93,7 @@ impl<const D: usize, const N: usize> Waiting<D, N> {
         let flag = |k: usize| (flags >> (4 * N + 2 - k)) & 1 == 1;
         let beside = [(); 2].map(|()| if flag(2) { BesideStress::read(numbers) } else { BesideStress::NONE });
         let [pressures, sliding, from, to] = [(); 4].map(|()| numbers.count());
-        let pressures = (0..pressures).map(|_| FacetPressures::read(numbers)).collect();
+        let pressures = (0..pressures).map(|_| FacePressures::read(numbers)).collect();
         let sliding = (0..sliding).map(|_| CornerSliding::read(numbers)).collect();
         let hats = [from, to].map(|count| (0..count).map(|_| NarrowHat::read(numbers)).collect());
         let loaded = Self::is_loaded(&hats, &beside);

@@ -48,9 +48,9 @@ fn bytes_of_auxiliary<const D: usize, const N: usize>(
     samples: usize,
     pending: usize,
 ) -> usize {
-    let facets = problem.surface().facets().len();
+    let faces = problem.surface().faces().len();
     let auxiliary = steps.saturating_mul(size_of::<Difference>()) + 2 * samples * size_of::<Sources>();
-    pending.saturating_mul(OffContact::<D>::memory(facets)).saturating_add(auxiliary)
+    pending.saturating_mul(OffContact::<D>::memory(faces)).saturating_add(auxiliary)
 }
 
 /// Number of levels worked on at once.

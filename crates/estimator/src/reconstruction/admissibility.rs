@@ -5,7 +5,7 @@ use crate::residual::{Residuals, worse};
 use percute_core::problem::Problem;
 
 /// Checks that the densities of a step are in the cone and, unless they may act `off_contact`, act only where both
-/// nodes of a facet touch throughout the step.
+/// nodes of a face touch throughout the step.
 pub(crate) fn check<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     steps: &SurfaceSteps<'_, D>,
@@ -23,9 +23,9 @@ pub(crate) fn check<const D: usize, const N: usize>(
         if largest == 0.0 {
             continue;
         }
-        for (facet, density) in problem.surface().facets().iter().zip(densities.wide()) {
-            let obstacle = &problem.obstacles()[facet.obstacle];
-            let touches = facet.nodes.iter().all(|&k| steps.now.touching[k] && steps.next.touching[k]);
+        for (face, density) in problem.surface().faces().iter().zip(densities.wide()) {
+            let obstacle = &problem.obstacles()[face.obstacle];
+            let touches = face.nodes.iter().all(|&k| steps.now.touching[k] && steps.next.touching[k]);
             for f in density.iter().filter(|f| **f != [0.0; D]) {
                 let scale = size(f).max(1e-12 * largest);
                 let [tangential, normal] = obstacle.law().excess(&obstacle.flat_frame(), f);
@@ -38,7 +38,7 @@ pub(crate) fn check<const D: usize, const N: usize>(
         // The shares of hats are between 0 and 1: each is in the cone if the force of its node is.
         let largest = densities.hats().iter().map(|hat| size(&hat.resultant)).fold(0.0, worse);
         for hat in densities.hats() {
-            let obstacle = &problem.obstacles()[problem.surface().facets()[hat.facet].obstacle];
+            let obstacle = &problem.obstacles()[problem.surface().faces()[hat.face].obstacle];
             let [tangential, normal] = obstacle.law().excess(&obstacle.flat_frame(), &hat.resultant);
             let outside = worse(tangential, normal);
             let scale = size(&hat.resultant).max(1e-12 * largest).max(f64::MIN_POSITIVE);

@@ -1,4 +1,4 @@
-//! Densities on the facets that touch throughout a step, statically equivalent to the reactions.
+//! Densities on the faces that touch throughout a step, statically equivalent to the reactions.
 
 use super::{ReconstructionMethod, StepDensities, SurfaceSteps};
 use crate::contact_density::Densities;
@@ -6,7 +6,7 @@ use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 
 /// The reconstruction whose densities of a step balance R = B F at both its ends, B the consistent mass matrix of the
-/// facets whose nodes touch at both ends. They are projected into the cone. Where these facets change, the densities
+/// faces whose nodes touch at both ends. They are projected into the cone. Where these faces change, the densities
 /// jump.
 #[derive(Debug)]
 pub(super) struct Consistent<'p, const D: usize, const N: usize> {
@@ -23,7 +23,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Consistent<'
     fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D> {
         let (problem, now, next) = (self.problem, steps.now, steps.next);
         let touches = |k: usize| now.touching[k] && next.touching[k];
-        let live: Vec<bool> = problem.surface().facets().iter().map(|f| f.nodes.iter().all(|&k| touches(k))).collect();
+        let live: Vec<bool> = problem.surface().faces().iter().map(|f| f.nodes.iter().all(|&k| touches(k))).collect();
         if !live.contains(&true) {
             return StepDensities { start: Densities::none(problem), end: Densities::none(problem) };
         }
@@ -33,7 +33,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Consistent<'
     }
 }
 
-/// ∫φ_iφ_j over the live facets: tridiagonal, for facets join nodes that follow each other.
+/// ∫φ_iφ_j over the live faces: tridiagonal, for faces join nodes that follow each other.
 struct BoundaryMass {
     diagonal: Vec<f64>,
     /// Coupling of node k with node k + 1.
@@ -44,20 +44,20 @@ impl BoundaryMass {
     fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, live: &[bool]) -> Self {
         let count = problem.surface().nodes().len();
         let mut mass = Self { diagonal: vec![0.0; count], upper: vec![0.0; count] };
-        for (facet, _) in problem.surface().facets().iter().zip(live).filter(|(_, live)| **live) {
-            let share = facet.area / (D * (D + 1)) as f64;
-            for &k in &facet.nodes {
+        for (face, _) in problem.surface().faces().iter().zip(live).filter(|(_, live)| **live) {
+            let share = face.area / (D * (D + 1)) as f64;
+            for &k in &face.nodes {
                 mass.diagonal[k] += 2.0 * share;
             }
             match problem.mesh().shape() {
                 Shape::Bar => {}
-                Shape::Triangle => mass.upper[facet.nodes[0].min(facet.nodes[1])] += share,
+                Shape::Triangle => mass.upper[face.nodes[0].min(face.nodes[1])] += share,
             }
         }
         mass
     }
 
-    /// B⁻¹R by elimination along the boundary; nodes without live facets get zero.
+    /// B⁻¹R by elimination along the boundary; nodes without live faces get zero.
     fn solve<const D: usize>(&self, reaction: &[[f64; D]]) -> Vec<[f64; D]> {
         let count = self.diagonal.len();
         let mut pivot = self.diagonal.clone();
@@ -88,8 +88,8 @@ impl BoundaryMass {
         reaction: &[[f64; D]],
     ) -> Densities<D> {
         let nodal = self.solve(reaction);
-        Densities::new(problem, |f, facet| match live[f] {
-            true => facet.nodes.map(|k| problem.obstacles()[facet.obstacle].project_into_cone(&nodal[k])),
+        Densities::new(problem, |f, face| match live[f] {
+            true => face.nodes.map(|k| problem.obstacles()[face.obstacle].project_into_cone(&nodal[k])),
             false => [[0.0; D]; D],
         })
     }

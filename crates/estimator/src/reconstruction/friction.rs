@@ -1,14 +1,14 @@
 //! The friction part of η of densities that are linear over a step.
 
-use crate::contact_density::{Densities, FacetDensity, SlidingDensity, SlidingFacets, facet_power, trapezoids};
+use crate::contact_density::{Densities, FaceDensity, SlidingDensity, SlidingFaces, face_power, trapezoids};
 use crate::direction::along;
 use crate::time_level::{ForcesKnown, MotionKnown};
 use percute_core::contact::Side;
 use percute_core::problem::Problem;
 use std::sync::Arc;
 
-/// On each candidate facet (J), up to the middle and the end of the step from `now` to `next`, of this length (s), with
-/// this density at its end: the trapezoidal rule over its three half-step instants. Facets with a node at two planes
+/// On each candidate face (J), up to the middle and the end of the step from `now` to `next`, of this length (s), with
+/// this density at its end: the trapezoidal rule over its three half-step instants. Faces with a node at two planes
 /// wait, see [`CornerSliding`](crate::contact_density::CornerSliding), and those of surfaces that slide have
 /// [`add_sliding`].
 pub(super) fn friction<const D: usize, const N: usize>(
@@ -19,24 +19,24 @@ pub(super) fn friction<const D: usize, const N: usize>(
     density: &Densities<D>,
 ) -> Vec<[f64; 2]> {
     let surface = problem.surface();
-    let mut friction = Vec::with_capacity(surface.facets().len());
-    for (f, facet) in surface.facets().iter().enumerate() {
-        if surface.reaches_a_corner(facet) || surface.sliding_of(facet.nodes[0]).is_some() {
+    let mut friction = Vec::with_capacity(surface.faces().len());
+    for (f, face) in surface.faces().iter().enumerate() {
+        if surface.reaches_a_corner(face) || surface.sliding_of(face.nodes[0]).is_some() {
             friction.push([0.0; 2]);
             continue;
         }
-        let [start, end] = [&now.density, density].map(|densities| FacetDensity {
+        let [start, end] = [&now.density, density].map(|densities| FaceDensity {
             wide: &densities.wide()[f],
-            hats: facet.nodes.map(|k| densities.hats_of(k)),
+            hats: face.nodes.map(|k| densities.hats_of(k)),
         });
         let so_far = now.friction[f][1];
         if start.is_zero() && end.is_zero() {
             friction.push([so_far; 2]);
             continue;
         }
-        let power = |velocity: &[[f64; D]], densities: &[&FacetDensity<'_, D, D>]| {
-            let velocity = facet.nodes.map(|k| surface.against_obstacle(k, velocity));
-            facet_power(problem, f, &velocity, densities)
+        let power = |velocity: &[[f64; D]], densities: &[&FaceDensity<'_, D, D>]| {
+            let velocity = face.nodes.map(|k| surface.against_obstacle(k, velocity));
+            face_power(problem, f, &velocity, densities)
         };
         let (a, b) = (power(now.now.motion.velocity(), &[&start]), power(next.now.velocity(), &[&end]));
         let m = next.mid_velocity.as_ref().map_or(0.0, |velocity| power(velocity, &[&start, &end]));
@@ -45,9 +45,9 @@ pub(super) fn friction<const D: usize, const N: usize>(
     friction
 }
 
-/// Adds the same of surfaces that slide: half of each piece on each of its facets.
+/// Adds the same of surfaces that slide: half of each piece on each of its faces.
 pub(super) fn add_sliding<const D: usize, const N: usize>(
-    (problem, facets): (&Problem<D, N>, &[SlidingFacets]),
+    (problem, faces): (&Problem<D, N>, &[SlidingFaces]),
     length: f64,
     now: &ForcesKnown<D>,
     next: &MotionKnown<D>,
@@ -55,8 +55,8 @@ pub(super) fn add_sliding<const D: usize, const N: usize>(
     friction: &mut [[f64; 2]],
 ) {
     let surface = problem.surface();
-    let all = surface.sliding().iter().zip(facets).zip(now.density.sliding().iter().zip(density.sliding()));
-    for ((sliding, facets), (start, end)) in all {
+    let all = surface.sliding().iter().zip(faces).zip(now.density.sliding().iter().zip(density.sliding()));
+    for ((sliding, faces), (start, end)) in all {
         if sliding.law().friction() == 0.0 || (start.is_zero() && end.is_zero()) {
             continue;
         }
@@ -68,8 +68,8 @@ pub(super) fn add_sliding<const D: usize, const N: usize>(
         let [from, to] = [now.now.motion.velocity(), next.now.velocity()].map(both);
         let mut add = |density: &SlidingDensity<D>, slip: &[Vec<f64>; 2], parts: [f64; 2]| {
             density.friction_power(sliding, slip, |piece, power| {
-                for facet in facets.of(piece) {
-                    (0..2).for_each(|k| friction[facet][k] += 0.5 * parts[k] * power);
+                for face in faces.of(piece) {
+                    (0..2).for_each(|k| friction[face][k] += 0.5 * parts[k] * power);
                 }
             });
         };

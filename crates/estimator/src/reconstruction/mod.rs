@@ -1,7 +1,7 @@
 //! Reconstructions: from the steps of a simulation to contact tractions F_DA (§6.2.1) and to the fields that are
 //! balanced.
 //!
-//! A density lives on the candidate facets, linear on each and linear in time inside each step. A
+//! A density lives on the candidate faces, linear on each and linear in time inside each step. A
 //! [`ReconstructionMethod`] makes it, and decides on all that goes with it. [`new`] is the one place where a choice
 //! becomes its reconstruction.
 
@@ -11,7 +11,7 @@ mod corrected;
 mod friction;
 mod published;
 
-use crate::contact_density::{Densities, FacetPressures, LevelDensities, NormalMisfit, OffContact};
+use crate::contact_density::{Densities, FacePressures, LevelDensities, NormalMisfit, OffContact};
 use crate::difference::Difference;
 use crate::element::Element;
 use crate::error::EstimateError;
@@ -128,7 +128,7 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
     }
 
     /// The part of the contact law that such densities miss, for the motion in the tracks.
-    fn normal_misfit(&self, _pressures: &FacetPressures<D>, _tracks: &[ContactTrack]) -> NormalMisfit {
+    fn normal_misfit(&self, _pressures: &FacePressures<D>, _tracks: &[ContactTrack]) -> NormalMisfit {
         NormalMisfit::default()
     }
 
@@ -137,7 +137,7 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         1.0
     }
 
-    /// The friction part of η on each candidate facet (J), up to the middle and the end of the step from `now` to
+    /// The friction part of η on each candidate face (J), up to the middle and the end of the step from `now` to
     /// `next`; `length` is that of the step (s), `density` F_DA at its end.
     fn friction(
         &self,

@@ -217,7 +217,7 @@ fn consistent_is_statically_equivalent() {
     let problem = problem();
     // Pressure and friction below 0.2 of it, continuous along the five nodes.
     let nodal = [[1e3, 6e3], [-1e3, 9e3], [2e3, 1.1e4], [1e3, 7e3], [0.0, 5e3]];
-    let given: Vec<_> = problem.surface().facets().iter().map(|f| f.nodes.map(|k| nodal[k])).collect();
+    let given: Vec<_> = problem.surface().faces().iter().map(|f| f.nodes.map(|k| nodal[k])).collect();
     let mut step = pressed();
     step.force = nodal_forces(&problem, &Densities::new(&problem, |f, _| given[f]));
     let interval = made(Consistent, &problem, &alone(&step, &step));
@@ -259,9 +259,9 @@ fn published_forces(slope: f64, arriving: bool) -> [[f64; 2]; 2] {
     let around = SurfaceSteps { before: Some(&before), now: &now, next: &now, after: Some(&now) };
     let density = made(Published, &problem, &around).start;
     [left, right].map(|outer| {
-        let f = problem.surface().facets().iter().position(|f| f.nodes.contains(&outer)).unwrap();
+        let f = problem.surface().faces().iter().position(|f| f.nodes.contains(&outer)).unwrap();
         [outer, middle].map(|node| {
-            let p = problem.surface().facets()[f].nodes.iter().position(|&n| n == node).unwrap();
+            let p = problem.surface().faces()[f].nodes.iter().position(|&n| n == node).unwrap();
             density[f][p][1]
         })
     })

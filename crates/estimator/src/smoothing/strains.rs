@@ -74,8 +74,8 @@ impl SmoothedStrains {
             |x| like.load(&x),
         );
         let mut smooth = [like.zero(); COMPONENTS];
-        for facet in mesh.facets_of::<N>()[element.index()] {
-            let other = Smoothing::beyond(problem, element, facet);
+        for face in mesh.faces_of::<N>()[element.index()] {
+            let other = Smoothing::beyond(problem, element, face);
             let beyond = elements[other.index()].volume;
             let weight = smoothing.edge_weight(mesh.nodes_of::<N>()[element.index()][0], volume + beyond);
             let (mine, beyond) = (weight * volume, weight * beyond);

@@ -22,7 +22,7 @@ impl BarStress {
     /// Stress at both ends and in the middle: σ(0) = −F̂_0 and σ' = Γ_DA − f_d.
     #[inline(always)]
     fn stress<T: Value, const D: usize, const N: usize>(&self, loading: &Loading<D, N, T>) -> [T; 3] {
-        // Facet 1, at node 0, has the outward normal −1.
+        // Face 1, at node 0, has the outward normal −1.
         let start = -loading.traction[1][0][0];
         let (g0, g1) = (loading.volume[0][0], loading.volume[1][0]);
         let at = |s: f64| start + (g0 + (g1 - g0) * (0.5 * s)) * (self.length * s);

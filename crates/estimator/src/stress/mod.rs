@@ -1,4 +1,4 @@
-//! Admissible stress σ_DA on an element (§6.2.2): in equilibrium with the tractions on its facets
+//! Admissible stress σ_DA on an element (§6.2.2): in equilibrium with the tractions on its faces
 //! and with Γ_DA − f_d, exactly, and of least complementary energy among a family.
 
 mod bar;
@@ -24,16 +24,16 @@ pub(crate) use triangle::TriangleStress;
 /// What an element's stress must balance, per unit of section or thickness.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Loading<const D: usize, const N: usize, T = f64> {
-    /// |e| F̂ at the nodes of each facet: facet k lies opposite to node k, its p-th node is
+    /// |e| F̂ at the nodes of each face: face k lies opposite to node k, its p-th node is
     /// k + 1 + p (mod N).
     pub(crate) traction: [[[T; D]; D]; N],
     /// Γ_DA − f_d at the nodes (N/m³).
     pub(crate) volume: [[T; D]; N],
 }
 
-/// Local number of the p-th node of the facet opposite to node k.
+/// Local number of the p-th node of the face opposite to node k.
 #[inline]
-pub(crate) const fn facet_node<const N: usize>(k: usize, p: usize) -> usize {
+pub(crate) const fn face_node<const N: usize>(k: usize, p: usize) -> usize {
     (k + 1 + p) % N
 }
 

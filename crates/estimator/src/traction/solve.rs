@@ -13,7 +13,7 @@ use crate::smoothing::{SmoothedStrains, Smoothing, Strained};
 use crate::stress::hooke;
 use crate::time_level::{ForcesKnown, Side};
 use crate::wide::Wide;
-use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::material::Law;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -176,7 +176,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
                 like,
                 &star,
                 #[inline(always)]
-                |facet| load(like, &self.known_moments(forces, facet, node)),
+                |face| load(like, &self.known_moments(forces, face, node)),
             );
             let solver = StarSolver {
                 all: self,
@@ -205,15 +205,15 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         worst
     }
 
-    /// The known moments on a facet at a node, at each level.
+    /// The known moments on a face at a node, at each level.
     #[inline(always)]
-    fn known_moments(&self, forces: &[ForcesKnown<D>], facet: FacetId, node: NodeId) -> [Lanes; D] {
-        if !self.is_known(facet) {
+    fn known_moments(&self, forces: &[ForcesKnown<D>], face: FaceId, node: NodeId) -> [Lanes; D] {
+        if !self.is_known(face) {
             return [Lanes::ZERO; D];
         }
         let mut moments = [Lanes::ZERO; D];
         for (lane, forces) in forces.iter().enumerate() {
-            let moment = self.known_moment(&forces.level, &forces.density, facet, node);
+            let moment = self.known_moment(&forces.level, &forces.density, face, node);
             (0..D).for_each(|c| moments[c].0[lane] = moment[c]);
         }
         moments
@@ -233,7 +233,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
             let body = &forces.level.body_force;
             let body_force: Vec<_> = star.elements.iter().filter_map(|e| body.get(e.index()).copied()).collect();
             let local: Vec<u32> = (0..star.elements.len() as u32).collect();
-            let ends = self.ends(0.0, &star, |facet| self.known_moment(&forces.level, &before.density, facet, node));
+            let ends = self.ends(0.0, &star, |face| self.known_moment(&forces.level, &before.density, face, node));
             let solver = StarSolver {
                 all: self,
                 node,

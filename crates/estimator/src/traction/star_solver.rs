@@ -1,4 +1,4 @@
-//! One star problem, solved from facet to facet, at some levels side by side.
+//! One star problem, solved from face to face, at some levels side by side.
 
 use super::{Equilibration, MassTerm};
 use crate::lanes::{Value, load};
@@ -6,7 +6,7 @@ use percute_core::ids::{ElementId, NodeId};
 
 /// The two ends of a star.
 pub(super) struct Ends<const D: usize, T> {
-    /// Whether its last facet is the first.
+    /// Whether its last face is the first.
     pub(super) closed: bool,
     /// Known outward moments (N); zero where there is none.
     pub(super) moments: [[T; D]; 2],
@@ -31,7 +31,7 @@ impl<const D: usize, T: Value> Ends<D, T> {
             let open = [self.open(0, c), self.open(1, c)];
             let [first_moment, last_moment] = [like.load(&moments[0][c]), like.load(&moments[last][c])];
             let shift = match open {
-                // The mean over all facets without a known moment.
+                // The mean over all faces without a known moment.
                 [true, true] => Some(lack[c] * (1.0 / (last + usize::from(!self.closed)) as f64)),
                 [true, false] => Some(self.moments[1][c] - last_moment),
                 _ => None,
@@ -166,7 +166,7 @@ impl<const D: usize, const N: usize, T: Value> StarSolver<'_, '_, D, N, T> {
         r
     }
 
-    /// ∫σφ_i n over the facet by which the star leaves (1) or enters (0) element `m` of the star, outward:
+    /// ∫σφ_i n over the face by which the star leaves (1) or enters (0) element `m` of the star, outward:
     /// |e|n/D = −V∇φ_k.
     #[inline(always)]
     fn moment(&self, m: usize, i: usize, exit: usize, stress: &[[T; D]; D]) -> [T; D] {
@@ -179,7 +179,7 @@ impl<const D: usize, const N: usize, T: Value> StarSolver<'_, '_, D, N, T> {
         moment
     }
 
-    /// σ_h beyond the facet by which the star leaves element `m`; at the boundary that of the element, whose traction
+    /// σ_h beyond the face by which the star leaves element `m`; at the boundary that of the element, whose traction
     /// is the finite-element one there.
     #[inline(always)]
     fn next(&self, m: usize, here: &[[T; D]; D]) -> [[T; D]; D] {

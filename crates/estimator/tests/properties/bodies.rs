@@ -67,11 +67,11 @@ pub(crate) fn gravity<const D: usize>(g: [f64; D]) -> BodyForce {
 /// others in `second`.
 pub(crate) fn in_two_groups(mesh: &Mesh, first: impl Fn(Vector) -> bool) -> Mesh {
     let cells: Vec<_> = mesh.cell_rows().iter().map(|node| node.index()).collect();
-    let nodes = |f: &percute_core::ids::FacetId| mesh.facet(*f).nodes.iter().map(|node| node.index());
-    let facets = mesh.facet_groups().iter();
-    let facets = facets.map(|(name, f)| (name.clone(), f.iter().flat_map(nodes).collect())).collect();
+    let nodes = |f: &percute_core::ids::FaceId| mesh.face(*f).nodes.iter().map(|node| node.index());
+    let faces = mesh.face_groups().iter();
+    let faces = faces.map(|(name, f)| (name.clone(), f.iter().flat_map(nodes).collect())).collect();
     let (one, other) = mesh.elements().partition::<Vec<_>, _>(|&e| first(mesh.centroid(e)));
     let numbers = |of: Vec<ElementId>| of.into_iter().map(ElementId::index).collect();
     let groups = [("first".to_string(), numbers(one)), ("second".to_string(), numbers(other))].into();
-    Mesh::from_rows(mesh.dimension(), mesh.points(), &cells, (&facets, &groups)).unwrap()
+    Mesh::from_rows(mesh.dimension(), mesh.points(), &cells, (&faces, &groups)).unwrap()
 }

@@ -45,7 +45,7 @@ fn supported_and_pulled() {
     }
 }
 
-/// Rollers on two sides that share a corner, and on all four: stars without free facets.
+/// Rollers on two sides that share a corner, and on all four: stars without free faces.
 #[test]
 fn boxes_on_rollers() {
     for sides in [vec!["left", "bottom"], vec!["left", "bottom", "right", "top"]] {

@@ -4,7 +4,7 @@ use crate::properties::bodies::{aluminium, plane_below, thrown};
 use crate::properties::estimating::{all_choices, estimate, history};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
+use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
 use percute_core::problem::{Initial, Problem, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{ErrorMeasures, Options, Sampling};
@@ -76,7 +76,7 @@ fn a_body_that_flies_by_changes_no_relative_error() {
             }
             let points = far.points_in::<2>().iter().map(|[x, y]| [x + 1.0, y + 1.0]).collect();
             let cells: Vec<_> = far.nodes_of::<3>().iter().map(|cell| cell.map(|node| node.index())).collect();
-            let far = Mesh::new(points, &cells, &FacetGroups::new(), &ElementGroups::new()).unwrap();
+            let far = Mesh::new(points, &cells, &FaceGroups::new(), &ElementGroups::new()).unwrap();
             let joined = Mesh::joined(&[("near", &mesh), ("far", &far)]).unwrap();
             let velocity =
                 joined.points_in::<2>().iter().map(|[x, _]| if *x > 0.5 { [600.0, 50.0] } else { [0.0, -20.0] });

@@ -3,7 +3,7 @@
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
 use percute_core::material::{Elastic, Law};
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
+use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
@@ -46,7 +46,7 @@ fn distorted() -> Mesh {
             })
         })
         .collect();
-    let groups = FacetGroups::from([
+    let groups = FaceGroups::from([
         ("bottom".to_string(), (0..nx).map(|i| [id(i, 0), id(i + 1, 0)]).collect()),
         ("top".to_string(), (0..nx).map(|i| [id(i, ny), id(i + 1, ny)]).collect()),
         ("left".to_string(), (0..ny).map(|j| [id(0, j), id(0, j + 1)]).collect()),

@@ -91,11 +91,11 @@ impl EstimateContents<'_> {
         let grid = 24 * nodes + 8 * (d + 1) * cells + 8 * (cells + 1) + 9 * cells;
         let texts =
             self.statement.len() + self.report.len() + self.case.map_or(0, |case| case.name.len() + case.text.len());
-        let facets: usize = mesh.facet_groups().values().map(|members| 8 * d * members.len()).sum();
+        let faces: usize = mesh.face_groups().values().map(|members| 8 * d * members.len()).sum();
         let elements: usize = mesh.element_groups().values().map(|members| 8 * members.len()).sum();
-        let groups = (mesh.facet_groups().len() + mesh.element_groups().len()) as u64;
+        let groups = (mesh.face_groups().len() + mesh.element_groups().len()) as u64;
         let contact = self.contact().map_or(0, |(results, _)| contact::bytes(results, instants, nodes));
-        let arrays = grid + facets + elements + texts + contact + 48 * self.estimate.over_time.len();
+        let arrays = grid + faces + elements + texts + contact + 48 * self.estimate.over_time.len();
         let maps = instants as u64 * (40 * cells + fields + 136) as u64;
         maps + arrays as u64 + LIBRARY + PER_GROUP * groups + bytes_of_bodies(mesh, instants)
     }

@@ -1,7 +1,7 @@
 //! From the sections of a file to a mesh.
 
 use super::error::{Fault, GmshCause};
-use super::facets::{Boundary, boundary};
+use super::faces::{Boundary, boundary};
 use super::groups::Sorted;
 use super::nodes::{Kept, Nodes};
 use super::raw::{Element, Raw};
@@ -27,12 +27,12 @@ pub(super) fn mesh(mut raw: Raw, scale: f64) -> Result<MeshFile, Fault> {
     assemble(&raw, &nodes, lines, points, None, scale)
 }
 
-/// Builds a mesh of `cells`, with boundary groups from `facets`; `points` are not part of it.
+/// Builds a mesh of `cells`, with boundary groups from `faces`; `points` are not part of it.
 fn assemble<const D: usize, const N: usize>(
     raw: &Raw,
     nodes: &Nodes,
     cells: Vec<Element<N>>,
-    facets: Vec<Element<D>>,
+    faces: Vec<Element<D>>,
     points: Option<&Sorted<1>>,
     scale: f64,
 ) -> Result<MeshFile, Fault> {
@@ -42,7 +42,7 @@ fn assemble<const D: usize, const N: usize>(
     let shape = simplex::<D, N>().shape();
     let places = kept.flat(shape)?;
     let cells = kept.numbered(&located);
-    let Boundary { groups, inner } = boundary(raw, nodes, &kept, &cells, &raw.sorted(facets)?, shape)?;
+    let Boundary { groups, inner } = boundary(raw, nodes, &kept, &cells, &raw.sorted(faces)?, shape)?;
     let parts = raw.named(D, &members, |at| at);
     let reported = [
         import_warnings::dropped(&kept.dropped, D),
@@ -75,10 +75,10 @@ fn refused<const N: usize>(error: MeshError, kept: &Kept, elements: &[Element<N>
             let error = MeshError::Degenerate { element: element(e), nodes: nodes(of), volume, diameter };
             (at(e), advice, error)
         }
-        MeshError::NonManifoldFacet { nodes: of, elements: all } => {
+        MeshError::NonManifoldFace { nodes: of, elements: all } => {
             let last = all.last().and_then(|&e| at(e));
             let error =
-                MeshError::NonManifoldFacet { nodes: nodes(of), elements: all.into_iter().map(element).collect() };
+                MeshError::NonManifoldFace { nodes: nodes(of), elements: all.into_iter().map(element).collect() };
             (last, OVERLAP, error)
         }
         MeshError::Overlap { elements: all } => {

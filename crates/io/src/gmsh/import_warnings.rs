@@ -79,21 +79,21 @@ pub(super) fn inner(inner: &BTreeMap<String, usize>, dimension: usize) -> Option
          where it can be held, loaded or touched",
         quoted(&groups)
     );
-    import_warning("inner_facets", "parts of groups inside the body left out", message, groups)
+    import_warning("inner_edges", "parts of groups inside the body left out", message, groups)
 }
 
 /// Physical groups that have a name but no elements.
 pub(super) fn empty<T, U>(
     raw: &Raw,
     dimension: usize,
-    facets: &BTreeMap<String, Vec<T>>,
+    faces: &BTreeMap<String, Vec<T>>,
     inner: &BTreeMap<String, usize>,
     parts: &BTreeMap<String, Vec<U>>,
 ) -> Option<ImportWarning> {
-    let no_facets = facets.iter().filter(|(name, all)| all.is_empty() && !inner.contains_key(*name));
+    let no_faces = faces.iter().filter(|(name, all)| all.is_empty() && !inner.contains_key(*name));
     let no_parts = parts.iter().filter(|(_, all)| all.is_empty());
     let mut groups: Vec<_> =
-        no_facets.map(|(name, _)| name.clone()).chain(no_parts.map(|(name, _)| name.clone())).collect();
+        no_faces.map(|(name, _)| name.clone()).chain(no_parts.map(|(name, _)| name.clone())).collect();
     let beyond = raw.names.iter().filter(|((of, _), _)| *of > dimension as i64);
     groups.extend(beyond.map(|(_, name)| name.clone()));
     groups.sort();

@@ -8,7 +8,7 @@ pub(super) const POINT: i64 = 15;
 pub(super) const LINE: i64 = 1;
 pub(super) const TRIANGLE: i64 = 2;
 
-/// Numbers of the facets and of the elements of a mesh.
+/// Numbers of the faces and of the elements of a mesh.
 pub(super) fn numbers(shape: Shape) -> [i64; 2] {
     match shape {
         Shape::Bar => [POINT, LINE],

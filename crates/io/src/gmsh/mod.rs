@@ -6,7 +6,7 @@
 mod assemble;
 mod cursor;
 mod error;
-mod facets;
+mod faces;
 mod groups;
 mod header;
 mod import_warnings;

@@ -81,8 +81,8 @@ impl Kept {
         cells.iter().map(|cell| cell.map(|node| self.numbers[node])).collect()
     }
 
-    /// A facet by the numbers of its nodes, if all are kept.
-    pub(super) fn facet<const D: usize>(&self, nodes: [usize; D]) -> Option<[usize; D]> {
+    /// A face by the numbers of its nodes, if all are kept.
+    pub(super) fn face<const D: usize>(&self, nodes: [usize; D]) -> Option<[usize; D]> {
         let numbers = nodes.map(|node| self.numbers[node]);
         numbers.iter().all(|&n| n != usize::MAX).then_some(numbers)
     }

@@ -1,7 +1,7 @@
 //! The outline of a plane mesh as a geometry of Gmsh (`.geo`): polygons of straight lines, to be meshed again.
 
-use percute_core::ids::{ElementId, FacetId};
-use percute_core::mesh::{Facet, Mesh};
+use percute_core::ids::{ElementId, FaceId};
+use percute_core::mesh::{Face, Mesh};
 use percute_core::simplex::Shape;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -102,8 +102,8 @@ fn regions(mesh: &Mesh) -> (Vec<usize>, Vec<Region>) {
         let mut waiting = vec![first];
         region[first] = found.len();
         while let Some(element) = waiting.pop() {
-            for &facet in mesh.cell_facets(ElementId::new(element)) {
-                let other = mesh.facet(facet).across(ElementId::new(element)).map(ElementId::index);
+            for &face in mesh.cell_faces(ElementId::new(element)) {
+                let other = mesh.face(face).across(ElementId::new(element)).map(ElementId::index);
                 if let Some(other) =
                     other.filter(|&other| region[other] == usize::MAX && groups[other] == groups[first])
                 {
@@ -115,8 +115,8 @@ fn regions(mesh: &Mesh) -> (Vec<usize>, Vec<Region>) {
         found.push(Region { groups: groups[first].clone(), edges: Vec::new() });
     }
     for (element, cell) in mesh.cells().enumerate() {
-        for (k, &facet) in mesh.cell_facets(ElementId::new(element)).iter().enumerate() {
-            let other = mesh.facet(facet).across(ElementId::new(element));
+        for (k, &face) in mesh.cell_faces(ElementId::new(element)).iter().enumerate() {
+            let other = mesh.face(face).across(ElementId::new(element));
             if other.is_none_or(|other| region[other.index()] != region[element]) {
                 found[region[element]].edges.push([1, 2].map(|p| cell[(k + p) % 3].index()));
             }
@@ -127,18 +127,18 @@ fn regions(mesh: &Mesh) -> (Vec<usize>, Vec<Region>) {
 
 /// The edges of the boundary and between regions.
 fn edges(mesh: &Mesh, region: &[usize]) -> Vec<Edge> {
-    let mut names: BTreeMap<FacetId, BTreeSet<String>> = BTreeMap::new();
-    for (name, facets) in mesh.facet_groups() {
-        facets.iter().for_each(|facet| _ = names.entry(*facet).or_default().insert(name.clone()));
+    let mut names: BTreeMap<FaceId, BTreeSet<String>> = BTreeMap::new();
+    for (name, faces) in mesh.face_groups() {
+        faces.iter().for_each(|face| _ = names.entry(*face).or_default().insert(name.clone()));
     }
-    let edge = |(number, facet): (usize, Facet<'_>)| {
-        let beside = [Some(facet.owner), facet.neighbour].into_iter().flatten().map(|e| region[e.index()]);
+    let edge = |(number, face): (usize, Face<'_>)| {
+        let beside = [Some(face.owner), face.neighbour].into_iter().flatten().map(|e| region[e.index()]);
         let beside: BTreeSet<usize> = beside.collect();
-        let groups = names.get(&FacetId::new(number)).cloned().unwrap_or_default();
-        let nodes = [facet.nodes[0].index(), facet.nodes[1].index()];
-        (facet.neighbour.is_none() || beside.len() > 1).then(|| Edge { nodes: sorted(nodes), kind: (beside, groups) })
+        let groups = names.get(&FaceId::new(number)).cloned().unwrap_or_default();
+        let nodes = [face.nodes[0].index(), face.nodes[1].index()];
+        (face.neighbour.is_none() || beside.len() > 1).then(|| Edge { nodes: sorted(nodes), kind: (beside, groups) })
     };
-    mesh.facets().enumerate().filter_map(edge).collect()
+    mesh.faces().enumerate().filter_map(edge).collect()
 }
 
 /// The nodes of each straight curve of edges of one kind.
@@ -219,7 +219,7 @@ fn lines(nodes: &[usize], of_edge: &BTreeMap<[usize; 2], i64>) -> Option<String>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
+    use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
 
     fn count(text: &str, start: &str) -> usize {
         text.lines().filter(|line| line.starts_with(start)).count()
@@ -248,7 +248,7 @@ mod tests {
         let cells: Vec<_> = elements.iter().map(|e| whole.nodes_of::<3>()[*e].map(|n| n.index())).collect();
         let upper = (0..cells.len()).filter(|k| middle(elements[*k])[1] > 3.0).collect();
         let groups = ElementGroups::from([("upper".to_string(), upper)]);
-        let mesh = Mesh::new(whole.points_in::<2>().to_vec(), &cells, &FacetGroups::new(), &groups).unwrap();
+        let mesh = Mesh::new(whole.points_in::<2>().to_vec(), &cells, &FaceGroups::new(), &groups).unwrap();
         let text = outline(&mesh).unwrap();
         // The outer corners, both ends of the boundary between the materials, the hole.
         assert_eq!(["Point", "Line", "Curve Loop", "Plane"].map(|start| count(&text, start)), [10, 11, 3, 2]);

@@ -91,10 +91,10 @@ impl<'p> Plan<'p> {
         let (d, contact) = (mesh.dimension() as u64, self.contact_nodes() as u64);
         let grid = 24 * nodes + 8 * (d + 1) * cells + 8 * (cells + 1) + cells;
         let steps = 8 * (7 + self.vectors() + FIELDS.len() as u64);
-        let facets: u64 = mesh.facet_groups().values().map(|members| 8 * d * members.len() as u64).sum();
+        let faces: u64 = mesh.face_groups().values().map(|members| 8 * d * members.len() as u64).sum();
         let elements: u64 = mesh.element_groups().values().map(|members| 8 * members.len() as u64).sum();
         let run = if self.is_thinned() { 8 * (instants + self.times.instants().len() as u64) } else { 0 };
-        let groups = PER_GROUP * (mesh.facet_groups().len() + mesh.element_groups().len()) as u64;
+        let groups = PER_GROUP * (mesh.face_groups().len() + mesh.element_groups().len()) as u64;
         let texts = self.statement.len() + self.case.as_ref().map_or(0, |case| case.name.len() + case.text.len());
         let elsewhere = self
             .elsewhere
@@ -102,7 +102,7 @@ impl<'p> Plan<'p> {
             .map_or(0, |origin| 8 * d * nodes + (origin.program.len() + origin.derived().len()) as u64 + 3 * PER_GROUP);
         let checkpoints = checkpoints::size(self.steps_to_go_on(), mesh.node_count(), mesh.dimension());
         let fixed = grid
-            + facets
+            + faces
             + elements
             + groups
             + 8 * d * nodes

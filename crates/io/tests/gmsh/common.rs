@@ -1,6 +1,6 @@
 //! Files to read, and meshes to compare.
 
-use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::mesh::Mesh;
 use percute_io::gmsh::{GmshError, MeshFile, parse};
 use std::collections::BTreeSet;
@@ -71,7 +71,7 @@ pub(crate) fn bar(file: MeshFile) -> MeshFile {
     file
 }
 
-/// Everything of a mesh but its numbers: elements and facets by the bits of their corners, in an order of their own.
+/// Everything of a mesh but its numbers: elements and faces by the bits of their corners, in an order of their own.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Shape {
     cells: BTreeSet<Vec<Vec<u64>>>,
@@ -88,16 +88,16 @@ impl Shape {
             corners.rotate_left(first);
             corners
         };
-        let facet = |facet: FacetId| {
-            let mut corners: Vec<_> = mesh.facet(facet).nodes.iter().map(|node| bits(*node)).collect();
+        let face = |face: FaceId| {
+            let mut corners: Vec<_> = mesh.face(face).nodes.iter().map(|node| bits(*node)).collect();
             corners.sort();
             corners
         };
-        let facets = mesh.facet_groups().iter();
-        let facets = facets.map(|(name, all)| (format!("facets {name}"), all.iter().map(|f| facet(*f)).collect()));
+        let faces = mesh.face_groups().iter();
+        let faces = faces.map(|(name, all)| (format!("faces {name}"), all.iter().map(|f| face(*f)).collect()));
         let elements = mesh.element_groups().iter();
         let elements = elements.map(|(name, all)| (format!("cells {name}"), all.iter().map(|e| cell(*e)).collect()));
-        Self { cells: mesh.elements().map(cell).collect(), groups: facets.chain(elements).collect() }
+        Self { cells: mesh.elements().map(cell).collect(), groups: faces.chain(elements).collect() }
     }
 }
 
@@ -106,7 +106,7 @@ pub(crate) fn assert_same(a: &Mesh, b: &Mesh) {
     let bits = |mesh: &Mesh| mesh.points().iter().map(|x| x.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(a), bits(b));
     assert!(a.cell_rows() == b.cell_rows());
-    assert_eq!(a.facet_groups(), b.facet_groups());
+    assert_eq!(a.face_groups(), b.face_groups());
     assert_eq!(a.element_groups(), b.element_groups());
 }
 

@@ -15,7 +15,7 @@ fn a_block_of_two_materials_is_read_from_every_format() {
         assert_eq!((mesh.node_count(), read.node_tags.len()), (38, 38), "{format}");
         assert_eq!(mesh.element_count(), read.element_tags.len());
         assert!(read.node_tags.is_sorted_by(|a, b| a < b) && read.element_tags.is_sorted_by(|a, b| a < b));
-        let groups: Vec<_> = mesh.facet_groups().keys().collect();
+        let groups: Vec<_> = mesh.face_groups().keys().collect();
         assert_eq!(groups, ["Dach, außen", "bottom", "interface", "right side"], "{format}");
         let groups: Vec<_> = mesh.element_groups().keys().collect();
         assert_eq!(groups, ["30", "aluminium", "steel"], "{format}");
@@ -37,18 +37,18 @@ fn groups_of_curves_are_where_the_script_puts_them() {
         for (group, length, axis, value) in
             [("bottom", 25.0, 1, 0.0), ("right side", 20.0, 0, 25.0), ("Dach, außen", 25.0, 1, 20.0)]
         {
-            let members = &mesh.facet_groups()[group];
-            let total: f64 = members.iter().map(|&facet| mesh.normal_in::<2>(facet).1).sum();
+            let members = &mesh.face_groups()[group];
+            let total: f64 = members.iter().map(|&face| mesh.normal_in::<2>(face).1).sum();
             assert!((total - length).abs() <= 1e-13 * length, "{format}: {group} has {total}");
-            for node in members.iter().flat_map(|facet| mesh.facet_nodes::<2>(*facet)) {
+            for node in members.iter().flat_map(|face| mesh.face_nodes::<2>(*face)) {
                 assert_eq!(mesh.points_in::<2>()[node.index()][axis], value, "{format}: {group}");
             }
         }
         let reported: Vec<_> = mesh.import_warnings().iter().map(|n| (n.name, names(&n.groups))).collect();
         let expected =
-            [("dropped_nodes", vec![]), ("points_left_out", vec!["probe"]), ("inner_facets", vec!["interface"])];
+            [("dropped_nodes", vec![]), ("points_left_out", vec!["probe"]), ("inner_edges", vec!["interface"])];
         assert_eq!(reported, expected, "{format}");
-        assert!(mesh.facet_groups()["interface"].is_empty());
+        assert!(mesh.face_groups()["interface"].is_empty());
     }
 }
 
@@ -94,8 +94,8 @@ fn a_bar_is_read_from_every_format() {
     for format in FORMATS {
         let mesh = bar(read(&file(&format!("bar-{format}.msh")), 1.0).unwrap()).mesh;
         let place = |group: &str| {
-            let facet = mesh.facet_groups()[group][0];
-            mesh.points_in::<1>()[mesh.facet_nodes::<1>(facet)[0].index()]
+            let face = mesh.face_groups()[group][0];
+            mesh.points_in::<1>()[mesh.face_nodes::<1>(face)[0].index()]
         };
         assert_eq!((place("start"), place("end")), ([0.02], [0.12]), "{format}");
         let length = |group: &str| {
@@ -107,6 +107,6 @@ fn a_bar_is_read_from_every_format() {
         // The right line runs against x.
         assert_eq!(mesh.reoriented_elements(), mesh.element_groups()["right"].len());
         let reported: Vec<_> = mesh.import_warnings().iter().map(|n| (n.name, names(&n.groups))).collect();
-        assert_eq!(reported, [("inner_facets", vec!["middle"])]);
+        assert_eq!(reported, [("inner_edges", vec!["middle"])]);
     }
 }

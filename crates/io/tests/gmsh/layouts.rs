@@ -78,8 +78,8 @@ fn nodes_and_elements_come_in_the_order_of_their_tags() {
     // 50 is (2, 9, 4) in the file, clockwise.
     assert_eq!(cells, [[0, 1, 2], [0, 3, 1]]);
     assert_eq!(read.mesh.element_groups()["upper"][0].index(), 0);
-    let foot = read.mesh.facet_groups()["foot"][0];
-    assert_eq!(read.mesh.facet_nodes::<2>(foot).map(|node| node.index()), [0, 3]);
+    let foot = read.mesh.face_groups()["foot"][0];
+    assert_eq!(read.mesh.face_nodes::<2>(foot).map(|node| node.index()), [0, 3]);
 }
 
 #[test]
@@ -163,8 +163,8 @@ fn elements_of_version_4_on_the_same_nodes_are_one() {
     let numbers = |group: &str| read.mesh.element_groups()[group].iter().map(|e| e.index()).collect::<Vec<_>>();
     assert_eq!((numbers("lower"), numbers("upper")), (vec![0], vec![0, 1]));
     for foot in ["foot", "2"] {
-        let facet = read.mesh.facet_groups()[foot][0];
-        assert_eq!(read.mesh.facet_nodes::<2>(facet).map(|node| node.index()), [0, 3]);
+        let face = read.mesh.face_groups()[foot][0];
+        assert_eq!(read.mesh.face_nodes::<2>(face).map(|node| node.index()), [0, 3]);
     }
     let import_warning =
         read.mesh.import_warnings().iter().find(|import_warning| import_warning.name == "duplicate_elements").unwrap();
@@ -184,5 +184,5 @@ fn groups_of_one_name_are_one_and_those_without_have_their_number() {
     let nameless = SQUARE.replace("3\n1 1 \"foot\"\n2 5 \"lower\"", "1");
     let mesh = plane(of_bytes(nameless.as_bytes()).unwrap()).mesh;
     assert_eq!(mesh.element_groups().keys().collect::<Vec<_>>(), ["5", "upper"]);
-    assert_eq!(mesh.facet_groups().keys().collect::<Vec<_>>(), ["1"]);
+    assert_eq!(mesh.face_groups().keys().collect::<Vec<_>>(), ["1"]);
 }

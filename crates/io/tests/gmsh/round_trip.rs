@@ -1,7 +1,7 @@
 //! What is written is read again, bit by bit.
 
 use crate::gmsh::common::*;
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
+use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
 use percute_io::gmsh::{Format, GmshCause, MeshFile, Version, read, write};
 use percute_io::{FileCause, Overwrite};
 use percute_testkit::{random_rectangle, rotated};
@@ -27,14 +27,14 @@ fn grouped(mesh: &Mesh) -> Mesh {
         ("none".to_string(), vec![]),
         ("3".to_string(), vec![count - 1]),
     ]);
-    let boundary: Vec<_> = mesh.boundary().map(|f| mesh.facet_nodes::<2>(f).map(|node| node.index())).collect();
-    let facets = FacetGroups::from([
+    let boundary: Vec<_> = mesh.boundary().map(|f| mesh.face_nodes::<2>(f).map(|node| node.index())).collect();
+    let faces = FaceGroups::from([
         ("all".to_string(), boundary.clone()),
         ("a = b, µ".to_string(), boundary.into_iter().step_by(2).collect()),
         ("nothing".to_string(), vec![]),
     ]);
     let cells: Vec<_> = mesh.nodes_of::<3>().iter().map(|cell| cell.map(|node| node.index())).collect();
-    Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &facets, &elements).unwrap()
+    Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &faces, &elements).unwrap()
 }
 
 proptest! {
@@ -54,7 +54,7 @@ proptest! {
 #[test]
 fn extreme_coordinates_come_back_bit_by_bit() {
     let points = vec![[-0.0, f64::MIN_POSITIVE], [0.1 + 0.2, 5e-324], [1.0 / 3.0, 1e3]];
-    let mesh = Mesh::new(points, &[[0, 1, 2]], &FacetGroups::new(), &ElementGroups::new()).unwrap();
+    let mesh = Mesh::new(points, &[[0, 1, 2]], &FaceGroups::new(), &ElementGroups::new()).unwrap();
     formats().for_each(|format| assert_same(&plane(again(mesh.clone(), format)).mesh, &mesh));
 }
 
@@ -62,9 +62,9 @@ fn extreme_coordinates_come_back_bit_by_bit() {
 fn bars_come_back_bit_by_bit() {
     let cells: Vec<_> = (0..7).map(|e| [e, e + 1]).collect();
     let points = (0..8).map(|i| [0.3 + 0.1 * f64::from(i)]).collect();
-    let facets = FacetGroups::from([("ends".to_string(), vec![[0], [7]]), ("end".to_string(), vec![[7]])]);
+    let faces = FaceGroups::from([("ends".to_string(), vec![[0], [7]]), ("end".to_string(), vec![[7]])]);
     let elements = ElementGroups::from([("left".to_string(), vec![0, 1, 2])]);
-    let mesh = Mesh::new(points, &cells, &facets, &elements).unwrap();
+    let mesh = Mesh::new(points, &cells, &faces, &elements).unwrap();
     formats().for_each(|format| assert_same(&bar(again(mesh.clone(), format)).mesh, &mesh));
 }
 
@@ -88,7 +88,7 @@ fn no_file_is_lost() {
 fn names_that_the_format_cannot_hold_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["a \"b\"", "a\nb"] {
-        let groups = FacetGroups::from([(name.to_string(), vec![[0]])]);
+        let groups = FaceGroups::from([(name.to_string(), vec![[0]])]);
         let mesh = Mesh::new(vec![[0.0], [1.0]], &[[0, 1]], &groups, &ElementGroups::new()).unwrap();
         let error = write(&folder.path().join("a.msh"), Overwrite::Refuse, &mesh, Format::default()).unwrap_err();
         assert!(error.to_string().contains("no quotes and no line breaks"), "{error}");

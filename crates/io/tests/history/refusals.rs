@@ -220,10 +220,10 @@ fn indices_and_flags_out_of_range() {
     assert_says(&said, &["`percute/contact/touching`: 2 is neither 0 nor 1"]);
     let said = spoilt(|f| change(f, "VTKHDF/Steps/PointDataOffsets/displacement", 2, 0_i64));
     assert_says(&said, &["`VTKHDF/Steps/PointDataOffsets/displacement`: entry 2 is 0; it must be 40"]);
-    let said = spoilt(|f| change(f, "percute/facet_groups/bottom", 0, 99_i64));
-    assert_says(&said, &["`percute/facet_groups/bottom`: entry 0 is 99"]);
+    let said = spoilt(|f| change(f, "percute/face_groups/bottom", 0, 99_i64));
+    assert_says(&said, &["`percute/face_groups/bottom`: entry 0 is 99"]);
     // Inside the mesh: nodes 6 and 7 are joined by an edge that two elements share.
-    let said = spoilt(|f| replace(f, "percute/facet_groups/bottom", &[1, 2], &[6_i64, 7]));
+    let said = spoilt(|f| replace(f, "percute/face_groups/bottom", &[1, 2], &[6_i64, 7]));
     assert_says(&said, &["the mesh: group \"bottom\" names the edge of nodes 6 and 7, which is not on the boundary"]);
 }
 

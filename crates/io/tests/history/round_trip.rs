@@ -5,8 +5,8 @@ use hdf5::OpenMode;
 use percute_core::border::vectors;
 use percute_core::dynamics::{Balancing, replay, simulate};
 use percute_core::history::{Discard, History, Step, StepSource};
-use percute_core::ids::FacetId;
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
+use percute_core::ids::FaceId;
+use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
 use percute_core::observer::Unobserved;
 use percute_core::problem::{AnyProblem, Initial, Statement, TriangleProblem};
 use percute_core::time::TimeGrid;
@@ -20,20 +20,20 @@ use proptest::test_runner::RngSeed;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
-/// Nodes of the facets of each group, and elements of each group.
+/// Nodes of the faces of each group, and elements of each group.
 type Groups = (Vec<(String, Vec<Vec<usize>>)>, Vec<(String, Vec<usize>)>);
 
 fn groups(mesh: &Mesh) -> Groups {
-    let of = |&f: &FacetId| mesh.facet(f).nodes.iter().map(|n| n.index()).collect();
-    let facets = mesh.facet_groups().iter().map(|(name, f)| (name.clone(), f.iter().map(of).collect()));
+    let of = |&f: &FaceId| mesh.face(f).nodes.iter().map(|n| n.index()).collect();
+    let faces = mesh.face_groups().iter().map(|(name, f)| (name.clone(), f.iter().map(of).collect()));
     let elements = mesh.element_groups().iter().map(|(n, e)| (n.clone(), e.iter().map(|e| e.index()).collect()));
-    (facets.collect(), elements.collect())
+    (faces.collect(), elements.collect())
 }
 
 fn assert_same_mesh(one: &Mesh, other: &Mesh) {
     assert_eq!(bits(one.points()), bits(other.points()));
-    assert_eq!((one.cell_rows(), one.facet_count()), (other.cell_rows(), other.facet_count()));
-    (0..one.facet_count()).map(FacetId::new).for_each(|f| assert_eq!(one.facet(f), other.facet(f)));
+    assert_eq!((one.cell_rows(), one.face_count()), (other.cell_rows(), other.face_count()));
+    (0..one.face_count()).map(FaceId::new).for_each(|f| assert_eq!(one.face(f), other.face(f)));
     assert_eq!(groups(one), groups(other));
 }
 
@@ -83,11 +83,11 @@ proptest! {
         name in "[%/.A-Za-zé ]{0,6}",
     ) {
         let cells: Vec<_> = mesh.nodes_of::<3>().iter().map(|c| c.map(|n| n.index())).collect();
-        let (facets, _) = groups(&mesh.clone());
-        let facets: FacetGroups<2> =
-            facets.into_iter().map(|(n, f)| (format!("{n}{name}"), f.iter().map(|f| [f[1], f[0]]).collect())).collect();
+        let (faces, _) = groups(&mesh.clone());
+        let faces: FaceGroups<2> =
+            faces.into_iter().map(|(n, f)| (format!("{n}{name}"), f.iter().map(|f| [f[1], f[0]]).collect())).collect();
         let elements = ElementGroups::from([(name.clone(), vec![0, 2]), ("none".to_string(), vec![])]);
-        let mesh = Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &facets, &elements).unwrap();
+        let mesh = Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &faces, &elements).unwrap();
         let mut random = Random::new(seed);
         let size = mesh.size();
         let mut anywhere = || 1e-6 * size * random.between(-1.0, 1.0);
@@ -235,7 +235,7 @@ fn size_is_foretold() {
     let mut mesh = Mesh::rectangle(0.05, 0.04, 20, 16).unwrap();
     let many: ElementGroups = (0..200).map(|g| (format!("a name of some length {g}"), vec![g])).collect();
     let cells: Vec<_> = mesh.nodes_of::<3>().iter().map(|c| c.map(|n| n.index())).collect();
-    mesh = Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &FacetGroups::new(), &many).unwrap();
+    mesh = Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &FaceGroups::new(), &many).unwrap();
     let problem = plane_problem(mesh, None);
     let times = steps(&problem, 5);
     let plan = Plan::new(&problem, &times, &"x".repeat(100_000), None);

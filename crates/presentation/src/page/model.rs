@@ -110,7 +110,7 @@ fn mesh(contents: &Contents<'_>) -> String {
     row("largest wave speed (m/s)", number(document.number("problem.wave_speed")));
     row("contact nodes", number(document.number("problem.contact_nodes")));
     row("prescribed components of nodes", number(document.number("problem.prescribed_components")));
-    row("loaded edges", number(document.number("problem.loaded_facets")));
+    row("loaded edges", number(document.number("problem.loaded_edges")));
     for (kind, groups) in ["edges", "elements"].into_iter().zip(&body.groups) {
         groups.iter().for_each(|(name, members)| row(&format!("group of {kind} “{name}”"), members.to_string()));
     }

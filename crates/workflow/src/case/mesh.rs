@@ -5,7 +5,7 @@ use super::source::CaseError;
 use super::table::Table;
 use super::value::{Value, rows};
 use crate::message::hint;
-use percute_core::mesh::{Diagonals, ElementGroups, FacetRows, Mesh, MeshError};
+use percute_core::mesh::{Diagonals, ElementGroups, FaceRows, Mesh, MeshError};
 use percute_io::FileCause;
 use percute_io::gmsh::{self, GmshCause};
 use std::path::PathBuf;
@@ -189,17 +189,17 @@ fn from_arrays(table: &Table<'_>, points: &Value<'_>) -> Result<Mesh, CaseError>
     arrays(table, if plane { 2 } else { 1 })
 }
 
-/// A mesh from points, cells, groups of facets and groups of elements.
+/// A mesh from points, cells, groups of faces and groups of elements.
 fn arrays(table: &Table<'_>, dimension: usize) -> Result<Mesh, CaseError> {
     let points = table.require("points", "the coordinates of the nodes in m")?.vectors("m", dimension)?;
     let points = rows(points, dimension);
     let cells = table.require("cells", "the node numbers of each element, counted from 0")?;
     let cells = nodes(&cells.list("elements, each the numbers of its nodes")?, dimension + 1)?;
-    let mut facets = FacetRows::new();
+    let mut faces = FaceRows::new();
     if let Some(groups) = table.get("edge_groups") {
         for (name, members) in groups.any_table(GROUPS)?.entries() {
             let members = members.list("edges (a bar: points), each the numbers of its nodes")?;
-            facets.insert(name.to_string(), nodes(&members, dimension)?);
+            faces.insert(name.to_string(), nodes(&members, dimension)?);
         }
     }
     let mut elements = ElementGroups::new();
@@ -209,7 +209,7 @@ fn arrays(table: &Table<'_>, dimension: usize) -> Result<Mesh, CaseError> {
             elements.insert(name.to_string(), members.iter().map(|m| m.count(0)).collect::<Result<_, _>>()?);
         }
     }
-    Mesh::from_rows(dimension, &points, &cells, (&facets, &elements)).map_err(|error| array_error(table, &error))
+    Mesh::from_rows(dimension, &points, &cells, (&faces, &elements)).map_err(|error| array_error(table, &error))
 }
 
 /// The numbers of so many nodes in each entry, in rows.
@@ -227,10 +227,10 @@ fn array_error(table: &Table<'_>, error: &MeshError) -> CaseError {
         MeshError::NotFinite { node, .. } | MeshError::UnusedNodes { first: node, .. } => entry("points", *node),
         MeshError::DuplicateNodes { second, .. } => entry("points", *second),
         MeshError::NoSuchNode { element, .. } | MeshError::Degenerate { element, .. } => entry("cells", *element),
-        MeshError::NonManifoldFacet { elements, .. } => entry("cells", elements.last().copied().unwrap_or(0)),
+        MeshError::NonManifoldFace { elements, .. } => entry("cells", elements.last().copied().unwrap_or(0)),
         MeshError::Overlap { elements } | MeshError::PartsTouch { elements } => entry("cells", elements[1]),
         MeshError::NonManifoldNode { node, .. } => entry("points", *node),
-        MeshError::NoSuchFacet { group, .. } => named("edge_groups", group),
+        MeshError::NoSuchFace { group, .. } => named("edge_groups", group),
         MeshError::NoSuchElement { group, .. } => named("element_groups", group),
         MeshError::Generator { .. } | MeshError::TooLarge { .. } | MeshError::NoMemory { .. } => None,
     };

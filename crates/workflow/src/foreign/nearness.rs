@@ -58,7 +58,7 @@ fn element_size(problem: &AnyProblem) -> f64 {
         let length = |(i, j): (usize, usize)| norm(&std::array::from_fn::<_, 3, _>(|c| points[i][c] - points[j][c]));
         pairs.map(length).fold(f64::INFINITY, f64::min)
     };
-    let near = problem.contact_facets().into_iter().map(|f| mesh.facet(f.facet).owner);
+    let near = problem.contact_faces().into_iter().map(|f| mesh.face(f.face).owner);
     let smallest = near.map(edge).fold(f64::INFINITY, f64::min);
     if smallest.is_finite() { smallest } else { mesh.size() }
 }

@@ -4,7 +4,7 @@ use crate::case::Case;
 use crate::message::bytes;
 use percute_core::contact::{ContactSteps, Resultant};
 use percute_core::dynamics::Balance;
-use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::memory::can_be_had;
 use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
@@ -77,14 +77,14 @@ pub fn of_run(problem: &AnyProblem, times: &TimeGrid) -> u64 {
     let vector = d * size_of::<f64>();
     // Coordinates, initial fields, mass and its inverse; u, v, a and the force of the integrator.
     let node = 8 * vector + 2 * size_of::<f64>() + 2 * size_of::<u32>();
-    // Nodes, facets and place in the stars; the element of the stiffness.
+    // Nodes, faces and place in the stars; the element of the stiffness.
     let element = n
-        * (size_of::<NodeId>() + size_of::<FacetId>() + size_of::<ElementId>() + size_of::<Option<FacetId>>())
+        * (size_of::<NodeId>() + size_of::<FaceId>() + size_of::<ElementId>() + size_of::<Option<FaceId>>())
         + size_of::<u16>()
         + (n + 1) * size_of::<u32>()
         + d * vector;
     // With what is supported of it.
-    let facet = d * size_of::<NodeId>() + 2 * size_of::<ElementId>() + d;
+    let face = d * size_of::<NodeId>() + 2 * size_of::<ElementId>() + d;
     let instant = size_of::<f64>()
         + size_of::<Balance>()
         + size_of::<f64>()
@@ -93,15 +93,15 @@ pub fn of_run(problem: &AnyProblem, times: &TimeGrid) -> u64 {
     let ordered = if mesh.local_numbering().is_none() {
         [0; 3]
     } else {
-        [node - 5 * vector + size_of::<NodeId>(), element - d * vector + size_of::<ElementId>(), facet]
+        [node - 5 * vector + size_of::<NodeId>(), element - d * vector + size_of::<ElementId>(), face]
     };
     let total = [
         (mesh.node_count(), ordered[0]),
         (mesh.element_count(), ordered[1]),
-        (mesh.facet_count(), ordered[2]),
+        (mesh.face_count(), ordered[2]),
         (mesh.node_count(), node),
         (mesh.element_count(), element),
-        (mesh.facet_count(), facet),
+        (mesh.face_count(), face),
         (times.step_count() + 1, instant),
     ];
     total.iter().map(|&(count, size)| (count as u64).saturating_mul(size as u64)).sum()

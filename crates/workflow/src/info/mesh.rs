@@ -51,7 +51,7 @@ pub fn of_mesh(path: &Path, file: &MeshFile) -> MeshInfo {
         reoriented_elements: mesh.reoriented_elements(),
         lower_corner: corner(f64::INFINITY, f64::min),
         upper_corner: corner(f64::NEG_INFINITY, f64::max),
-        edge_groups: mesh.facet_groups().iter().map(|(name, all)| group((name, all.len()))).collect(),
+        edge_groups: mesh.face_groups().iter().map(|(name, all)| group((name, all.len()))).collect(),
         element_groups: mesh.element_groups().iter().map(|(name, all)| group((name, all.len()))).collect(),
         warnings: reported(mesh).collect(),
     }

@@ -204,7 +204,7 @@ pub(crate) fn problem_summary(subject: &Subject<'_>) -> ProblemSummary {
         obstacles: problem.obstacles().map(obstacle).collect(),
         contact_nodes: problem.contact_nodes().len(),
         prescribed_components: problem.prescribed().len(),
-        loaded_facets: problem.facet_loads().len(),
+        loaded_edges: problem.face_loads().len(),
         body_forces: problem.body_loads().len(),
         resampling_error: problem.resampling_error(subject.times.instants()),
     }

@@ -101,7 +101,7 @@ fn beside_contact(problem: &AnyProblem, of_node: &[usize], bodies: usize) -> Vec
         beside[of_node[held.node.index()]] = Beside::Fixed;
     }
     let moved = problem.prescribed().iter().filter(|held| held.motion.is_some()).map(|held| held.node);
-    let pulled = problem.facet_loads().into_iter().map(|load| problem.mesh().facet(load.facet).nodes[0]);
+    let pulled = problem.face_loads().into_iter().map(|load| problem.mesh().face(load.face).nodes[0]);
     let weighed = problem.body_loads().iter().flat_map(|load| load.nodal_volume.iter().map(|(node, _)| *node));
     moved.chain(pulled).chain(weighed).for_each(|node| beside[of_node[node.index()]] = Beside::Other);
     beside

@@ -164,7 +164,7 @@ pub struct ProblemSummary {
     pub obstacles: Vec<ObstacleSummary>,
     pub contact_nodes: usize,
     pub prescribed_components: usize,
-    pub loaded_facets: usize,
+    pub loaded_edges: usize,
     pub body_forces: usize,
     pub resampling_error: f64,
 }

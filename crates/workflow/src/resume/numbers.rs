@@ -24,7 +24,7 @@ pub(super) fn of_meshes(case: &Mesh, history: &Mesh) -> Option<String> {
     let (one, other): (Vec<Vec<usize>>, Vec<Vec<usize>>) = (cells(case), cells(history));
     of_lists("[mesh], node", "m", &points(case), &points(history))
         .or_else(|| of_lists("[mesh], the list of nodes of element", "", &one, &other))
-        .or_else(|| of_groups(case.facet_groups(), history.facet_groups()))
+        .or_else(|| of_groups(case.face_groups(), history.face_groups()))
         .or_else(|| of_groups(case.element_groups(), history.element_groups()))
 }
 

@@ -16,9 +16,9 @@ pub fn stopping_times<const D: usize, const N: usize>(problem: &Problem<D, N>) -
     let (mesh, surface) = (problem.mesh(), problem.surface());
     // ρcℓ.
     let mut impedance = vec![0.0; surface.nodes().len()];
-    for facet in surface.facets() {
-        let law = problem.material(mesh.facet(facet.facet).owner);
-        facet.nodes.iter().for_each(|&k| impedance[k] += law.density() * law.wave_speed() * facet.area / D as f64);
+    for face in surface.faces() {
+        let law = problem.material(mesh.face(face.face).owner);
+        face.nodes.iter().for_each(|&k| impedance[k] += law.density() * law.wave_speed() * face.area / D as f64);
     }
     let time = |at: usize| {
         let mass = surface.moved_mass(at, problem.mass());

@@ -69,7 +69,7 @@ pub struct ContactPoint {
     pub point: Vector,
     /// Unit normal there, from the obstacle to the body.
     pub normal: Vector,
-    /// ℓ_k: its share of the candidate facets, with thickness or section (m²), eq. \[45\].
+    /// ℓ_k: its share of the candidate faces, with thickness or section (m²), eq. \[45\].
     pub area: f64,
 }
 

@@ -261,7 +261,7 @@ impl<const D: usize, const N: usize> Record for Recorder<'_, D, N> {
     }
 }
 
-/// The nodes of the contact surface with their shares of the candidate facets.
+/// The nodes of the contact surface with their shares of the candidate faces.
 fn points<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<ContactPoint> {
     let surface = problem.surface();
     let point = |(at, area): (usize, f64)| {
@@ -275,10 +275,10 @@ fn points<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Contac
 /// The shortest edge of each node that may touch another body (m), infinite at others.
 fn shortest_edges<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<f64> {
     let (surface, mut shortest) = (problem.surface(), vec![f64::INFINITY; problem.surface().nodes().len()]);
-    for facet in surface.facets().iter().filter(|_| D > 1) {
-        let (_, length) = problem.mesh().normal_in::<D>(facet.facet);
+    for face in surface.faces().iter().filter(|_| D > 1) {
+        let (_, length) = problem.mesh().normal_in::<D>(face.face);
         let is_of_body = |at: usize| surface.nodes()[at].opposite.is_some() || surface.sliding_of(at).is_some();
-        for &at in facet.nodes.iter().filter(|&&at| is_of_body(at)) {
+        for &at in face.nodes.iter().filter(|&&at| is_of_body(at)) {
             shortest[at] = shortest[at].min(length);
         }
     }

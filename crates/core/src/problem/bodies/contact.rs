@@ -5,9 +5,9 @@ use crate::contact::{Interface, ObstacleError};
 /// What may touch each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Between {
-    /// Two groups of facets, of different bodies.
+    /// Two groups of faces, of different bodies.
     Groups([String; 2]),
-    /// Two bodies, by their names: the facets that see each other.
+    /// Two bodies, by their names: the faces that see each other.
     Bodies([String; 2]),
     /// All bodies of which nothing else is stated.
     All,
@@ -42,7 +42,7 @@ impl Contact {
         contact.interface(dimension, ["", ""], true).map(|_| contact)
     }
 
-    /// The same between two groups of facets.
+    /// The same between two groups of faces.
     pub(in crate::problem) fn interface(
         &self,
         dimension: usize,

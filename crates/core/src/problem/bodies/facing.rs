@@ -2,7 +2,7 @@
 
 use super::approach::dot;
 use super::outline::{Edge, Outline, Vector};
-use crate::ids::FacetId;
+use crate::ids::FaceId;
 use crate::problem::alignment::FOUND;
 
 /// Lengths below this part of the size of a body, or of an edge, are rounding, wherever the origin is.
@@ -91,7 +91,7 @@ impl<'o> View<'o> {
     }
 
     /// Of the edges that see each other, the two that are nearest; of several at a corner, the most opposite ones.
-    pub(super) fn nearest(&self, pair: [usize; 2], sides: &[Facing; 2]) -> Option<[FacetId; 2]> {
+    pub(super) fn nearest(&self, pair: [usize; 2], sides: &[Facing; 2]) -> Option<[FaceId; 2]> {
         let edges = pair.map(|body| &self.outlines[body].edges);
         // All along the direction from the first body to the second one.
         let seen = [0, 1].map(|k| {
@@ -99,7 +99,7 @@ impl<'o> View<'o> {
             places.map(|at| (at, self.seen(pair[k], &edges[k][at], &self.normal))).collect::<Vec<_>>()
         });
         let room = TOUCH * pair.map(|body| self.outlines[body].size).into_iter().fold(0.0, f64::max);
-        let mut best: Option<(f64, f64, [FacetId; 2])> = None;
+        let mut best: Option<(f64, f64, [FaceId; 2])> = None;
         for (own, one) in &seen[0] {
             for (other, two) in &seen[1] {
                 let common = [one.xi[0].max(two.xi[0]), one.xi[1].min(two.xi[1])];
@@ -110,15 +110,15 @@ impl<'o> View<'o> {
                 }
                 let (own, other) = (&edges[0][*own], &edges[1][*other]);
                 let opposite = -dot(&own.normal, &other.normal);
-                let nearer = |&(least, most, _): &(f64, f64, [FacetId; 2])| {
+                let nearer = |&(least, most, _): &(f64, f64, [FaceId; 2])| {
                     distance < least - room || (distance <= least + room && opposite > most)
                 };
                 if best.as_ref().is_none_or(nearer) {
-                    best = Some((distance, opposite, [own.facet, other.facet]));
+                    best = Some((distance, opposite, [own.face, other.face]));
                 }
             }
         }
-        best.map(|(_, _, facets)| facets)
+        best.map(|(_, _, faces)| faces)
     }
 
     fn seen(&self, body: usize, edge: &Edge, towards: &Vector) -> Seen {

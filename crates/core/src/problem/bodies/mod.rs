@@ -14,7 +14,7 @@ mod tests;
 pub use contact::{Between, Contact};
 
 use super::Cause;
-use crate::ids::{FacetId, NodeId};
+use crate::ids::{FaceId, NodeId};
 use approach::{Approach, ROUNDING, approach, dot};
 use facing::{Facing, View};
 use outline::{Edge, Outline, Vector};
@@ -47,11 +47,11 @@ pub(super) struct Found {
     /// Its place among the wanted ones.
     pub(super) wanted: usize,
     pub(super) pair: [usize; 2],
-    /// The facets that see the other body, ascending, and those beside them.
-    pub(super) seeing: [Vec<FacetId>; 2],
-    pub(super) beside: [Vec<FacetId>; 2],
+    /// The faces that see the other body, ascending, and those beside them.
+    pub(super) seeing: [Vec<FaceId>; 2],
+    pub(super) beside: [Vec<FaceId>; 2],
     /// Those of both bodies that are nearest to each other when they meet.
-    pub(super) nearest: Option<[FacetId; 2]>,
+    pub(super) nearest: Option<[FaceId; 2]>,
     /// Pairs of one number have a surface of a body in common.
     pub(super) shared: usize,
     /// How far they slide along each other while they touch, with their velocities at the start (m).
@@ -77,7 +77,7 @@ struct Candidates<'w> {
 }
 
 /// The surfaces of all wanted pairs; none for a pair that is not named and does not see each other. `held` says which
-/// components of a node are prescribed, `taken` are nodes of other surfaces, `facing_planes` facets that may touch one.
+/// components of a node are prescribed, `taken` are nodes of other surfaces, `facing_planes` faces that may touch one.
 ///
 /// # Errors
 /// What is wrong with a wanted pair, by its place.
@@ -86,7 +86,7 @@ pub(super) fn find(
     wanted: &[Wanted],
     held: impl Fn(NodeId) -> [bool; 2],
     taken: &BTreeSet<NodeId>,
-    facing_planes: &BTreeSet<FacetId>,
+    facing_planes: &BTreeSet<FaceId>,
 ) -> Result<Vec<Found>, (usize, Cause)> {
     let ways = Ways::new(outlines);
     let held = |edge: &Edge, normal: &Vector| {
@@ -126,10 +126,10 @@ pub(super) fn find(
 
 /// Takes edges at a corner from pairs that do not meet, if the other side of that corner faces a plane or belongs to a
 /// pair that meets.
-fn leave_corners(outlines: &[Outline], all: &mut [Candidates<'_>], facing_planes: &BTreeSet<FacetId>) {
+fn leave_corners(outlines: &[Outline], all: &mut [Candidates<'_>], facing_planes: &BTreeSet<FaceId>) {
     let edges = outlines.iter().flat_map(|outline| &outline.edges);
     let on_planes: BTreeSet<NodeId> =
-        edges.filter(|edge| facing_planes.contains(&edge.facet)).flat_map(|edge| edge.nodes.iter().copied()).collect();
+        edges.filter(|edge| facing_planes.contains(&edge.face)).flat_map(|edge| edge.nodes.iter().copied()).collect();
     let nodes = |pair: &Candidates<'_>, side: usize| -> BTreeSet<NodeId> {
         let edges = &outlines[pair.wanted.pair[side]].edges;
         pair.sides[side].seeing.iter().flat_map(|&(at, _)| edges[at].nodes.iter().copied()).collect()
@@ -147,7 +147,7 @@ fn leave_corners(outlines: &[Outline], all: &mut [Candidates<'_>], facing_planes
             let others: Vec<&BTreeSet<NodeId>> = others.map(|(_, _, nodes)| nodes).collect();
             let free = |&(at, _): &(usize, f64)| {
                 let edge = &outlines[body].edges[at];
-                let on_plane = |node: &NodeId| on_planes.contains(node) && !facing_planes.contains(&edge.facet);
+                let on_plane = |node: &NodeId| on_planes.contains(node) && !facing_planes.contains(&edge.face);
                 edge.nodes.iter().all(|node| !on_plane(node) && others.iter().all(|taken| !taken.contains(node)))
             };
             pair.sides[side].seeing.retain(free);
@@ -163,13 +163,13 @@ fn slide([first, second]: [&Outline; 2], normal: &Vector) -> f64 {
 
 impl Candidates<'_> {
     /// The surfaces, with the edges beside them.
-    fn found(&self, outlines: &[Outline], beside: [Vec<FacetId>; 2], shared: usize) -> Found {
+    fn found(&self, outlines: &[Outline], beside: [Vec<FaceId>; 2], shared: usize) -> Found {
         let Self { at, wanted, normal, time, slide, across, sides, .. } = self;
         let seeing = [0, 1].map(|side| {
             let edges = &outlines[wanted.pair[side]].edges;
-            let mut facets: Vec<FacetId> = sides[side].seeing.iter().map(|&(at, _)| edges[at].facet).collect();
-            facets.sort_unstable();
-            facets
+            let mut faces: Vec<FaceId> = sides[side].seeing.iter().map(|&(at, _)| edges[at].face).collect();
+            faces.sort_unstable();
+            faces
         });
         Found {
             wanted: *at,
@@ -316,7 +316,7 @@ fn with_edges_beside(
             for edge in near {
                 if edge.nodes.iter().all(|node| owner.get(node).is_none_or(|&of| shared.contains(k, of))) {
                     owner.extend(edge.nodes.iter().map(|&node| (node, k)));
-                    chosen.push(edge.facet);
+                    chosen.push(edge.face);
                 }
             }
             chosen.sort_unstable();

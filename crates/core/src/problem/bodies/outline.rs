@@ -1,6 +1,6 @@
 //! The outer edges of the bodies of a mesh, in the plane: a bar has the height 2.
 
-use crate::ids::{FacetId, NodeId};
+use crate::ids::{FaceId, NodeId};
 use crate::mesh::Mesh;
 use crate::problem::symmetry::{SymmetryLine, common_lines, distinct};
 
@@ -9,7 +9,7 @@ pub(in crate::problem) type Vector = [f64; 2];
 
 /// An outer edge, or an end of a bar.
 pub(in crate::problem) struct Edge {
-    pub(in crate::problem) facet: FacetId,
+    pub(in crate::problem) face: FaceId,
     pub(in crate::problem) nodes: Vec<NodeId>,
     /// Where it ends at the start (m).
     pub(in crate::problem) ends: [Vector; 2],
@@ -64,23 +64,23 @@ pub(in crate::problem) fn outlines<const D: usize>(
     mesh: &Mesh,
     names: Vec<String>,
     start: &Start<'_, D>,
-    free: impl Fn(FacetId) -> bool,
-    wave_speed: impl Fn(FacetId) -> f64,
-    line_of: impl Fn(FacetId) -> Option<SymmetryLine>,
+    free: impl Fn(FaceId) -> bool,
+    wave_speed: impl Fn(FaceId) -> f64,
+    line_of: impl Fn(FaceId) -> Option<SymmetryLine>,
 ) -> Vec<Outline> {
     let body_of_node = mesh.part_numbers();
     let mut edges: Vec<Vec<Edge>> = names.iter().map(|_| Vec::new()).collect();
     let place = |node: NodeId| -> [f64; D] {
         std::array::from_fn(|c| mesh.points_in::<D>()[node.index()][c] + start.displacement[node.index()][c])
     };
-    for facet in mesh.boundary() {
-        let nodes = mesh.facet_nodes::<D>(facet);
+    for face in mesh.boundary() {
+        let nodes = mesh.face_nodes::<D>(face);
         let mut ends = [nodes[0], nodes[D - 1]].map(|node| in_plane(&place(node)));
         if D == 1 {
             (ends[0][1], ends[1][1]) = (-1.0, 1.0);
         }
-        let normal = in_plane(&mesh.normal_in::<D>(facet).0);
-        let edge = Edge { facet, nodes: nodes.to_vec(), ends, normal, free: free(facet) };
+        let normal = in_plane(&mesh.normal_in::<D>(face).0);
+        let edge = Edge { face, nodes: nodes.to_vec(), ends, normal, free: free(face) };
         edges[body_of_node[nodes[0].index()]].push(edge);
     }
     let (mut mass, mut momentum) = (vec![0.0; names.len()], vec![[0.0; 2]; names.len()]);
@@ -93,7 +93,7 @@ pub(in crate::problem) fn outlines<const D: usize>(
         let hull = hull(edges.iter().flat_map(|edge| edge.ends).collect());
         let apart = |a: &Vector| hull.iter().map(|b| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
         let size = hull.iter().map(apart).fold(0.0, f64::max);
-        let slowest = edges.iter().map(|edge| wave_speed(edge.facet)).fold(f64::INFINITY, f64::min);
+        let slowest = edges.iter().map(|edge| wave_speed(edge.face)).fold(f64::INFINITY, f64::min);
         let velocity = momentum[body].map(|p| p / mass[body]);
         let lines = lines(&edges, &line_of);
         Outline { name, edges, hull, lines, velocity, size, passage: size / slowest }
@@ -102,8 +102,8 @@ pub(in crate::problem) fn outlines<const D: usize>(
 }
 
 /// The lines of symmetry on which edges are.
-fn lines(edges: &[Edge], line_of: impl Fn(FacetId) -> Option<SymmetryLine>) -> Vec<SymmetryLine> {
-    let on_line = edges.iter().filter_map(|edge| Some((line_of(edge.facet)?, edge.ends[0])));
+fn lines(edges: &[Edge], line_of: impl Fn(FaceId) -> Option<SymmetryLine>) -> Vec<SymmetryLine> {
+    let on_line = edges.iter().filter_map(|edge| Some((line_of(edge.face)?, edge.ends[0])));
     distinct(on_line.map(|(line, end)| SymmetryLine { place: end[line.across], ..line }))
 }
 

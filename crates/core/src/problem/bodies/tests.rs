@@ -88,9 +88,9 @@ fn surfaces_end_beyond_the_other_body() {
     let problem = bodies(&[plate, falls([4, 3], 0.07, [0.0, -10.0])]).contact(all(0.2)).build().unwrap();
     let mesh = problem.mesh();
     let edges = |problem: &Problem<2, 3>, group: &str| {
-        let facets = problem.mesh().facet_groups()[group].iter();
-        let mut ends: Vec<f64> = facets
-            .flat_map(|f| problem.mesh().facet_nodes::<2>(*f))
+        let faces = problem.mesh().face_groups()[group].iter();
+        let mut ends: Vec<f64> = faces
+            .flat_map(|f| problem.mesh().face_nodes::<2>(*f))
             .map(|n| mesh.points_in::<2>()[n.index()][0])
             .collect();
         ends.sort_by(f64::total_cmp);
@@ -104,7 +104,7 @@ fn surfaces_end_beyond_the_other_body() {
     let problem = bodies(&[plate, falls([3, 2], 0.07, [0.0, -10.0])]).contact(all(0.2)).build().unwrap();
     let (first, last) = edges(&problem, "plate facing block");
     assert!((first - 0.07).abs() < 1e-12 && (last - 0.10).abs() < 1e-12, "{first} {last}");
-    assert!(!problem.mesh().facet_groups().contains_key("plate towards block"));
+    assert!(!problem.mesh().face_groups().contains_key("plate towards block"));
 }
 
 #[test]

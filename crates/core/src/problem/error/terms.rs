@@ -1,4 +1,4 @@
-//! What groups consist of, and what keeps facets from contact, in words.
+//! What groups consist of, and what keeps faces from contact, in words.
 
 use crate::simplex::Shape;
 use std::fmt;
@@ -6,18 +6,18 @@ use std::fmt;
 /// What a group consists of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GroupOf {
-    /// Facets of a bar.
+    /// Faces of a bar.
     Ends,
-    /// Facets of a plane body.
+    /// Faces of a plane body.
     Edges,
     /// Elements.
     Elements,
 }
 
 impl GroupOf {
-    /// The facets of an element of this shape.
+    /// The faces of an element of this shape.
     #[must_use]
-    pub fn facets(shape: Shape) -> Self {
+    pub fn faces(shape: Shape) -> Self {
         match shape {
             Shape::Bar => Self::Ends,
             Shape::Triangle => Self::Edges,
@@ -35,7 +35,7 @@ impl fmt::Display for GroupOf {
     }
 }
 
-/// What keeps a facet from touching a plane (the paper's §2.1).
+/// What keeps a face from touching a plane (the paper's §2.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeldBy {
     /// A support, from 0.

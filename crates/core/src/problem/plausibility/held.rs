@@ -2,7 +2,7 @@
 
 use super::{PlausibilityWarning, plausibility_warning};
 use crate::contact::{dot, tangent};
-use crate::ids::{FacetId, NodeId};
+use crate::ids::{FaceId, NodeId};
 use crate::problem::Problem;
 use crate::problem::alignment::FACES;
 use std::collections::BTreeSet;
@@ -22,31 +22,31 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
     if held.is_empty() {
         return None;
     }
-    let loaded: BTreeSet<FacetId> = problem.facet_loads().iter().map(|load| load.facet).collect();
-    let in_contact: BTreeSet<FacetId> = surface.facets().iter().map(|facet| facet.facet).collect();
+    let loaded: BTreeSet<FaceId> = problem.face_loads().iter().map(|load| load.face).collect();
+    let in_contact: BTreeSet<FaceId> = surface.faces().iter().map(|face| face.face).collect();
     for index in 0..problem.obstacles().len() {
         let place = problem.place_of_obstacle(index);
         let Some(opposite) = problem.opposite_obstacle(index).filter(|_| place.key != "groups") else { continue };
         let normal = *problem.obstacles()[index].flat_frame().normal();
         let along = tangent(&normal);
-        let range = |facet: FacetId| {
-            let nodes = mesh.facet_nodes::<D>(facet).into_iter();
+        let range = |face: FaceId| {
+            let nodes = mesh.face_nodes::<D>(face).into_iter();
             nodes
                 .map(|node| dot(&mesh.points_in::<D>()[node.index()], &along))
                 .fold(NOTHING, |[low, high], xi| [low.min(xi), high.max(xi)])
         };
-        let of = |obstacle: usize| surface.facets().iter().filter(move |facet| facet.obstacle == obstacle);
+        let of = |obstacle: usize| surface.faces().iter().filter(move |face| face.obstacle == obstacle);
         let other = of(opposite)
-            .map(|facet| range(facet.facet))
+            .map(|face| range(face.face))
             .fold(NOTHING, |[low, high], [from, to]| [low.min(from), high.max(to)]);
-        let own: BTreeSet<NodeId> = of(index).flat_map(|facet| mesh.facet_nodes::<D>(facet.facet)).collect();
-        for facet in mesh.boundary().filter(|facet| !in_contact.contains(facet)) {
-            let nodes = mesh.facet_nodes::<D>(facet);
+        let own: BTreeSet<NodeId> = of(index).flat_map(|face| mesh.face_nodes::<D>(face.face)).collect();
+        for face in mesh.boundary().filter(|face| !in_contact.contains(face)) {
+            let nodes = mesh.face_nodes::<D>(face);
             let is_across = |node: &NodeId| (0..D).any(|c| normal[c].abs() > ROUNDING && held.contains(&(*node, c)));
-            let free = problem.supported(facet) == [false; D] && !loaded.contains(&facet);
+            let free = problem.supported(face) == [false; D] && !loaded.contains(&face);
             let beside = free && nodes.iter().any(|node| own.contains(node));
-            let faces = -dot(&mesh.normal_in::<D>(facet).0, &normal) >= FACES;
-            let [low, high] = range(facet);
+            let faces = -dot(&mesh.normal_in::<D>(face).0, &normal) >= FACES;
+            let [low, high] = range(face);
             let common = high.min(other[1]) - low.max(other[0]) > ROUNDING * (high - low);
             if let Some(node) = nodes.iter().find(|node| is_across(node)).filter(|_| beside && faces && common) {
                 let edge = nodes.map(|node| node.index().to_string()).join(", ");

@@ -108,7 +108,7 @@ fn flights<const D: usize, const N: usize>(problem: &Problem<D, N>, bodies: &Bod
     let velocity = bodies.uniform(problem.initial_velocity())?;
     bodies.uniform(problem.initial_displacement())?;
     let steady = |motion: &crate::load::Table| motion.value().iter().all(|v| v == &motion.value()[0]);
-    if !problem.facet_loads().is_empty() || !problem.motions().iter().all(steady) {
+    if !problem.face_loads().is_empty() || !problem.motions().iter().all(steady) {
         return None;
     }
     let mut acceleration = vec![[0.0; D]; problem.mesh().node_count()];

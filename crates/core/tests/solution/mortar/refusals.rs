@@ -6,7 +6,7 @@ use percute_core::contact::{Interface, Leaning, Obstacle};
 use percute_core::dynamics::{SimulationError, check_start};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
-use percute_core::mesh::{ElementGroups, FacetGroups, Mesh};
+use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
 use percute_core::problem::{Builder, Cause, Initial, InputError, TriangleProblem};
 use percute_core::time::TimeGrid;
 use percute_testkit::translated;
@@ -237,7 +237,7 @@ fn edges_above_each_other_are_refused() {
         [3, 4, 13],
         [4, 7, 13],
     ];
-    let groups = FacetGroups::from([("up".to_string(), vec![[2, 3], [6, 7]]), ("down".to_string(), vec![[8, 9]])]);
+    let groups = FaceGroups::from([("up".to_string(), vec![[2, 3], [6, 7]]), ("down".to_string(), vec![[8, 9]])]);
     let mesh = Mesh::new(points, &cells, &groups, &ElementGroups::new()).unwrap();
     assert_eq!(mesh.parts(), 2);
     let interface = Interface::sliding(2, "up", "down", 0.0).unwrap();

@@ -5,7 +5,7 @@
 //! parts where this is close to a node.
 
 use super::beside_stress::BesideStress;
-use super::facets::EdgeFacet;
+use super::faces::EdgeFace;
 use super::load::{Load, place_in};
 use crate::concentrated::{EdgeRest, RestStress, StarElement, rest_stress};
 use percute_core::ids::ElementId;
@@ -24,7 +24,7 @@ pub(super) type Stresses = Vec<(ElementId, BesideStress)>;
 /// The stress of one edge.
 pub(super) fn of_edge<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
-    edge: &EdgeFacet,
+    edge: &EdgeFace,
     load: &Load<D>,
 ) -> Stresses {
     let (id, rest) = (owner(problem, edge), load.rest(edge));
@@ -51,7 +51,7 @@ pub(super) fn of_edge<const D: usize, const N: usize>(
 /// node.
 fn close_to_a_node<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
-    edge: &EdgeFacet,
+    edge: &EdgeFace,
     (end, place): (usize, f64),
     load: &Load<D>,
 ) -> Option<Stresses> {
@@ -60,7 +60,7 @@ fn close_to_a_node<const D: usize, const N: usize>(
     let corners = corners(problem, edge);
     let similar = |corner: [f64; 2]| [0, 1].map(|c| corners[end][c] + part * (corner[c] - corners[end][c]));
     let place = place_in(part, end, place);
-    let short = EdgeFacet { length: part * edge.length, spread: part * edge.spread, ..*edge };
+    let short = EdgeFace { length: part * edge.length, spread: part * edge.spread, ..*edge };
     let cut = in_cut_triangle((problem, &short), corners.map(similar), place, &beside)?;
     let mut stresses = in_star(problem, edge, end, &whole)?;
     stresses.push((owner(problem, edge), cut));
@@ -70,11 +70,11 @@ fn close_to_a_node<const D: usize, const N: usize>(
 /// The stress in the star of the node at an end of the edge; none if rounding spoils it.
 fn in_star<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
-    edge: &EdgeFacet,
+    edge: &EdgeFace,
     end: usize,
     load: &Load<D>,
 ) -> Option<Stresses> {
-    let (mesh, candidate) = (problem.mesh(), &problem.surface().facets()[edge.facet]);
+    let (mesh, candidate) = (problem.mesh(), &problem.surface().faces()[edge.face]);
     let node = problem.surface().nodes()[candidate.nodes[edge.ends[end]]].node;
     let star = mesh.stars().star(node);
     let corners = |&id: &ElementId| {
@@ -84,12 +84,12 @@ fn in_star<const D: usize, const N: usize>(
     };
     let elements: Vec<_> = star.elements.iter().map(corners).collect();
     let supported = [star.links.first(), star.links.last()].map(|link| {
-        let supported = link.copied().flatten().map_or([false; D], |facet| problem.supported(facet));
+        let supported = link.copied().flatten().map_or([false; D], |face| problem.supported(face));
         [supported[0], supported[D - 1]]
     });
     let mut rests = [EdgeRest::default(), EdgeRest::default()];
     let (load, difference) = load.with_equal_ways([0.0, 1.0][end], edge);
-    rests[usize::from(star.links[0] != Some(candidate.facet))] = load.seen_from(end, edge);
+    rests[usize::from(star.links[0] != Some(candidate.face))] = load.seen_from(end, edge);
     let stresses = rest_stress(&elements, &rests, supported)?;
     let of = |(&id, stress): (&ElementId, &RestStress)| {
         let at = mesh.local_node(id, node).unwrap_or(0);
@@ -100,8 +100,8 @@ fn in_star<const D: usize, const N: usize>(
 }
 
 /// The corners of the element of an edge: its first and its second end, and the one opposite.
-fn corners<const D: usize, const N: usize>(problem: &Problem<D, N>, edge: &EdgeFacet) -> [[f64; 2]; 3] {
-    let (mesh, candidate) = (problem.mesh(), &problem.surface().facets()[edge.facet]);
+fn corners<const D: usize, const N: usize>(problem: &Problem<D, N>, edge: &EdgeFace) -> [[f64; 2]; 3] {
+    let (mesh, candidate) = (problem.mesh(), &problem.surface().faces()[edge.face]);
     let ends = edge.ends.map(|end| problem.surface().nodes()[candidate.nodes[end]].node);
     let cell = &mesh.nodes_of::<N>()[owner(problem, edge).index()];
     let apex = cell.iter().find(|node| !ends.contains(node)).copied().unwrap_or(ends[0]);
@@ -111,7 +111,7 @@ fn corners<const D: usize, const N: usize>(problem: &Problem<D, N>, edge: &EdgeF
 /// The stress in a triangle on an edge, cut from a place on the edge to the corner opposite; none if a part would be
 /// slender. A support of the edge is not made use of.
 fn in_cut_triangle<const D: usize, const N: usize>(
-    (problem, edge): (&Problem<D, N>, &EdgeFacet),
+    (problem, edge): (&Problem<D, N>, &EdgeFace),
     [a, b, opposite]: [[f64; 2]; 3],
     place: f64,
     load: &Load<D>,
@@ -147,8 +147,8 @@ fn cut_fan([a, b, c]: [[f64; 2]; 3]) -> [[[f64; 2]; 2]; 4] {
     [[a, d], [d, b], [b, e], [e, c]]
 }
 
-fn owner<const D: usize, const N: usize>(problem: &Problem<D, N>, edge: &EdgeFacet) -> ElementId {
-    problem.mesh().facet(problem.surface().facets()[edge.facet].facet).owner
+fn owner<const D: usize, const N: usize>(problem: &Problem<D, N>, edge: &EdgeFace) -> ElementId {
+    problem.mesh().face(problem.surface().faces()[edge.face].face).owner
 }
 
 /// The sum of the roots, which is to be small: they are added to those of other stresses.

@@ -1,6 +1,6 @@
 //! The density on one edge of a surface that slides.
 
-use super::facets::EdgeFacet;
+use super::faces::EdgeFace;
 use crate::concentrated::EdgeRest;
 use crate::partition::Piece;
 
@@ -41,7 +41,7 @@ impl<const D: usize> Load<D> {
     }
 
     /// The same without spans too short for the stress of the load.
-    pub(super) fn without_slivers(&self, edge: &EdgeFacet) -> Self {
+    pub(super) fn without_slivers(&self, edge: &EdgeFace) -> Self {
         let mut places: Vec<f64> = self.spans.iter().flat_map(|(places, _)| *places).chain([0.0, 1.0]).collect();
         places.sort_by(f64::total_cmp);
         // The first place, then each that is far enough above the last one kept; 1 stays, and draws those below it.
@@ -56,7 +56,7 @@ impl<const D: usize> Load<D> {
     /// The same where break points almost equally far from a place, in parts of the ways from it to both ends, are
     /// equally far; and ∫d² of the difference d of both densities (N²/m). A span between two of them is left out, and
     /// counts in the difference.
-    pub(super) fn with_equal_ways(&self, from: f64, edge: &EdgeFacet) -> (Self, f64) {
+    pub(super) fn with_equal_ways(&self, from: f64, edge: &EdgeFace) -> (Self, f64) {
         let end = |place: f64| if place > from { 1.0 } else { 0.0 };
         let way = |place: f64| if place == from { 0.0 } else { (place - from) / (end(place) - from) };
         let mut ways: Vec<f64> = self.spans.iter().flat_map(|(places, _)| places.map(way)).collect();
@@ -84,7 +84,7 @@ impl<const D: usize> Load<D> {
     }
 
     /// ∫d² of the difference d to another density (N²/m).
-    fn square_of_difference(&self, other: &Self, edge: &EdgeFacet) -> f64 {
+    fn square_of_difference(&self, other: &Self, edge: &EdgeFace) -> f64 {
         let mut places: Vec<f64> = self.spans.iter().chain(&other.spans).flat_map(|(places, _)| *places).collect();
         places.sort_by(f64::total_cmp);
         let difference = |ends: &[f64]| {
@@ -107,7 +107,7 @@ impl<const D: usize> Load<D> {
     }
 
     /// The same with its break points at other places, in the same order.
-    fn moved(&self, to: impl Fn(f64) -> f64, edge: &EdgeFacet) -> Self {
+    fn moved(&self, to: impl Fn(f64) -> f64, edge: &EdgeFace) -> Self {
         let mut made = Self::default();
         for (ends, values) in &self.spans {
             let ends = ends.map(&to);
@@ -131,7 +131,7 @@ impl<const D: usize> Load<D> {
     }
 
     /// ∫F² over the edge (N²/m).
-    pub(super) fn square(&self, edge: &EdgeFacet) -> f64 {
+    pub(super) fn square(&self, edge: &EdgeFace) -> f64 {
         let of = |(places, values): &([f64; 2], [[f64; D]; 2])| -> f64 {
             square_of_linear((places[1] - places[0]) * edge.length, values)
         };
@@ -139,7 +139,7 @@ impl<const D: usize> Load<D> {
     }
 
     /// ∫r² over the edge (N²/m), with the difference r of the density and that linear traction.
-    pub(super) fn rest(&self, edge: &EdgeFacet) -> f64 {
+    pub(super) fn rest(&self, edge: &EdgeFace) -> f64 {
         let (linear, length) = ([self.nodal(0), self.nodal(1)], edge.length);
         let at = |place: f64, c: usize| (linear[0][c] * (1.0 - place) + linear[1][c] * place) / length;
         let (mut sum, mut reached) = (0.0, 0.0);
@@ -180,7 +180,7 @@ impl<const D: usize> Load<D> {
 
     /// The load of a part of the edge beside an end, as if that part were an edge, and the load of the traction on the
     /// whole edge that is linear on this part and has the same moments.
-    pub(super) fn spread_over(&self, part: f64, end: usize, edge: &EdgeFacet) -> [Self; 2] {
+    pub(super) fn spread_over(&self, part: f64, end: usize, edge: &EdgeFace) -> [Self; 2] {
         let start = if end == 0 { 0.0 } else { 1.0 - part };
         let scaled = |places: [f64; 2]| places.map(|place| place_in(part, end, place));
         let spans = self.spans.iter().map(|&(places, values)| (scaled(places), values)).collect();
@@ -200,18 +200,18 @@ impl<const D: usize> Load<D> {
     }
 
     /// The density less that linear traction, seen from an end of the edge.
-    pub(super) fn seen_from(&self, end: usize, edge: &EdgeFacet) -> EdgeRest {
+    pub(super) fn seen_from(&self, end: usize, edge: &EdgeFace) -> EdgeRest {
         let [from, to] = [[0.0, 1.0], [1.0, 0.0]][end];
         self.between([from, to], edge)
     }
 
     /// The same on both sides of a place inside: before it and after it.
-    pub(super) fn around(&self, place: f64, edge: &EdgeFacet) -> [EdgeRest; 2] {
+    pub(super) fn around(&self, place: f64, edge: &EdgeFace) -> [EdgeRest; 2] {
         [0.0, 1.0].map(|end| self.between([place, end], edge))
     }
 
     /// The part of it from one place to another one, as if that were an edge.
-    fn between(&self, [from, to]: [f64; 2], edge: &EdgeFacet) -> EdgeRest {
+    fn between(&self, [from, to]: [f64; 2], edge: &EdgeFace) -> EdgeRest {
         let part = (to - from).abs();
         let scaled = |value: [f64; D], length: f64| [0, D - 1].map(|c| value[c] * length * part);
         let [low, high] = [from.min(to), from.max(to)];
@@ -252,7 +252,7 @@ pub(super) fn place_in(part: f64, end: usize, place: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const EDGE: EdgeFacet = EdgeFacet { facet: 0, ends: [0, 1], length: 0.3, spread: 1.0 };
+    const EDGE: EdgeFace = EdgeFace { face: 0, ends: [0, 1], length: 0.3, spread: 1.0 };
 
     /// A load with a narrow peak and a hole, and its image with the ends of the edge exchanged.
     fn loads() -> [Load<2>; 2] {
@@ -279,7 +279,7 @@ mod tests {
             assert!((part - 0.12).abs() < 1e-15, "{part}");
             let [beside, whole] = load.spread_over(part, end, &EDGE);
             assert!(same(&whole, load) && same(&whole.without_slivers(&EDGE), load));
-            let short = EdgeFacet { length: part * EDGE.length, ..EDGE };
+            let short = EdgeFace { length: part * EDGE.length, ..EDGE };
             assert!(same(&beside.without_slivers(&short), &beside));
             assert!(beside.spans.iter().any(|(places, _)| places[1] == place_in(part, end, peak)));
         }

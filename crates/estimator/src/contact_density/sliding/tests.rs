@@ -1,7 +1,7 @@
 //! On surfaces with the same nodes, densities and friction are those of pairs.
 
 use super::*;
-use crate::contact_density::{Densities, FacetDensity, facet_power};
+use crate::contact_density::{Densities, FaceDensity, face_power};
 use percute_core::contact::{Interface, Side};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
@@ -23,7 +23,7 @@ fn blocks(interface: Interface) -> TriangleProblem {
 fn on_matching_surfaces_they_are_those_of_pairs() {
     let pairs = blocks(Interface::matching(2, "upper.bottom", "lower.top", 0.4).unwrap());
     let slides = blocks(Interface::sliding(2, "upper.bottom", "lower.top", 0.4).unwrap());
-    let (surface, facets) = (slides.surface(), SlidingFacets::all(&slides));
+    let (surface, faces) = (slides.surface(), SlidingFaces::all(&slides));
     let (sliding, mut random) = (&surface.sliding()[0], Random::new(5));
     let nodes = slides.mesh().node_count();
     let velocity: Vec<[f64; 2]> = (0..nodes).map(|_| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)]).collect();
@@ -34,37 +34,37 @@ fn on_matching_surfaces_they_are_those_of_pairs() {
         let value = traction[(problem.surface().point(at)[0] / 0.1).round() as usize];
         if upper { value } else { value.map(|f| -f) }
     };
-    let expected = Densities::new(&pairs, |_, facet| facet.nodes.map(|k| at(&pairs, k)));
+    let expected = Densities::new(&pairs, |_, face| face.nodes.map(|k| at(&pairs, k)));
 
     let coupling = Arc::new(sliding.coupling_at(&[0.0]));
     let on_slave = |node: usize| at(&slides, sliding.slave().position(node));
     let density =
         SlidingDensity::new(&coupling, |node| on_slave(node).map(|f| 0.7 * coupling.weight(node) * f), Vec::new());
-    let facets: Arc<[SlidingFacets]> = facets.into();
+    let faces: Arc<[SlidingFaces]> = faces.into();
     let none = Densities::new(&slides, |_, _| [[0.0; 2]; 2]);
-    let found = none.with_sliding(&slides, &facets, vec![density.clone()]);
+    let found = none.with_sliding(&slides, &faces, vec![density.clone()]);
     let along_side = |side: &Side| -> Vec<f64> {
         let node = |k: usize| surface.nodes()[side.position(k)].node.index();
         (0..side.len()).map(|k| along(&velocity[node(k)], sliding.tangent())).collect()
     };
-    let mut power = vec![0.0; surface.facets().len()];
+    let mut power = vec![0.0; surface.faces().len()];
     let slip = [sliding.slave(), sliding.master()].map(along_side);
     density.friction_power(sliding, &slip, |piece, part| {
-        facets[0].of(piece).into_iter().for_each(|facet| power[facet] += 0.5 * part);
+        faces[0].of(piece).into_iter().for_each(|face| power[face] += 0.5 * part);
     });
     let [cone, opposite] = found.sliding_residuals(&slides);
     assert!(cone <= 1e-12 && opposite <= 1e-12, "{cone} {opposite}");
-    for (f, facet) in slides.surface().facets().iter().enumerate() {
-        let same = |other: &percute_core::contact::ContactFacet<2>| other.facet == facet.facet;
-        let other = pairs.surface().facets().iter().position(same).unwrap();
+    for (f, face) in slides.surface().faces().iter().enumerate() {
+        let same = |other: &percute_core::contact::ContactFace<2>| other.face == face.face;
+        let other = pairs.surface().faces().iter().position(same).unwrap();
         for (a, b) in found[f].iter().flatten().zip(expected[other].iter().flatten()) {
             assert!((a - b).abs() <= 1e-12, "{f}: {:?} {:?}", found[f], expected[other]);
         }
-        let relative = pairs.surface().facets()[other].nodes.map(|k| pairs.surface().against_obstacle(k, &velocity));
-        let one = FacetDensity { wide: &expected.wide()[other], hats: [&[][..]; 1] };
-        let expected = facet_power(&pairs, other, &relative, &[&one]);
+        let relative = pairs.surface().faces()[other].nodes.map(|k| pairs.surface().against_obstacle(k, &velocity));
+        let one = FaceDensity { wide: &expected.wide()[other], hats: [&[][..]; 1] };
+        let expected = face_power(&pairs, other, &relative, &[&one]);
         assert!((power[f] / expected - 1.0).abs() <= 1e-12, "{f}: {} {expected}", power[f]);
     }
     // What is linear needs no stress beside that of linear tractions.
-    assert!(density.beside((&slides, sliding), &facets[0]).iter().all(|(_, stress)| stress.root() <= 1e-12));
+    assert!(density.beside((&slides, sliding), &faces[0]).iter().all(|(_, stress)| stress.root() <= 1e-12));
 }

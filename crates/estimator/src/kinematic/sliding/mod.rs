@@ -18,7 +18,7 @@ use crate::residual::{Residuals, worse};
 use crate::scratch_file::{ScratchError, ScratchFile};
 use lift::{Lift, Penetration};
 use path::solve;
-use percute_core::contact::{ContactFacet, Side, SlidingSurfaces};
+use percute_core::contact::{ContactFace, Side, SlidingSurfaces};
 use percute_core::material::Law;
 use percute_core::problem::Problem;
 use record::{Motion, Record};
@@ -224,10 +224,10 @@ const SIGNS: [f64; 2] = [1.0, -1.0];
 
 /// ρc² of the elements at a surface (Pa), the least of them.
 fn stiffness<const D: usize, const N: usize>(problem: &Problem<D, N>, side: &Side) -> f64 {
-    let element = |facet: &ContactFacet<D>| problem.mesh().facet(facet.facet).owner;
-    let own = |facet: &&ContactFacet<D>| side.node_at(facet.nodes[0]).is_some();
-    let stiffness = |facet| problem.material(element(facet)).wave_modulus();
-    problem.surface().facets().iter().filter(own).map(stiffness).fold(f64::INFINITY, f64::min)
+    let element = |face: &ContactFace<D>| problem.mesh().face(face.face).owner;
+    let own = |face: &&ContactFace<D>| side.node_at(face.nodes[0]).is_some();
+    let stiffness = |face| problem.material(element(face)).wave_modulus();
+    problem.surface().faces().iter().filter(own).map(stiffness).fold(f64::INFINITY, f64::min)
 }
 
 /// Number of nodes of both surfaces.

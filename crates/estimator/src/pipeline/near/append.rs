@@ -2,7 +2,7 @@
 
 use super::NearElement;
 use super::side_by_side::SideBySide;
-use crate::contact_density::FacetPressures;
+use crate::contact_density::FacePressures;
 use crate::measure::Balanced;
 use crate::pipeline::sampled_levels::SampledLevels;
 use crate::pipeline::sampling::{ElementSampler, SampledStress, Sampling};
@@ -121,16 +121,16 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         stress: impl Fn(At, bool) -> SampledStress<D, N>,
     ) -> Waiting<D, N> {
         let forces = to.forces();
-        let friction = |k: usize| self.facets.iter().map(|&f| forces.friction[f][k]).sum::<f64>();
+        let friction = |k: usize| self.faces.iter().map(|&f| forces.friction[f][k]).sum::<f64>();
         let surface = sampler.problem().surface();
         let entries = |at: Option<usize>| [at, at.and_then(|at| surface.nodes()[at].beside)];
         let touches = |level: &EquilibratedLevel<'_, D>, at: usize| level.forces().level.surface.touching[at];
         let touching = [&from, &to]
             .map(|level| self.contact.map(|at| entries(at).map(|at| at.is_some_and(|at| touches(level, at)))));
-        let facets = self.facets.iter().filter(|&&f| forces.off_contact.iter().any(|step| step.act_on(f)));
-        let pressures = facets.map(|&f| FacetPressures::gather(f, from.index(), &forces.off_contact));
+        let faces = self.faces.iter().filter(|&&f| forces.off_contact.iter().any(|step| step.act_on(f)));
+        let pressures = faces.map(|&f| FacePressures::gather(f, from.index(), &forces.off_contact));
         let pressures = pressures.filter(|pressures| !pressures.is_zero()).collect();
-        let sliding = forces.corner_sliding.iter().filter(|sliding| self.facets.contains(&sliding.facet));
+        let sliding = forces.corner_sliding.iter().filter(|sliding| self.faces.contains(&sliding.face));
         let sliding = sliding.cloned().collect();
         let hats: [Vec<_>; 2] = [&from, &to].map(|level| {
             self.contact.iter().flatten().flat_map(|&at| level.forces().density.hats_of(at)).copied().collect()

@@ -57,7 +57,7 @@ impl<const D: usize, const N: usize> SideBySide<D, N> {
 impl<const D: usize, const N: usize> StressLanes<D, N> {
     fn at(&self, lane: usize, loaded: bool) -> SampledStress<D, N> {
         let loading = || Loading {
-            traction: self.loading.traction.map(|facet| facet.map(|node| node.map(|lanes| lanes.0[lane]))),
+            traction: self.loading.traction.map(|face| face.map(|node| node.map(|lanes| lanes.0[lane]))),
             volume: self.loading.volume.map(|node| node.map(|lanes| lanes.0[lane])),
         };
         let mean = self.mean.map(|row| row.map(|lanes| lanes.0[lane]));

@@ -43,7 +43,7 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
             before: None,
             off_contact: Vec::new(),
             corner_sliding: Vec::new(),
-            friction: vec![[0.0; 2]; self.problem.surface().facets().len()],
+            friction: vec![[0.0; 2]; self.problem.surface().faces().len()],
         };
         ForcesBefore { forces, surface_force }
     }

@@ -102,18 +102,18 @@ fn the_contact_part_step_by_step() {
         let preparation = prepared(&problem, &times, choice);
         let levels = &preparation.ready;
         let (mut turning, mut inside) = (0, 0);
-        for (f, facet) in problem.surface().facets().iter().enumerate() {
+        for (f, face) in problem.surface().faces().iter().enumerate() {
             let mut sum = 0.0;
             for n in 0..times.step_count() {
                 let (now, next) = (&levels[n], &levels[n + 1]);
                 let mid = next.mid_velocity.as_deref().unwrap();
-                let nodes = facet.nodes.map(|k| problem.surface().nodes()[k].node.index());
+                let nodes = face.nodes.map(|k| problem.surface().nodes()[k].node.index());
                 let mut power = |velocity: &[[f64; 2]], force: [[f64; 2]; 2]| {
                     let sliding = nodes.map(|i| velocity[i][0]);
                     let pressed = force.iter().any(|f| f[1] > 0.0);
                     turning += usize::from(pressed && sliding[0] * sliding[1] < 0.0);
                     inside += usize::from(force.iter().any(|f| f[1] > 0.0 && f[0].abs() < 0.5 * f[1]));
-                    power(facet.area, 0.9, force, sliding)
+                    power(face.area, 0.9, force, sliding)
                 };
                 let (start, end) = (now.density[f], before(next)[f]);
                 let middle = [0, 1].map(|p| [0, 1].map(|c| 0.5 * (start[p][c] + end[p][c])));

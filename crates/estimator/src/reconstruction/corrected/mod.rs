@@ -1,4 +1,4 @@
-//! The full reaction as a density on all candidate facets of its node, balanced by an auxiliary solution with less
+//! The full reaction as a density on all candidate faces of its node, balanced by an auxiliary solution with less
 //! dispersion, with tractions of least energy.
 
 mod concentration;
@@ -13,7 +13,7 @@ mod traction_minimisation;
 use super::{BalancedFields, ReconstructionMethod, SimulatedStep, StepDensities, SurfaceSteps, friction};
 use crate::acceleration::accelerate;
 use crate::concentrated::TractionShape;
-use crate::contact_density::{Densities, FacetPressures, LevelDensities, NormalMisfit, OffContact, driving_forces};
+use crate::contact_density::{Densities, FacePressures, LevelDensities, NormalMisfit, OffContact, driving_forces};
 use crate::difference::Difference;
 use crate::element::Element;
 use crate::error::EstimateError;
@@ -199,7 +199,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     }
 
     /// Densities at one instant: R_k/ℓ_k at the nodes, whether they touch or are about to, linear along each
-    /// facet, corrected so that they have the moment of the reactions too. Their resultant is that of the reactions,
+    /// face, corrected so that they have the moment of the reactions too. Their resultant is that of the reactions,
     /// and where those are in the cone, so is every mean of two of them.
     fn at(&self, reaction: &[[f64; D]], around: &Around<'_>) -> Densities<D> {
         let (problem, surface) = (self.problem, self.problem.surface());
@@ -247,9 +247,9 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
                 hats.extend(own);
             }
         }
-        let made = Densities::with_hats(problem, |f, facet| facet.nodes.map(|k| density(f, k)), hats);
+        let made = Densities::with_hats(problem, |f, face| face.nodes.map(|k| density(f, k)), hats);
         let sliding = self.sliding.densities(&shaped, around.couplings, &reaction);
-        made.with_shares(shares).with_sliding(problem, self.sliding.facets(), sliding)
+        made.with_shares(shares).with_sliding(problem, self.sliding.faces(), sliding)
     }
 }
 
@@ -356,7 +356,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         density: &Densities<D>,
     ) -> Vec<[f64; 2]> {
         let mut friction = friction::friction(problem, length, now, next, density);
-        let of = (problem, &**self.sliding.facets());
+        let of = (problem, &**self.sliding.faces());
         friction::add_sliding(of, length, now, next, density, &mut friction);
         friction
     }
@@ -377,7 +377,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         self.motions.as_ref().map(Motions::differences)
     }
 
-    fn normal_misfit(&self, pressures: &FacetPressures<D>, tracks: &[ContactTrack]) -> NormalMisfit {
+    fn normal_misfit(&self, pressures: &FacePressures<D>, tracks: &[ContactTrack]) -> NormalMisfit {
         pressures.misfit(self.problem, self.times, tracks, self.normal_work)
     }
 

@@ -1,8 +1,8 @@
 //! Moments of densities.
 //!
-//! A density that is linear along facets and R_k/ℓ_k at the nodes has the resultant of the reactions R_k. It acts at
+//! A density that is linear along faces and R_k/ℓ_k at the nodes has the resultant of the reactions R_k. It acts at
 //! the centroids of the shape functions, which are not at the nodes at the end of a contact surface or between unequal
-//! facets. The missing moment would give the body an angular acceleration. The normal forces of the nodes of a body
+//! faces. The missing moment would give the body an angular acceleration. The normal forces of the nodes of a body
 //! that face one plane are therefore multiplied by factors that keep their sum and restore the moment. The factors are
 //! those nearest to 1, in the mean weighted by the forces, affine along the plane, and 0 where they would be negative.
 //! Friction is multiplied by the factor of its normal force. The rest of its sum is shared out where the cone has room;
@@ -158,15 +158,15 @@ fn factors(nodes: &[CorrectedNode], normal: &[f64], missing: f64) -> Vec<f64> {
     }
 }
 
-/// Centroid of each node's shape function on the candidate facets (m).
+/// Centroid of each node's shape function on the candidate faces (m).
 fn centroids<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<[f64; D]> {
     let (points, surface) = (problem.mesh().points_in::<D>(), problem.surface());
     let place = |k: usize| points[surface.nodes()[k].node.index()];
     let mut centroids = vec![[0.0; D]; surface.nodes().len()];
-    for facet in surface.facets() {
-        let sum: [f64; D] = std::array::from_fn(|c| facet.nodes.iter().map(|&k| place(k)[c]).sum());
-        for &k in &facet.nodes {
-            (0..D).for_each(|c| centroids[k][c] += facet.area / (D * (D + 1)) as f64 * (place(k)[c] + sum[c]));
+    for face in surface.faces() {
+        let sum: [f64; D] = std::array::from_fn(|c| face.nodes.iter().map(|&k| place(k)[c]).sum());
+        for &k in &face.nodes {
+            (0..D).for_each(|c| centroids[k][c] += face.area / (D * (D + 1)) as f64 * (place(k)[c] + sum[c]));
         }
     }
     for (centroid, area) in centroids.iter_mut().zip(surface.tributary_areas()) {

@@ -8,7 +8,7 @@ use super::concentration::{Concentration, Faced, Reach};
 use super::impulse_smoothing::Stopped;
 use super::moment_correction::{CorrectedNode, Group};
 use crate::concentrated::TractionShape;
-use crate::contact_density::{SlaveHat, SlidingDensity, SlidingFacets};
+use crate::contact_density::{SlaveHat, SlidingDensity, SlidingFaces};
 use crate::direction::along;
 use crate::partition::pieces;
 use percute_core::contact::{Coupling, DualShape, Part, Segment, Side, SlidingSurfaces};
@@ -24,7 +24,7 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(super) struct SlidingForces<'p, const D: usize, const N: usize> {
     problem: &'p Problem<D, N>,
-    facets: Arc<[SlidingFacets]>,
+    faces: Arc<[SlidingFaces]>,
     /// Mean impedance ρc over slave and master of each pair of surfaces, times the thickness (kg/(m s)).
     impedance: Vec<[f64; 2]>,
     /// The compliance of both surfaces over that of the slave.
@@ -42,7 +42,7 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
         let both = |[slave, master]: [f64; 2]| 1.0 + master / slave;
         Self {
             problem,
-            facets: SlidingFacets::all(problem).into(),
+            faces: SlidingFaces::all(problem).into(),
             impedance: all.iter().map(|sliding| mean(sliding, impedance)).collect(),
             compliance: all.iter().map(|sliding| both(mean(sliding, compliance))).collect(),
             on_line: problem.on_lines_of_symmetry(),
@@ -212,8 +212,8 @@ impl<'p, const D: usize, const N: usize> SlidingForces<'p, D, N> {
         slave.parts().iter().filter(is_free).map(of_part).collect()
     }
 
-    pub(super) fn facets(&self) -> &Arc<[SlidingFacets]> {
-        &self.facets
+    pub(super) fn faces(&self) -> &Arc<[SlidingFaces]> {
+        &self.faces
     }
 }
 
@@ -235,9 +235,9 @@ pub(super) fn mobility(
 fn mean<const D: usize, const N: usize>(problem: &Problem<D, N>, side: &Side, value: impl Fn(ElementId) -> f64) -> f64 {
     let positions = side.position(0)..side.position(side.len());
     let (mut sum, mut length) = (0.0, 0.0);
-    for facet in problem.surface().facets().iter().filter(|facet| positions.contains(&facet.nodes[0])) {
-        let owner: ElementId = problem.mesh().facet(facet.facet).owner;
-        let own = facet.area / problem.material(owner).extent();
+    for face in problem.surface().faces().iter().filter(|face| positions.contains(&face.nodes[0])) {
+        let owner: ElementId = problem.mesh().face(face.face).owner;
+        let own = face.area / problem.material(owner).extent();
         sum += value(owner) * own;
         length += own;
     }

@@ -29,7 +29,7 @@ pub struct Format {
 /// A file that cannot be created or exists already, group names that the format does not allow.
 pub fn write(path: &Path, overwrite: Overwrite, mesh: &Mesh, format: Format) -> Result<(), GmshError> {
     let failed = |cause| GmshError { path: path.to_path_buf(), place: None, cause };
-    let groups = mesh.facet_groups().keys().chain(mesh.element_groups().keys());
+    let groups = mesh.face_groups().keys().chain(mesh.element_groups().keys());
     for name in groups {
         if name.contains('"') || name.chars().any(char::is_control) {
             return Err(failed(GmshCause::Name { name: name.clone() }));

@@ -4,7 +4,7 @@ use percute_core::mesh::Mesh;
 use percute_core::simplex::Shape;
 use std::collections::BTreeMap;
 
-/// Elements or facets that are in the same groups.
+/// Elements or faces that are in the same groups.
 pub(super) struct GroupedPart {
     /// Tags of their physical groups.
     pub(super) groups: Vec<usize>,
@@ -16,8 +16,8 @@ pub(super) struct GroupedPart {
 pub(super) struct Parts {
     /// Dimension, tag and name of the physical groups.
     pub(super) names: Vec<(usize, usize, String)>,
-    /// Parts of the boundary, of facets that are in a group.
-    pub(super) facets: Vec<GroupedPart>,
+    /// Parts of the boundary, of faces that are in a group.
+    pub(super) faces: Vec<GroupedPart>,
     /// Parts of the body.
     pub(super) cells: Vec<GroupedPart>,
 }
@@ -25,26 +25,26 @@ pub(super) struct Parts {
 impl Parts {
     pub(super) fn of(mesh: &Mesh) -> Self {
         let mut names = Vec::new();
-        let mut facets = BTreeMap::<usize, Vec<usize>>::new();
-        for (name, members) in mesh.facet_groups() {
+        let mut faces = BTreeMap::<usize, Vec<usize>>::new();
+        for (name, members) in mesh.face_groups() {
             names.push((mesh.dimension() - 1, names.len() + 1, name.clone()));
-            members.iter().for_each(|facet| facets.entry(facet.index()).or_default().push(names.len()));
+            members.iter().for_each(|face| faces.entry(face.index()).or_default().push(names.len()));
         }
         let mut cells = vec![Vec::new(); mesh.element_count()];
         for (name, members) in mesh.element_groups() {
             names.push((mesh.dimension(), names.len() + 1, name.clone()));
             members.iter().for_each(|cell| cells[cell.index()].push(names.len()));
         }
-        let facets = parts(facets.into_iter());
+        let faces = parts(faces.into_iter());
         // A point of the geometry is one point.
         let alone = |GroupedPart { groups, members }: GroupedPart| {
-            members.into_iter().map(move |facet| GroupedPart { groups: groups.clone(), members: vec![facet] })
+            members.into_iter().map(move |face| GroupedPart { groups: groups.clone(), members: vec![face] })
         };
-        let facets = match mesh.shape() {
-            Shape::Bar => facets.into_iter().flat_map(alone).collect(),
-            Shape::Triangle => facets,
+        let faces = match mesh.shape() {
+            Shape::Bar => faces.into_iter().flat_map(alone).collect(),
+            Shape::Triangle => faces,
         };
-        Self { names, facets, cells: parts(cells.into_iter().enumerate()) }
+        Self { names, faces, cells: parts(cells.into_iter().enumerate()) }
     }
 }
 

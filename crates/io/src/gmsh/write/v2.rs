@@ -3,7 +3,7 @@
 use super::parts::{GroupedPart, Parts};
 use super::sink::Sink;
 use crate::gmsh::kind::numbers;
-use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::mesh::Mesh;
 
 /// An element in one of its groups.
@@ -26,12 +26,12 @@ pub(super) fn write(out: &mut Sink, mesh: &Mesh, parts: &Parts) {
     let mut next = mesh.element_count() + 1;
     let cell = |cell: usize| mesh.cell(ElementId::new(cell)).iter().map(|node| node.index() + 1).collect();
     let cells = entries(&parts.cells, &mut next, |cell| Some(cell + 1), cell);
-    let facet = |facet: usize| mesh.facet(FacetId::new(facet)).nodes.iter().map(|node| node.index() + 1).collect();
-    let facets = entries(&parts.facets, &mut next, |_| None, facet);
+    let face = |face: usize| mesh.face(FaceId::new(face)).nodes.iter().map(|node| node.index() + 1).collect();
+    let faces = entries(&parts.faces, &mut next, |_| None, face);
     out.line("$Elements");
-    out.line(&(cells.len() + facets.len()).to_string());
-    let [of_facets, of_cells] = numbers(mesh.shape());
-    for (kind, entries) in [(of_facets, facets), (of_cells, cells)] {
+    out.line(&(cells.len() + faces.len()).to_string());
+    let [of_faces, of_cells] = numbers(mesh.shape());
+    for (kind, entries) in [(of_faces, faces), (of_cells, cells)] {
         if out.is_binary() && !entries.is_empty() {
             [kind as usize, entries.len(), 2].into_iter().for_each(|number| out.int(number));
         }

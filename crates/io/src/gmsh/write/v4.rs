@@ -3,7 +3,7 @@
 use super::parts::{GroupedPart, Parts};
 use super::sink::Sink;
 use crate::gmsh::kind::numbers;
-use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::mesh::Mesh;
 
 pub(super) fn write(out: &mut Sink, mesh: &Mesh, parts: &Parts) {
@@ -45,7 +45,7 @@ fn end(out: &mut Sink, name: &str) {
 
 fn entities(out: &mut Sink, mesh: &Mesh, parts: &Parts) {
     let (mut counts, d) = ([0; 4], mesh.dimension());
-    counts[d - 1] = parts.facets.len();
+    counts[d - 1] = parts.faces.len();
     counts[d] = parts.cells.len();
     row(out, &counts);
     let extreme = |pick: fn(f64, f64) -> f64| {
@@ -53,8 +53,8 @@ fn entities(out: &mut Sink, mesh: &Mesh, parts: &Parts) {
         points.reduce(|a, b| std::array::from_fn(|c| pick(a[c], b[c]))).unwrap_or([0.0; 3])
     };
     let around = [extreme(f64::min), extreme(f64::max)];
-    let point = |part: &GroupedPart| mesh.facet(FacetId::new(part.members[0])).nodes[0];
-    for (dimension, all) in [(d - 1, &parts.facets), (d, &parts.cells)] {
+    let point = |part: &GroupedPart| mesh.face(FaceId::new(part.members[0])).nodes[0];
+    for (dimension, all) in [(d - 1, &parts.faces), (d, &parts.cells)] {
         for (at, part) in all.iter().enumerate() {
             out.int(at + 1);
             if dimension == 0 {
@@ -73,17 +73,17 @@ fn entities(out: &mut Sink, mesh: &Mesh, parts: &Parts) {
 }
 
 fn elements(out: &mut Sink, mesh: &Mesh, parts: &Parts) {
-    let facets: usize = parts.facets.iter().map(|part| part.members.len()).sum();
-    let total = mesh.element_count() + facets;
-    row(out, &[parts.facets.len() + parts.cells.len(), total, 1, total]);
-    let [of_facets, of_cells] = numbers(mesh.shape());
+    let faces: usize = parts.faces.iter().map(|part| part.members.len()).sum();
+    let total = mesh.element_count() + faces;
+    row(out, &[parts.faces.len() + parts.cells.len(), total, 1, total]);
+    let [of_faces, of_cells] = numbers(mesh.shape());
     let mut tag = mesh.element_count();
-    for (at, part) in parts.facets.iter().enumerate() {
-        head(out, [mesh.dimension() - 1, at + 1, of_facets as usize], part.members.len());
-        for &facet in &part.members {
+    for (at, part) in parts.faces.iter().enumerate() {
+        head(out, [mesh.dimension() - 1, at + 1, of_faces as usize], part.members.len());
+        for &face in &part.members {
             tag += 1;
             out.size(tag);
-            mesh.facet(FacetId::new(facet)).nodes.iter().for_each(|node| out.size(node.index() + 1));
+            mesh.face(FaceId::new(face)).nodes.iter().for_each(|node| out.size(node.index() + 1));
             out.row();
         }
     }

@@ -276,7 +276,7 @@ fn slenderness(mesh: &Mesh) -> f64 {
         return 1.0;
     }
     let area: f64 = mesh.volumes().iter().sum();
-    let outline: f64 = mesh.boundary().map(|facet| mesh.facet_normal(facet).1).sum();
+    let outline: f64 = mesh.boundary().map(|face| mesh.face_normal(face).1).sum();
     2.0 * area / outline / mesh.size()
 }
 

@@ -57,14 +57,14 @@ impl Onset {
 /// Whether a traction is not zero at the start, or changes up to the end (s) faster than the mesh resolves, by more
 /// than little of what an impact at this speed (m/s) makes.
 fn load_jumps(problem: &AnyProblem, end: f64, speed: Option<f64>) -> bool {
-    if problem.facet_loads().is_empty() {
+    if problem.face_loads().is_empty() {
         return false;
     }
     let longest = problem.mesh().elements().map(|element| time_step_of_element(problem, element)).fold(0.0, f64::max);
     let window = STEEP[usize::from(problem.dimension() > 1)] * longest;
     let impedances = problem.materials().iter().map(|law| law.density() * law.wave_speed());
     let least = LITTLE * speed.unwrap_or(0.0).max(0.0) * impedances.fold(f64::INFINITY, f64::min);
-    problem.facet_loads().iter().any(|load| {
+    problem.face_loads().iter().any(|load| {
         let table = &problem.traction_tables()[load.table];
         let factor = load.profile.iter().fold(0.0_f64, |most, factor| most.max(factor.abs()));
         let most = largest(table.value().as_flattened());
@@ -108,7 +108,7 @@ fn is_strained(problem: &AnyProblem) -> bool {
 
 /// Whether most of the speed with which the body arrives at its plane is not that of the start, and tractions act.
 fn is_pushed(problem: &AnyProblem, results: &ContactResults, rebound: &Rebound) -> bool {
-    let Some(frame) = strongest(problem, results).filter(|_| !problem.facet_loads().is_empty()) else { return false };
+    let Some(frame) = strongest(problem, results).filter(|_| !problem.face_loads().is_empty()) else { return false };
     let (mass, velocity) = (problem.mass(), problem.initial_velocity());
     let velocity = || velocity.chunks_exact(problem.dimension());
     let component = |c: usize| mass.iter().zip(velocity()).map(|(m, v)| m * v.get(c).unwrap_or(&0.0)).sum();

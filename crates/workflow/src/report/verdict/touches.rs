@@ -84,9 +84,9 @@ impl<'a> Surface<'a> {
     pub(super) fn new(problem: &'a AnyProblem, results: &ContactResults) -> Self {
         let first_touch = first_contacts(results);
         let mut beside = vec![Vec::new(); first_touch.len()];
-        for facet in problem.contact_facets() {
-            for &a in facet.nodes {
-                beside[a].extend(facet.nodes.iter().filter(|&&b| b != a));
+        for face in problem.contact_faces() {
+            for &a in face.nodes {
+                beside[a].extend(face.nodes.iter().filter(|&&b| b != a));
             }
         }
         let gap = problem.starts_of_contact().into_iter().map(|(gap, _)| gap).collect();
@@ -172,8 +172,8 @@ impl<'a> Surface<'a> {
     /// The mean length of the edges at a node (m) and the material there.
     pub(super) fn edges(&self, at: usize) -> Option<(f64, &Elastic)> {
         let mesh = self.problem.mesh();
-        let facets = self.problem.contact_facets().into_iter().filter(|facet| facet.nodes.contains(&at));
-        let lengths: Vec<f64> = facets.map(|facet| mesh.facet_normal(facet.facet).1).collect();
+        let faces = self.problem.contact_faces().into_iter().filter(|face| face.nodes.contains(&at));
+        let lengths: Vec<f64> = faces.map(|face| mesh.face_normal(face.face).1).collect();
         let element = *self.elements(at).first()?;
         let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
         (!lengths.is_empty()).then(|| (mean, self.problem.material(element)))

@@ -4,7 +4,7 @@
 use crate::report::poor::{LONG, aspect};
 use percute_core::contact::ContactResults;
 use percute_core::dynamics::time_step_of_element;
-use percute_core::ids::{ElementId, FacetId};
+use percute_core::ids::{ElementId, FaceId};
 use percute_core::material::{Elastic, Hypothesis, Law};
 use percute_core::mesh::Mesh;
 use percute_core::problem::AnyProblem;
@@ -24,7 +24,7 @@ pub(super) struct Uneven {
     /// The size of the largest element over that of the smallest one with a node that touches; 1 without contact. A
     /// size is the way of a wave in the critical step of the element alone.
     pub(super) at_contact: f64,
-    /// The largest ratio of the impedances, with thickness or section, of two elements that share a facet, or of two
+    /// The largest ratio of the impedances, with thickness or section, of two elements that share a face, or of two
     /// bodies at their interface.
     pub(super) impedances: f64,
     /// The largest Poisson's ratio in plane strain; 0 without plane strain.
@@ -63,22 +63,22 @@ fn longest(mesh: &Mesh, by_element: &[f64]) -> f64 {
     if of_long > SHARE * total { most } else { 1.0 }
 }
 
-/// The largest ratio of the impedances of two elements that share a facet, or of two bodies at their interface.
+/// The largest ratio of the impedances of two elements that share a face, or of two bodies at their interface.
 fn impedances(problem: &AnyProblem) -> f64 {
     let impedance = |law: &Elastic| law.density() * law.wave_speed() * law.extent();
     let each: Vec<f64> = problem.materials().iter().map(impedance).collect();
     let of = |element: ElementId| each[usize::from(problem.element_material()[element.index()])];
     let mesh = problem.mesh();
-    let facets = (0..mesh.facet_count()).map(|facet| mesh.facet(FacetId::new(facet)));
-    let inner = facets.filter_map(|facet| Some((of(facet.owner), of(facet.neighbour?))));
+    let faces = (0..mesh.face_count()).map(|face| mesh.face(FaceId::new(face)));
+    let inner = faces.filter_map(|face| Some((of(face.owner), of(face.neighbour?))));
     let inner = inner.map(|(a, b)| a.max(b) / a.min(b)).fold(1.0, f64::max);
     let ends = |side: usize| {
-        let facets = problem.contact_facets().into_iter().filter(|facet| facet.obstacle == side);
-        let owners = facets.map(|facet| of(mesh.facet(facet.facet).owner));
+        let faces = problem.contact_faces().into_iter().filter(|face| face.obstacle == side);
+        let owners = faces.map(|face| of(mesh.face(face.face).owner));
         owners.fold([f64::INFINITY, 0.0], |[least, most], each| [least.min(each), most.max(each)])
     };
     problem.sides_of_interfaces().into_iter().map(|sides| sides.map(ends)).fold(inner, |most, [a, b]| {
-        // A side without facets has no impedance.
+        // A side without faces has no impedance.
         most.max(a[1] / b[0]).max(b[1] / a[0])
     })
 }

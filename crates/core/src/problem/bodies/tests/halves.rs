@@ -42,7 +42,7 @@ fn halves_meet_along_the_line_of_symmetry() {
                 let builder = halves(|x| [far(x) - fall * x, rise * x], gap, place);
                 let problem =
                     builder.build().unwrap_or_else(|error| panic!("{fall}, {rise}, {gap}, {place:?}: {error}"));
-                let edges = problem.surface().facets().len();
+                let edges = problem.surface().faces().len();
                 let normal = problem.obstacles()[0].flat_frame().normal()[0];
                 assert_eq!((edges, normal), (8, 0.0), "{fall}, {rise}, {gap}, {place:?}");
             }
@@ -63,7 +63,7 @@ fn flush_ends_meet_along_a_surface() {
             let builder = flush(|x| [-fall * x, rise * x], 1e-5, [0.0, 0.0]).support(held);
             let problem = builder.build().unwrap_or_else(|error| panic!("{group}, {fall}, {rise}: {error}"));
             let normal = problem.obstacles()[0].flat_frame().normal()[0];
-            assert_eq!((problem.surface().facets().len(), normal), (8, 0.0), "{group}, {fall}, {rise}");
+            assert_eq!((problem.surface().faces().len(), normal), (8, 0.0), "{group}, {fall}, {rise}");
         }
     }
 }

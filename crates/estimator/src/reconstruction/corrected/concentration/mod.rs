@@ -170,7 +170,7 @@ impl<const D: usize> Concentration<D> {
         edges.filter(|(_, hat)| hat.halvings > 0 && hat.share != 0.0).map(move |((candidate, &edge), hat)| NarrowHat {
             node: at,
             star: star.first,
-            facet: candidate.facet,
+            face: candidate.face,
             end: candidate.end,
             edge,
             halvings: hat.halvings,
@@ -190,10 +190,10 @@ impl<const D: usize> Concentration<D> {
         hats.map(|(edge, hat)| (edge.far, hat.halvings, force.map(|f| hat.share * f)))
     }
 
-    /// The density at the node (Pa) on one of its facets, of a hat as wide as the edge.
-    pub(super) fn wide(&self, at: usize, facet: usize, shape: &TractionShape, force: &[f64; D]) -> [f64; D] {
+    /// The density at the node (Pa) on one of its faces, of a hat as wide as the edge.
+    pub(super) fn wide(&self, at: usize, face: usize, shape: &TractionShape, force: &[f64; D]) -> [f64; D] {
         let mut edges = self.nodes[at].edges.iter().zip(shape.iter());
-        let found = edges.find(|(edge, hat)| edge.facet == facet && hat.halvings == 0);
+        let found = edges.find(|(edge, hat)| edge.face == face && hat.halvings == 0);
         found.map_or([0.0; D], |(edge, hat)| force.map(|f| D as f64 * hat.share * f / edge.area))
     }
 
@@ -208,7 +208,7 @@ impl<const D: usize> Concentration<D> {
     ) -> f64 {
         let square: f64 = force.iter().map(|f| f * f).sum::<f64>().max(f64::MIN_POSITIVE);
         let wide = self.nodes[at].edges.iter().map(|edge| {
-            let density = self.wide(at, edge.facet, shape, force);
+            let density = self.wide(at, edge.face, shape, force);
             density.map(|f| f * edge.area / D as f64)
         });
         let (mut rest, mut residual) = (*force, 0.0);

@@ -34,11 +34,11 @@ pub(super) struct NodeStar {
     pub(super) alike: usize,
 }
 
-/// A candidate facet of a node.
+/// A candidate face of a node.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CandidateEdge {
-    pub(super) facet: usize,
-    /// Position of the node in the facet.
+    pub(super) face: usize,
+    /// Position of the node in the face.
     pub(super) end: usize,
     /// The node at the other end, by its position in the contact surface.
     pub(super) far: usize,
@@ -52,12 +52,12 @@ impl NodeStar {
     pub(super) fn all<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Self> {
         let surface = problem.surface();
         let mut edges = vec![Vec::new(); surface.nodes().len()];
-        for (facet, candidate) in surface.facets().iter().enumerate() {
+        for (face, candidate) in surface.faces().iter().enumerate() {
             for (end, &at) in candidate.nodes.iter().enumerate() {
                 let star = problem.mesh().stars().star(surface.nodes()[at].node);
-                let side = usize::from(star.links[0] != Some(candidate.facet));
+                let side = usize::from(star.links[0] != Some(candidate.face));
                 edges[at].push(CandidateEdge {
-                    facet,
+                    face,
                     end,
                     far: candidate.nodes[(end + 1) % D],
                     side,
@@ -98,7 +98,7 @@ impl NodeStar {
             (alpha - beta) / law.extent() / elements.len() as f64
         };
         let supported = [star.links.first(), star.links.last()].map(|link| {
-            let supported = link.copied().flatten().map_or([false; D], |facet| problem.supported(facet));
+            let supported = link.copied().flatten().map_or([false; D], |face| problem.supported(face));
             [supported[0], supported[D - 1]]
         });
         let corner = |&id: &ElementId| problem.mesh().local_node(id, node).unwrap_or(0);

@@ -67,7 +67,7 @@ fn tractions_have_the_force_and_its_centroid() {
         let shape = concentration.shape(&problem, at, &Faced::WHOLE, &force, &gaps(&problem), None).unwrap();
         let hats: Vec<_> = concentration.hats(at, &shape, &force).collect();
         let values = |f: usize, k: usize| if k == at { concentration.wide(k, f, &shape, &force) } else { [0.0; 2] };
-        let densities = Densities::with_hats(&problem, |f, facet| facet.nodes.map(|k| values(f, k)), hats);
+        let densities = Densities::with_hats(&problem, |f, face| face.nodes.map(|k| values(f, k)), hats);
         let (mut sum, mut moment) = ([0.0; 2], 0.0);
         let origin = problem.surface().point(at);
         for (k, f) in nodal_forces(&problem, &densities).iter().enumerate() {
@@ -125,12 +125,12 @@ fn turned_stars_share_their_stress() {
     let stress = |at: usize| {
         let NodeStar { edges, elements, corners, frame, .. } = &concentration.nodes[at];
         let hats = [0, 1].map(|edge| {
-            let CandidateEdge { facet, end, .. } = edges[edge];
-            NarrowHat { node: at, star: at, facet, end, edge, halvings: 3 + edge, resultant: frame.global([1e5, 3e4]) }
+            let CandidateEdge { face, end, .. } = edges[edge];
+            NarrowHat { node: at, star: at, face, end, edge, halvings: 3 + edge, resultant: frame.global([1e5, 3e4]) }
         });
         let stress = concentration.in_element(&problem, &hats, elements[0]).unwrap();
         let products = stress.products();
-        // At both ends of the facet opposite to the node of the star.
+        // At both ends of the face opposite to the node of the star.
         let vector = |p: usize| frame.own([0, 1].map(|c| products[4 * corners[0] + 2 * p + c]));
         [[stress.energy(), 0.0], vector(0), vector(1)].concat()
     };

@@ -76,9 +76,9 @@ fn softening<const D: usize, const N: usize>(problem: &Problem<D, N>, u: &[[f64;
         let mut subtract = |mean: [[f64; D]; D], share: f64| {
             (0..D).for_each(|a| (0..D).for_each(|b| change[a][b] -= share * mean[a][b]));
         };
-        for facet in mesh.facets_of::<N>()[e] {
-            let facet = &mesh.facet(facet);
-            let both: Vec<_> = [Some(facet.owner), facet.neighbour].into_iter().flatten().collect();
+        for face in mesh.faces_of::<N>()[e] {
+            let face = &mesh.face(face);
+            let both: Vec<_> = [Some(face.owner), face.neighbour].into_iter().flatten().collect();
             subtract(mean(&both, law), edges / 3.0);
         }
         for node in element.nodes {
@@ -319,14 +319,14 @@ fn loaded<const D: usize, const N: usize>(
     laws: [Elastic; 2],
     [fixed, driven, loaded]: [&str; 3],
 ) -> Problem<D, N> {
-    let facets = mesh.facet_groups().iter().map(|(name, facets)| {
-        let nodes = facets.iter().map(|f| mesh.facet_nodes::<D>(*f).map(|n| n.index()));
+    let faces = mesh.face_groups().iter().map(|(name, faces)| {
+        let nodes = faces.iter().map(|f| mesh.face_nodes::<D>(*f).map(|n| n.index()));
         (name.clone(), nodes.collect())
     });
     let cells: Vec<[usize; N]> = mesh.nodes_of::<N>().iter().map(|cell| cell.map(|n| n.index())).collect();
     let group = |soft: bool| (0..cells.len()).filter(|e| (e % 3 == 0) == soft).collect();
     let groups = ElementGroups::from([("soft".to_string(), group(true)), ("hard".to_string(), group(false))]);
-    let mesh = Mesh::new(mesh.points_in::<D>().to_vec(), &cells, &facets.collect(), &groups).unwrap();
+    let mesh = Mesh::new(mesh.points_in::<D>().to_vec(), &cells, &faces.collect(), &groups).unwrap();
     let normal = std::array::from_fn(|c| if c + 1 == D { 1.0 } else { 0.0 });
     let below = std::array::from_fn(|c| if c + 1 == D { -10.0 } else { 0.0 });
     let table = |values: [f64; 2]| Table::new(vec![0.0, 1.0], values.map(|v| [v; D]).to_vec()).unwrap();

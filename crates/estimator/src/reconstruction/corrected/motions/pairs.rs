@@ -1,4 +1,4 @@
-//! The elements, two and two across a common facet: a pair has four nodes to read and write where two triangles have
+//! The elements, two and two across a common face: a pair has four nodes to read and write where two triangles have
 //! six.
 
 use super::blocks::Blocks;
@@ -39,10 +39,10 @@ pub(super) struct Moduli {
 /// the places 2k and 2k + 1, k its number among all pairs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Around {
-    /// The places of the elements beyond the facets of A and of B; those of the elements themselves at the boundary of
+    /// The places of the elements beyond the faces of A and of B; those of the elements themselves at the boundary of
     /// a material.
     pub(super) beyond: [[u32; 3]; 2],
-    /// (1 − β)/(3(V_E + V_F)) at these facets (1/m³).
+    /// (1 − β)/(3(V_E + V_F)) at these faces (1/m³).
     pub(super) weights: [[f64; 3]; 2],
     /// The patches at the nodes 0, 1, 2, 3, counted from the first one of the block.
     pub(super) patches: [u32; 4],
@@ -183,8 +183,8 @@ impl Around {
         };
         for (which, element) in pair.into_iter().enumerate() {
             let Some(element) = element else { continue };
-            for (k, facet) in problem.mesh().facets_of::<N>()[element.index()].iter().enumerate() {
-                let other = Smoothing::beyond(problem, element, *facet);
+            for (k, face) in problem.mesh().faces_of::<N>()[element.index()].iter().enumerate() {
+                let other = Smoothing::beyond(problem, element, *face);
                 let volume = problem.volume(element) + problem.volume(other);
                 made.beyond[which][k] = places[other.index()];
                 made.weights[which][k] =
@@ -219,9 +219,9 @@ fn partner<const D: usize, const N: usize>(
 ) -> (usize, Option<ElementId>) {
     let (mesh, laws, id) = (problem.mesh(), problem.element_material(), ElementId::new(e));
     let mut found: (usize, Option<ElementId>) = (1, None);
-    for (apart, &facet) in mesh.facets_of::<N>()[e].iter().enumerate() {
-        let facet = &mesh.facet(facet);
-        let Some(other) = facet.across(id) else { continue };
+    for (apart, &face) in mesh.faces_of::<N>()[e].iter().enumerate() {
+        let face = &mesh.face(face);
+        let Some(other) = face.across(id) else { continue };
         let o = other.index();
         if range.contains(&o) && !taken[o] && laws[o] == laws[e] && found.1.is_none_or(|known| other < known) {
             found = (apart, Some(other));

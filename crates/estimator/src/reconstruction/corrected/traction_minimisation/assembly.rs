@@ -7,7 +7,7 @@ use crate::element::Element;
 use crate::lanes::LANES;
 use crate::simd::dispatch;
 use crate::stress::TractionForms;
-use percute_core::ids::{ElementId, FacetId, NodeId};
+use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::problem::Problem;
 
 /// The parts of the mesh that matter.
@@ -39,30 +39,30 @@ pub(super) fn assemble<const D: usize, const N: usize>(
 }
 
 impl<const D: usize, const N: usize> Unknown<'_, D, N> {
-    /// The components in which the moments of a facet are unknown: all in the body, those of the support on its
+    /// The components in which the moments of a face are unknown: all in the body, those of the support on its
     /// boundary.
-    fn unknown(&self, facet: FacetId) -> [bool; D] {
-        let inside = self.problem.mesh().facet(facet).neighbour.is_some();
-        if inside { [true; D] } else { self.problem.supported(facet) }
+    fn unknown(&self, face: FaceId) -> [bool; D] {
+        let inside = self.problem.mesh().face(face).neighbour.is_some();
+        if inside { [true; D] } else { self.problem.supported(face) }
     }
 
-    /// Whether the moments of a facet may have a part along it, or across it.
-    fn contain(&self, facet: FacetId, along: bool) -> bool {
-        let unknown = self.unknown(facet);
+    /// Whether the moments of a face may have a part along it, or across it.
+    fn contain(&self, face: FaceId, along: bool) -> bool {
+        let unknown = self.unknown(face);
         if unknown == [true; D] || unknown == [false; D] {
             return unknown == [true; D];
         }
-        // A facet along an axis alone has one of both in the one direction of its support.
-        (0..D).any(|c| unknown[c] != along && self.problem.mesh().stands_across(facet, c))
+        // A face along an axis alone has one of both in the one direction of its support.
+        (0..D).any(|c| unknown[c] != along && self.problem.mesh().stands_across(face, c))
     }
 
     /// Which modes a node has: both forces and the couple, as far as all edges around it let them through.
     fn modes_of(&self, node: NodeId) -> [bool; 3] {
         let mut modes = [true; 3];
         for link in self.problem.mesh().stars().star(node).links {
-            let Some(facet) = *link else { return [false; 3] };
-            let unknown = self.unknown(facet);
-            let own = [unknown[0], unknown[D - 1], self.contain(facet, false)];
+            let Some(face) = *link else { return [false; 3] };
+            let unknown = self.unknown(face);
+            let own = [unknown[0], unknown[D - 1], self.contain(face, false)];
             (0..3).for_each(|i| modes[i] &= own[i]);
         }
         modes
@@ -79,8 +79,8 @@ impl<const D: usize, const N: usize> Unknown<'_, D, N> {
     }
 
     /// 1 if an element lies on the side of the neighbour of one of its edges.
-    fn side(&self, e: usize, facet: FacetId) -> usize {
-        usize::from(self.problem.mesh().facet(facet).owner != ElementId::new(e))
+    fn side(&self, e: usize, face: FaceId) -> usize {
+        usize::from(self.problem.mesh().face(face).owner != ElementId::new(e))
     }
 
     /// No energy yet.
@@ -112,13 +112,13 @@ impl<const D: usize, const N: usize> Unknown<'_, D, N> {
     /// Adds the form of an element, not yet scaled.
     fn add(&self, to: &mut Operator, e: usize, form: &ModeForm, lane: usize) {
         let mesh = self.problem.mesh();
-        let (cell, facets) = (&mesh.nodes_of::<N>()[e], &mesh.facets_of::<N>()[e]);
-        let number = [0, 1, 2].map(|k| self.numbers.of(facets[k]));
+        let (cell, faces) = (&mesh.nodes_of::<N>()[e], &mesh.faces_of::<N>()[e]);
+        let number = [0, 1, 2].map(|k| self.numbers.of(faces[k]));
         let entry = |i: usize, j: usize| form[i][j].0[lane];
         for k in 0..3 {
             let (a, b) = ((k + 1) % 3, (k + 2) % 3);
             let (lower, higher) = if cell[a] < cell[b] { (a, b) } else { (b, a) };
-            let (at, side) = (number[k], self.side(e, facets[k]));
+            let (at, side) = (number[k], self.side(e, faces[k]));
             let row = &mut to.with_nodes[at];
             for (slot, node) in [(0, lower), (1, higher), (2 + side, k)] {
                 row.nodes[slot] = cell[node].index() as u32;
@@ -142,7 +142,7 @@ impl<const D: usize, const N: usize> Unknown<'_, D, N> {
     /// Sets the edges around local node `i` of an element.
     fn add_sectors(&self, to: &mut Operator, e: usize, i: usize, number: &[usize; 3]) {
         let mesh = self.problem.mesh();
-        let (cell, facets) = (&mesh.nodes_of::<N>()[e], &mesh.facets_of::<N>()[e]);
+        let (cell, faces) = (&mesh.nodes_of::<N>()[e], &mesh.faces_of::<N>()[e]);
         let (node, sectors) = (cell[i], to.sectors(cell[i].index()));
         if sectors.is_empty() {
             return;
@@ -153,7 +153,7 @@ impl<const D: usize, const N: usize> Unknown<'_, D, N> {
         for (at, k, other) in [(enter, (i + 2) % 3, (i + 1) % 3), (leave, (i + 1) % 3, (i + 2) % 3)] {
             to.sectors[at].spoke = 2 * number[k] as u32 + u32::from(cell[other] < node);
         }
-        to.sectors[enter].rim = (2 * number[i] + self.side(e, facets[i])) as u32;
+        to.sectors[enter].rim = (2 * number[i] + self.side(e, faces[i])) as u32;
     }
 
     /// Turns the blocks of nodes and edges into their scales.
@@ -162,9 +162,9 @@ impl<const D: usize, const N: usize> Unknown<'_, D, N> {
             let scale = &mut operator.node_scale[node];
             *scale = inverse_factor(scale, self.modes_of(NodeId::new(node)));
         }
-        for facet in (0..operator.edge_scale.len()).map(FacetId::new) {
-            let scale = &mut operator.edge_scale[self.numbers.of(facet)];
-            *scale = if self.contain(facet, true) && *scale > 0.0 { 1.0 / scale.sqrt() } else { 0.0 };
+        for face in (0..operator.edge_scale.len()).map(FaceId::new) {
+            let scale = &mut operator.edge_scale[self.numbers.of(face)];
+            *scale = if self.contain(face, true) && *scale > 0.0 { 1.0 / scale.sqrt() } else { 0.0 };
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::modes::MOMENTS;
 use crate::lanes::Value;
 use crate::measure::{ElementMeasure, NodalBalance};
-use crate::stress::{EnergyForm, LOADS, facet_node};
+use crate::stress::{EnergyForm, LOADS, face_node};
 
 /// The slope of the elastic energy of σ_DA − σ in the moments on the element's edges, edge by edge and node by node, σ
 /// the stress of the displacement that is equilibrated.
@@ -29,7 +29,7 @@ pub(super) fn moment_slope<T: Value, const D: usize, const N: usize>(
         for c in 0..D {
             let turning = slope[c] * (D * (D + 1)) as f64;
             for p in 0..D {
-                let arm = &measure.arms()[facet_node::<N>(k, p)];
+                let arm = &measure.arms()[face_node::<N>(k, p)];
                 let mut sum = if p == 0 { -turning } else { turning };
                 for b in 0..D {
                     sum += strain[c][b] * arm[b];

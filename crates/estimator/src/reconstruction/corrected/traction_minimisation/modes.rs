@@ -10,8 +10,8 @@
 //! by their lower ends, so that those of consecutive nodes follow each other.
 
 use crate::lanes::{Lanes, Value, load};
-use percute_core::ids::{FacetId, NodeId};
-use percute_core::mesh::{Facet, Mesh};
+use percute_core::ids::{FaceId, NodeId};
+use percute_core::mesh::{Face, Mesh};
 
 /// Components of the moments on the three edges of a triangle: 3 edges, 2 nodes, 2 components.
 pub(super) const MOMENTS: usize = 12;
@@ -75,8 +75,8 @@ impl ModesPart<'_> {
 pub(in crate::reconstruction) struct Numbers {
     /// The first of each node, and after them the number of all.
     first: Vec<u32>,
-    /// Of each facet.
-    facet: Vec<u32>,
+    /// Of each face.
+    face: Vec<u32>,
 }
 
 impl Numbers {
@@ -84,19 +84,19 @@ impl Numbers {
     pub(super) const BYTES: usize = 2 * size_of::<u32>();
 
     pub(super) fn new(mesh: &Mesh) -> Self {
-        let lower = |facet: &Facet<'_>| facet.nodes.iter().map(|n| n.index()).min().unwrap_or(0);
+        let lower = |face: &Face<'_>| face.nodes.iter().map(|n| n.index()).min().unwrap_or(0);
         let mut first = vec![0; mesh.node_count() + 1];
-        mesh.facets().for_each(|facet| first[lower(&facet) + 1] += 1);
+        mesh.faces().for_each(|face| first[lower(&face) + 1] += 1);
         for i in 1..first.len() {
             first[i] += first[i - 1];
         }
         let mut next = first.clone();
-        let number = |facet: Facet<'_>| {
-            let next = &mut next[lower(&facet)];
+        let number = |face: Face<'_>| {
+            let next = &mut next[lower(&face)];
             *next += 1;
             *next - 1
         };
-        Self { facet: mesh.facets().map(number).collect(), first }
+        Self { face: mesh.faces().map(number).collect(), first }
     }
 
     /// How many nodes there are.
@@ -118,8 +118,8 @@ impl Numbers {
     }
 
     #[inline(always)]
-    pub(super) fn of(&self, facet: FacetId) -> usize {
-        self.facet[facet.index()] as usize
+    pub(super) fn of(&self, face: FaceId) -> usize {
+        self.face[face.index()] as usize
     }
 
     /// Adds the slopes of an energy in the moments on the edges of element `e`, outward from it. Moment 4k + 2p + c is
@@ -132,14 +132,14 @@ impl Numbers {
         slope: &[T; MOMENTS],
         to: &mut ModesPart<'_>,
     ) {
-        let (cell, facets) = (&mesh.nodes_of::<N>()[e], &mesh.facets_of::<N>()[e]);
+        let (cell, faces) = (&mesh.nodes_of::<N>()[e], &mesh.faces_of::<N>()[e]);
         let mut nodes = [[slope[0].zero(); 3]; N];
         for k in 0..N {
             let (a, b) = ((k + 1) % N, (k + 2) % N);
             let edge = Edge::new::<D>(mesh, cell[a], cell[b]);
             let (ax, ay, bx, by) = (slope[4 * k], slope[4 * k + 1], slope[4 * k + 2], slope[4 * k + 3]);
             let (x, y) = (bx - ax, by - ay);
-            let sum = &mut to.edges[self.of(facets[k]) - to.first_edge];
+            let sum = &mut to.edges[self.of(faces[k]) - to.first_edge];
             *sum = (x.load(sum) + (x * edge.along[0] + y * edge.along[1])).store();
             let couple = x * edge.lever[0] + y * edge.lever[1];
             nodes[a] = [nodes[a][0] - ax, nodes[a][1] - ay, nodes[a][2] - couple];
@@ -164,13 +164,13 @@ impl Numbers {
         moments: &mut [[Lanes; D]],
     ) {
         let [x, y, turn] = load(like, &change.nodes[node.index()]);
-        for (moment, facet) in moments.iter_mut().zip(mesh.stars().star(node).links) {
-            let Some(facet) = *facet else { continue };
-            let ends = &mesh.facet_nodes::<D>(facet);
+        for (moment, face) in moments.iter_mut().zip(mesh.stars().star(node).links) {
+            let Some(face) = *face else { continue };
+            let ends = &mesh.face_nodes::<D>(face);
             let other = if ends[0] == node { ends[D - 1] } else { ends[0] };
             // The star leaves the element before the link by it: the node is the second one there.
             let edge = Edge::new::<D>(mesh, other, node);
-            let s = like.load(&change.edges[self.of(facet)]);
+            let s = like.load(&change.edges[self.of(face)]);
             let couple = turn - like.load(&change.nodes[other.index()][2]);
             let [a, b] = [like.load(&moment[0]), like.load(&moment[1])];
             moment[0] = (a + (x + (couple * edge.lever[0] + s * edge.along[0]))).store();

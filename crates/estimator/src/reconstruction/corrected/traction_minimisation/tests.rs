@@ -5,7 +5,7 @@ use super::*;
 use crate::kinematic::ElementMotion;
 use crate::measure::NodalBalance;
 use case::{Case, problem_of, problems};
-use percute_core::ids::FacetId;
+use percute_core::ids::FaceId;
 use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, Mesh};
 use percute_testkit::{Random, random_rectangle};
@@ -25,7 +25,7 @@ fn check_resultants(case: &Case) {
             let (mut force, mut couple) = ([0.0; 2], 0.0);
             for k in 0..3 {
                 for p in 0..2 {
-                    let at = points[crate::stress::facet_node::<3>(k, p)];
+                    let at = points[crate::stress::face_node::<3>(k, p)];
                     let f = [0, 1].map(|c| all[4 * k + 2 * p + c].0[lane]);
                     force = [force[0] + f[0], force[1] + f[1]];
                     couple += at[0] * f[1] - at[1] * f[0];
@@ -44,11 +44,11 @@ fn check_resultants(case: &Case) {
 fn the_modes_are_all_there_are() {
     for (case, redundant) in problems().map(Case::new).iter().zip([0, 1]) {
         let mesh = case.problem.mesh();
-        let unknown = |f: usize| match mesh.facet(FacetId::new(f)).neighbour {
+        let unknown = |f: usize| match mesh.face(FaceId::new(f)).neighbour {
             Some(_) => 2,
-            None => case.problem.supported(FacetId::new(f)).into_iter().filter(|supported| *supported).count(),
+            None => case.problem.supported(FaceId::new(f)).into_iter().filter(|supported| *supported).count(),
         };
-        let unknown: usize = (0..mesh.facets().len()).map(unknown).sum();
+        let unknown: usize = (0..mesh.faces().len()).map(unknown).sum();
         let modes = case.modes();
         // One column for each mode: the moments that it makes.
         let column = |m: &usize| {
@@ -73,8 +73,8 @@ fn modes_leave_given_tractions_alone() {
     let (mesh, mut across) = (case.problem.mesh(), 0.0_f64);
     for node in (0..mesh.node_count()).map(NodeId::new) {
         let star = mesh.stars().star(node);
-        for (facet, moment) in star.links.iter().zip(&links[mesh.stars().link_range(node)]) {
-            if facet.is_some_and(|facet| mesh.facet(facet).neighbour.is_none()) {
+        for (face, moment) in star.links.iter().zip(&links[mesh.stars().link_range(node)]) {
+            if face.is_some_and(|face| mesh.face(face).neighbour.is_none()) {
                 assert_eq!(moment[1].0, [0.0; LANES], "{node:?}");
                 across = across.max(moment[0].0[0].abs());
             }
@@ -168,8 +168,8 @@ fn check_matrix(case: &Case) {
 fn stretched(mesh: &Mesh) -> Mesh {
     let points = mesh.points_in::<2>().iter().map(|p| [10.0 * p[0], p[1]]).collect();
     let cells: Vec<_> = mesh.nodes_of::<3>().iter().map(|cell| cell.map(|n| n.index())).collect();
-    let nodes = |f: &FacetId| mesh.facet_nodes::<2>(*f).map(|n| n.index());
-    let groups = mesh.facet_groups().iter().map(|(name, facets)| (name.clone(), facets.iter().map(nodes).collect()));
+    let nodes = |f: &FaceId| mesh.face_nodes::<2>(*f).map(|n| n.index());
+    let groups = mesh.face_groups().iter().map(|(name, faces)| (name.clone(), faces.iter().map(nodes).collect()));
     Mesh::new(points, &cells, &groups.collect(), &ElementGroups::new()).unwrap()
 }
 

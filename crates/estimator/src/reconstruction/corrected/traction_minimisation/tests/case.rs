@@ -94,13 +94,13 @@ impl Case {
 
     /// The moments on the edges of an element, outward.
     pub(super) fn of_element(&self, e: usize, links: &[[Lanes; 2]]) -> [Lanes; MOMENTS] {
-        let crossing = simplex::<2, 3>().facets_around();
+        let crossing = simplex::<2, 3>().faces_around();
         let mut moments = [Lanes::ZERO; MOMENTS];
         for i in 0..3 {
             let at = self.elements[e].links[i] as usize;
-            for (facet, (link, sign)) in crossing[i].into_iter().zip([(at, -1.0), (at + 1, 1.0)]) {
-                let k = facet.unwrap();
-                // Node i is node (i − k − 1) mod 3 of facet k.
+            for (face, (link, sign)) in crossing[i].into_iter().zip([(at, -1.0), (at + 1, 1.0)]) {
+                let k = face.unwrap();
+                // Node i is node (i − k − 1) mod 3 of face k.
                 let first = 4 * k + 2 * ((i + 2 - k) % 3);
                 (0..2).for_each(|c| moments[first + c] = links[link][c] * sign);
             }

@@ -1,4 +1,4 @@
-//! The edges of surfaces that slide, as candidate facets.
+//! The edges of surfaces that slide, as candidate faces.
 
 use crate::direction::along;
 use crate::partition::Piece;
@@ -7,12 +7,12 @@ use percute_core::ids::ElementId;
 use percute_core::material::{Hypothesis, Law};
 use percute_core::problem::Problem;
 
-/// An edge of a surface that slides, as a candidate facet.
+/// An edge of a surface that slides, as a candidate face.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct EdgeFacet {
-    /// Position among the candidate facets.
-    pub(crate) facet: usize,
-    /// Position in the facet of the first and of the second node along the tangent.
+pub(crate) struct EdgeFace {
+    /// Position among the candidate faces.
+    pub(crate) face: usize,
+    /// Position in the face of the first and of the second node along the tangent.
     pub(super) ends: [usize; 2],
     /// Its length along the tangent (m).
     pub(super) length: f64,
@@ -20,30 +20,30 @@ pub(crate) struct EdgeFacet {
     pub(super) spread: f64,
 }
 
-/// The edges of slave and master as candidate facets.
+/// The edges of slave and master as candidate faces.
 #[derive(Clone, Debug)]
-pub(crate) struct SlidingFacets {
-    pub(super) edges: [Vec<EdgeFacet>; 2],
+pub(crate) struct SlidingFaces {
+    pub(super) edges: [Vec<EdgeFace>; 2],
 }
 
-impl SlidingFacets {
+impl SlidingFaces {
     /// Those of all surfaces that slide.
     pub(crate) fn all<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Self> {
         let surface = problem.surface();
         let mut starts_at = vec![None; surface.nodes().len()];
-        for (f, facet) in surface.facets().iter().enumerate() {
-            let first = facet.nodes.iter().copied().min().unwrap_or(0);
+        for (f, face) in surface.faces().iter().enumerate() {
+            let first = face.nodes.iter().copied().min().unwrap_or(0);
             if surface.sliding_of(first).is_some() {
                 starts_at[first] = Some(f);
             }
         }
         let edges = |sliding: &SlidingSurfaces<D>| {
             let one = |side: &Side, first: usize| {
-                let facet = starts_at[side.position(first)]?;
+                let face = starts_at[side.position(first)]?;
                 let length = side.xi()[first + 1] - side.xi()[first];
-                let nodes = &surface.facets()[facet].nodes;
+                let nodes = &surface.faces()[face].nodes;
                 let ends = [0, 1].map(|k| nodes.iter().position(|&at| at == side.position(first + k)).unwrap_or(k));
-                Some(EdgeFacet { facet, ends, length, spread: spread(problem, facet) * length })
+                Some(EdgeFace { face, ends, length, spread: spread(problem, face) * length })
             };
             let edges = [sliding.slave(), sliding.master()];
             Self { edges: edges.map(|side| side.edges().iter().filter_map(|&first| one(side, first)).collect()) }
@@ -51,20 +51,20 @@ impl SlidingFacets {
         surface.sliding().iter().map(edges).collect()
     }
 
-    /// The facets on which a piece is: that of the slave and that of the master.
+    /// The faces on which a piece is: that of the slave and that of the master.
     pub(crate) fn of(&self, piece: &Piece) -> [usize; 2] {
-        [self.edges[0][piece.slave[0]].facet, self.edges[1][piece.master[0]].facet]
+        [self.edges[0][piece.slave[0]].face, self.edges[1][piece.master[0]].face]
     }
 }
 
 /// C over the thickness, with the energy C ℓ ∫r² ds of a traction r without resultant and moment on an edge of length
 /// ℓ: (0.3 + max(0, cot θ)²)/E with the smaller angle θ of the element at the edge. It is above the largest eigenvalue
 /// of the edge in nine shapes of triangles.
-fn spread<const D: usize, const N: usize>(problem: &Problem<D, N>, facet: usize) -> f64 {
-    let (mesh, facet) = (problem.mesh(), problem.surface().facets()[facet].facet);
-    let owner: ElementId = mesh.facet(facet).owner;
+fn spread<const D: usize, const N: usize>(problem: &Problem<D, N>, face: usize) -> f64 {
+    let (mesh, face) = (problem.mesh(), problem.surface().faces()[face].face);
+    let owner: ElementId = mesh.face(face).owner;
     let (points, law) = (mesh.points_in::<D>(), problem.material(owner));
-    let ends = mesh.facet_nodes::<D>(facet);
+    let ends = mesh.face_nodes::<D>(face);
     let apex = mesh.nodes_of::<N>()[owner.index()].iter().find(|node| !ends.contains(node)).copied().unwrap_or(ends[0]);
     let arm = |from: usize, to: usize| -> [f64; D] { std::array::from_fn(|c| points[to][c] - points[from][c]) };
     let cotangent = |k: usize| {
