@@ -49,7 +49,7 @@ class Run:
         finer = self.problem(self.mesh.refine(REFINEMENTS[self.mesh.points.shape[1]]))
         (error,) = pc.true_errors([history], finer, **times)
         estimate = pc.estimate(history, every=1)
-        named = json.loads(estimate.to_json())["verdict"]["untested"]
+        named = json.loads(estimate.to_json())["verdict"]["outside_tested_range"]
         return estimate.sup / error.sup, estimate.mean / error.mean, ", ".join(named)
 
 

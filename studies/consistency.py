@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import percute as pc
 
-FIGURES = ("balance", "initial_velocity", "cone", "slip", "gap_under_force", "penetration", "opposite", "plane", "touching")
+FIGURES = ("balance", "initial_velocity", "cone", "slip", "gap_under_force", "penetration", "interface_balance", "plane", "touching")
 KINDS = ("float64", "float32")
 ARRAYS = tuple(product(KINDS, ("with forces", "forces derived")))
 SLIDING = tuple(product(KINDS, ("non-matching interfaces",)))

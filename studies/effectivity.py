@@ -174,7 +174,7 @@ def _runs(results: Iterable[Result]) -> Table:
         for r, name in enumerate(NAMES):
             for each in filter(None, found):
                 e = each.estimates[r]
-                measures = (e.sup, e.mean, e.published_relative_sup, e.published_relative_mean, e.kept_impulse)
+                measures = (e.sup, e.mean, e.published_relative_sup, e.published_relative_mean, e.impulse_ratio)
                 true = each.exact[-1]
                 table.add(case.name, name, each.elements, each.steps, *measures, 100.0 * each.contact(r), true.sup, true.mean, *stated(e))
     return table

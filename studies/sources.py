@@ -128,10 +128,10 @@ def _halve(subject: Subject, stop: Stop) -> Halved:
     total = before.mean.total
     return Halved(
         before.mean,
-        before.half_size,
+        before.halved_elements,
         after.mean,
-        Change(before.half_size.total / total - 1.0, after.mean.total / total - 1.0, true[1] / true[0] - 1.0),
-        Change(before.half_step / total, step.mean**2 / total - 1.0, true[2] / true[0] - 1.0),
+        Change(before.halved_elements.total / total - 1.0, after.mean.total / total - 1.0, true[1] / true[0] - 1.0),
+        Change(before.halved_step / total, step.mean**2 / total - 1.0, true[2] / true[0] - 1.0),
     )
 
 

@@ -141,7 +141,7 @@ def _table(results: Iterable[tuple[Run, Result]]) -> Table:
                 1e6 * case.end,
                 1e6 * first,
                 1e6 * last,
-                estimate.kept_impulse,
+                estimate.impulse_ratio,
                 *each.effectivity(0),
                 1e6 * estimate.time_of_sup,
                 *(100.0 * part / parts.total for part in (parts.contact, parts.kinetic, parts.elastic)),

@@ -154,7 +154,7 @@ def report_estimates(estimates: dict[str, pc.Estimate]) -> Iterator[str]:
         worst, value = max(estimate.residuals.items(), key=lambda item: item[1])
         yield (
             f"  {name:24} {estimate.relative_sup:8.2%} {estimate.relative_mean:7.2%} {(estimate.time_of_sup - FLIGHT) * 1e6:7.2f}"
-            f" {estimate.parts.kinetic / estimate.parts.total:12.1%} {estimate.kept_impulse:12.2%}   {value:.1e} ({worst})"
+            f" {estimate.parts.kinetic / estimate.parts.total:12.1%} {estimate.impulse_ratio:12.2%}   {value:.1e} ({worst})"
         )
 
 

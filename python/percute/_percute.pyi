@@ -66,7 +66,7 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 _Tell = Callable[[Progress], object] | None
 _Times = tuple[float | None, float | None, float | None, Sequence[float] | None]
-_Kept = tuple[int | None, Sequence[float] | None, Sequence[str] | None]
+_Storage = tuple[int | None, Sequence[float] | None, Sequence[str] | None]
 _Told = tuple[str | None, str | None, str | None]
 _TrueError = tuple[float, float, dict[str, _Floats]]
 
@@ -90,7 +90,7 @@ class _Measures(TypedDict):
     time_of_sup: float
     steps: int
     end: float
-    kept_impulse: float | None
+    impulse_ratio: float | None
 
 class _Outputs(TypedDict):
     history: Path | None
@@ -196,7 +196,7 @@ class HistoryData:
     derived: Final[list[str] | None]
     program: Final[str | None]
     def save(self, path: str | PathLike[str], overwrite: bool) -> None: ...
-    given: Final[list[bool]]
+    supplied: Final[list[bool]]
     problem: Final[ProblemData]
     times: Final[_Floats]
     count: Final[int]
@@ -230,7 +230,7 @@ class EstimateData:
     def sources(self) -> dict[str, Any] | None: ...
     def by_element(self) -> _Floats: ...
     def residuals(self) -> dict[str, float]: ...
-    def given(self) -> tuple[bool, bool]: ...
+    def supplied(self) -> tuple[bool, bool]: ...
     def warnings(self, options: bool, input: bool) -> list[tuple[str, bool]]: ...
     def options(self) -> tuple[str, str, int | str]: ...
     def worst_elements(self, count: int) -> list[tuple[int, float]]: ...
@@ -336,7 +336,7 @@ def simulate(
     problem: ProblemData,
     times: _Times,
     store: str | PathLike[str] | None,
-    keep: _Kept,
+    keep: _Storage,
     overwrite: bool,
     progress: _Tell,
 ) -> tuple[HistoryData, str | None]: ...

@@ -43,7 +43,7 @@ class Adaptation:
     reached: bool
     """Whether it is reached."""
     reason: str
-    """Why the runs ended: "reached", "limit", "runs", "same_mesh", "doubt", "no_limit", "no_sources", "failed" or "interrupted"."""
+    """Why the runs ended: "reached", "limit", "runs", "same_mesh", "not_trusted", "no_limit", "no_sources", "failed" or "interrupted"."""
     conclusion: str
     """The same in a sentence."""
     needed: float | None

@@ -60,9 +60,9 @@ def warn(messages: Iterable[str], kind: type[UserWarning] = InputWarning) -> Non
 
 
 def warn_of_result(told: Iterable[tuple[str, bool]]) -> None:
-    """Issue the warnings of a result, each with whether it doubts the result."""
-    for message, doubts in told:
-        warn([message], SimulationWarning if doubts else InputWarning)
+    """Issue the warnings of a result, each with whether it concerns the result."""
+    for message, concerns_result in told:
+        warn([message], SimulationWarning if concerns_result else InputWarning)
 
 
 def instance(name: str, value: object, kind: type[T]) -> T:

@@ -179,9 +179,9 @@ class ErrorResults(Immutable):
         return records(SlidingEstimate, ({"couple": None, **each} for each in self._verdict.get("sliding", ())))
 
     @property
-    def kept_impulse(self) -> float | None:
+    def impulse_ratio(self) -> float | None:
         """Normal impulse of the admissible contact force over that of the simulation; None without contact."""
-        return self._measures["kept_impulse"]
+        return self._measures["impulse_ratio"]
 
     @cached_property
     def parts(self) -> Parts:
@@ -202,8 +202,8 @@ class ErrorResults(Immutable):
         return Separation(
             at_sup=Sources(*found["at_sup"]),
             mean=Sources(*found["mean"]),
-            half_size=Sources(*found["half_size"]),
-            half_step=found["half_step"],
+            halved_elements=Sources(*found["halved_elements"]),
+            halved_step=found["halved_step"],
             over_time=SourcesOverTime(**found["over_time"]),
         )
 
@@ -243,9 +243,9 @@ class ErrorResults(Immutable):
         return "the estimate was unpickled without its history, which has the contact results; pickle both, or save the estimate to a file"
 
     @property
-    def given(self) -> Mapping[str, bool]:
+    def supplied(self) -> Mapping[str, bool]:
         """Whether the history has its own ``velocity`` and ``acceleration``; otherwise they follow from the scheme."""
-        return MappingProxyType(dict(zip(("velocity", "acceleration"), self._data.given(), strict=True)))
+        return MappingProxyType(dict(zip(("velocity", "acceleration"), self._data.supplied(), strict=True)))
 
     @cached_property
     def consistency(self) -> Mapping[str, float | None] | None:

@@ -44,7 +44,7 @@ class Iterations:
     """The same of ``mesh``."""
     trust: tuple[str, ...]
     """How far the estimate can be trusted."""
-    doubts: tuple[tuple[str, ...], ...]
+    reasons: tuple[tuple[str, ...], ...]
     """Reasons not to trust it, beside strains and rotations that are not small."""
 
     def __len__(self) -> int:
@@ -65,5 +65,5 @@ class Iterations:
             **{name: floats([run[name] for run in runs]) for name in ("element_steps", "error", "predicted", "quantity")},
             **dict(zip(("surface", "front", "dispersion", "mesh"), sources.T, strict=True)),
             trust=tuple(run["trust"] for run in runs),
-            doubts=tuple(tuple(run["doubts"]) for run in runs),
+            reasons=tuple(tuple(run["reasons"]) for run in runs),
         )

@@ -83,25 +83,25 @@ class Separation:
     """At the time of the largest η (J)."""
     mean: Sources
     """Their means over time (J); the sum is ``mean`` of the estimate, squared."""
-    half_size: Sources
+    halved_elements: Sources
     """The means expected with elements and steps half as long (J)."""
-    half_step: float
+    halved_step: float
     """The expected change of the sum of the means with steps half as long (J)."""
     over_time: SourcesOverTime = field(repr=False)
     """At all samples (J)."""
 
     @property
-    def mean_with_half_size(self) -> float | None:
+    def mean_with_halved_elements(self) -> float | None:
         """The mean error expected with elements and steps half as long (J^½).
 
         None where the sources do not separate: where the mean of one is below −20 % of η, as on bars near the critical step.
         """
-        return self._expected(self.half_size.total)
+        return self._expected(self.halved_elements.total)
 
     @property
-    def mean_with_half_step(self) -> float | None:
+    def mean_with_halved_step(self) -> float | None:
         """The mean error expected with steps half as long (J^½); None where the sources do not separate."""
-        return self._expected(self.mean.total + self.half_step)
+        return self._expected(self.mean.total + self.halved_step)
 
     def _expected(self, total: float) -> float | None:
         least = min(self.mean.surface, self.mean.front, self.mean.dispersion, self.mean.mesh)

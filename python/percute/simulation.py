@@ -17,7 +17,7 @@ from percute.attached import attached
 from percute.checks import encodable, flag, instance, items, optional_number, vtkhdf, warn, wrong
 from percute.errors import InputError, SimulationWarning
 from percute.history import History, true_errors_of
-from percute.kept import kept
+from percute.storage import storage
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.termination import file_closed_at_signals
@@ -116,7 +116,7 @@ def simulate(
     """
     problem = with_planes_moved(instance("problem", problem, Problem), courant, step, steps)
     file = None if store is None else vtkhdf("store", store)
-    keep = kept(every, times, fields, file)
+    keep = storage(every, times, fields, file)
     replace = flag("overwrite", overwrite)
     grid = instants_of(problem, end, courant, step, steps, longest, after, long, progress)
     _percute.check_run(problem._data, grid, flag("long", long))

@@ -303,7 +303,7 @@ class Steps(Immutable):
         if self.path is not None:
             return self._reopen, (str(self.path),)
         arrays = (self.displacement.copy(), self.reaction.copy(), self.touching.copy())
-        velocity, acceleration = self._data.given
+        velocity, acceleration = self._data.supplied
         motion = (self.velocity.copy() if velocity else None, self.acceleration.copy() if acceleration else None)
         origin = None if self._data.derived is None else (self._data.program, self._data.derived)
         return self._rebuild, (self.problem, self._data.times.tolist(), *arrays, self._data.options(), motion, origin)

@@ -77,12 +77,12 @@ class StoredEstimate:
         self._measures = self._read_measures(report)
         self._measures |= {name: report.number(name) for name in ("time_of_sup", "end")}
         self._measures["steps"] = report.of(int, "steps")
-        none = report.part("kept_impulse") is None
-        self._measures["kept_impulse"] = None if none else report.number("kept_impulse")
+        none = report.part("impulse_ratio") is None
+        self._measures["impulse_ratio"] = None if none else report.number("impulse_ratio")
         self._parts = report.number("parts", "kinetic"), report.number("parts", "elastic"), report.number("parts", "contact")
         self._sources = self._read_sources(report)
         self._residuals = {name: report.number("residuals", name) for name in report.of(dict, "residuals")}
-        self._given: tuple[bool, bool] = report.of(bool, "given", "velocity"), report.of(bool, "given", "acceleration")
+        self._supplied: tuple[bool, bool] = report.of(bool, "supplied", "velocity"), report.of(bool, "supplied", "acceleration")
         every = report.part("options", "every")
         if type(every) is not int and every != "auto":
             raise report.wrong(("options", "every"), 'must be a whole number or "auto"')
@@ -102,8 +102,8 @@ class StoredEstimate:
         """Read them; files of earlier versions have none."""
         if report.document.get("sources") is None:
             return None
-        sources: dict[str, Any] = {key: [report.number("sources", key, name) for name in SOURCES] for key in ("at_sup", "mean", "half_size")}
-        sources["half_step"] = report.number("sources", "half_step")
+        sources: dict[str, Any] = {key: [report.number("sources", key, name) for name in SOURCES] for key in ("at_sup", "mean", "halved_elements")}
+        sources["halved_step"] = report.number("sources", "halved_step")
         columns = {name: report.of(list, "sources", "over_time", name) for name in SOURCES}
         # JSON has neither infinity nor NaN.
         sources["over_time"] = {name: np.array([math.nan if x is None else x for x in column], np.float64) for name, column in columns.items()}
@@ -138,9 +138,9 @@ class StoredEstimate:
         """Largest residuals."""
         return self._residuals
 
-    def given(self) -> tuple[bool, bool]:
+    def supplied(self) -> tuple[bool, bool]:
         """Whether the history had its own velocities and accelerations."""
-        return self._given
+        return self._supplied
 
     def options(self) -> tuple[str, str, int | str]:
         """Its options."""

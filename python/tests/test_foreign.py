@@ -83,7 +83,7 @@ def test_a_history_of_another_program(make: Any, given: tuple[str, ...], tmp_pat
     assert np.array_equal(theirs.reaction, ours.reaction[:, ::-1])
     assert np.array_equal(theirs.displacement, ours.displacement)
     first, second = pc.estimate(ours), pc.estimate(theirs)
-    assert dict(second.given) == {name: name in given for name in ("velocity", "acceleration")}
+    assert dict(second.supplied) == {name: name in given for name in ("velocity", "acceleration")}
     if given:
         # What is given is rounded otherwise than what follows: 1e-16 of the largest velocity, over some tens of steps.
         assert np.allclose(second.by_element, first.by_element, rtol=1e-9, atol=1e-12 * first.sup)

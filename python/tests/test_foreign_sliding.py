@@ -117,12 +117,12 @@ def test_a_correct_history_gives_the_same_bits(case: Case, tmp_path: Path) -> No
         found = figures(estimate)
         # Rounding of the second difference of the displacements; weighted gaps and sums have a few roundings.
         assert 0 < found["balance"] < 1e-11
-        assert 0 < found["opposite"] < 1e-14 and found["gap_under_force"] < 1e-14 and found["penetration"] < 1e-14
+        assert 0 < found["interface_balance"] < 1e-14 and found["gap_under_force"] < 1e-14 and found["penetration"] < 1e-14
         assert found["cone"] < 1e-14 and found.get("slip", 0.0) < 1e-14 and found["touching"] == found["plane"] == 0.0
     done = subprocess.run(
         [sys.executable, "-m", "percute", "estimate", str(tmp_path / "theirs.vtkhdf"), "--json"], capture_output=True, text=True, check=True
     )
-    assert json.loads(done.stdout)["consistency"]["opposite"] == figures(estimate)["opposite"]
+    assert json.loads(done.stdout)["consistency"]["interface_balance"] == figures(estimate)["opposite"]
 
 
 def test_single_precision_is_enough(case: Case) -> None:
@@ -132,7 +132,7 @@ def test_single_precision_is_enough(case: Case) -> None:
     estimate = pc.estimate(theirs)
     assert np.array_equal(theirs.touching, ours.touching)
     # Roundings of 6e-8 in sums of some hundred steps.
-    assert figures(estimate)["opposite"] < 1e-6 and figures(estimate)["balance"] < 1e-3
+    assert figures(estimate)["interface_balance"] < 1e-6 and figures(estimate)["balance"] < 1e-3
     assert estimate.sup == pytest.approx(pc.estimate(ours).sup, rel=1e-3)
 
 
@@ -282,7 +282,7 @@ def test_forces_that_are_not_opposite_are_refused(slid: Case) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         found = figures(pc.estimate(history, force=True))
-    assert found["balance"] < 1e-11 and found["opposite"] > 0.01
+    assert found["balance"] < 1e-11 and found["interface_balance"] > 0.01
     with pytest.raises(pc.InputError, match='the contact forces on "hammer.bottom" and on "anvil.top" are not opposite: give the force on each node of both'):
         pc.estimate(history)
 

@@ -86,7 +86,7 @@ def test_accelerations_give_the_last_forces(case: Case, recwarn: pytest.Warnings
     assert not recwarn.list and len(theirs) == len(ours)
     assert np.allclose(theirs.reaction, ours.reaction, rtol=0, atol=1e-11 * np.abs(ours.reaction).max())
     estimate = pc.estimate(theirs)
-    assert dict(estimate.given) == {"velocity": True, "acceleration": True}
+    assert dict(estimate.supplied) == {"velocity": True, "acceleration": True}
     assert estimate.sup == pytest.approx(pc.estimate(ours).sup, rel=1e-9)
 
 

@@ -57,9 +57,9 @@ def test_reconstructions_differ_by_the_kept_impulse(study: Any) -> None:
     published, consistent, corrected = (study.estimates[name] for name in ("published", "consistent", "corrected"))
     # All reactions are in the cone: nothing is cut off. While a node touches alone it has a force of its own, whose impulse differs
     # (measured 3e-6).
-    assert abs(corrected.kept_impulse - 1.0) < 1e-4
-    assert abs(consistent.kept_impulse - 1.0) < 0.005
-    assert 0.96 < published.kept_impulse < 0.99
+    assert abs(corrected.impulse_ratio - 1.0) < 1e-4
+    assert abs(consistent.impulse_ratio - 1.0) < 0.005
+    assert 0.96 < published.impulse_ratio < 0.99
     assert 5 * consistent.published_relative_sup < published.published_relative_sup
     assert consistent.published_relative_sup < 0.1
     assert 2 * corrected.published_relative_sup < consistent.published_relative_sup

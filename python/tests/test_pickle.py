@@ -50,7 +50,7 @@ def test_a_pickled_estimate_is_the_same(fields: bool, block_history: pc.History)
     estimate = pc.estimate(block_history, reconstruction="published", every=2, instants=3, fields=fields)
     again = pickle.loads(pickle.dumps(estimate))
     assert again.history is None and again._measures == estimate._measures
-    assert (again.parts, again.options, again.given) == (estimate.parts, estimate.options, estimate.given)
+    assert (again.parts, again.options, again.supplied) == (estimate.parts, estimate.options, estimate.supplied)
     assert dict(again.residuals) == dict(estimate.residuals) and again.to_json() == estimate.to_json()
     assert again.by_element.tobytes() == estimate.by_element.tobytes()
     assert again.worst_elements(3) == estimate.worst_elements(3)

@@ -125,8 +125,8 @@ def test_the_page_on_verdicts_quotes_the_program(capsys: pytest.CaptureFixture[s
     assert len(reasons) > 9
     for part in (part.strip() for reason in reasons for part in reason.split("…")):
         assert part in code, f"no verdict says: {part}"
-    for doubt in re.findall(r'doubt: Some\("([^";]*)', code):
-        assert doubt in reasons, f"docs/verdict.md leaves out: {doubt}"
+    for reason in re.findall(r'reason: Some\("([^";]*)', code):
+        assert reason in reasons, f"docs/verdict.md leaves out: {reason}"
     example, printed = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", page, re.DOTALL)[0]
     exec(example, {})
     assert capsys.readouterr().out == printed

@@ -107,9 +107,9 @@ KEYS = [
     ("time_of_sup",),
     ("end",),
     ("steps",),
-    ("kept_impulse",),
+    ("impulse_ratio",),
     ("residuals",),
-    ("given", "velocity"),
+    ("supplied", "velocity"),
     ("options", "reconstruction"),
     ("options", "every"),
 ]
@@ -118,7 +118,7 @@ KEYS = [
 @pytest.mark.parametrize("keys", KEYS, ids=".".join)
 @pytest.mark.parametrize("value", ["gone", [1], {}, True, 10**400])
 def test_a_report_without_what_is_needed(value: object, keys: tuple[str, ...], good: Path, tmp_path: Path) -> None:
-    if (value, keys) in (({}, ("residuals",)), (True, ("given", "velocity"))) or (value == 10**400 and keys[-1] in ("steps", "every")):
+    if (value, keys) in (({}, ("residuals",)), (True, ("supplied", "velocity"))) or (value == 10**400 and keys[-1] in ("steps", "every")):
         pytest.skip("that is allowed there")
 
     def report(text: bytes) -> np.bytes_:

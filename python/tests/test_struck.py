@@ -33,7 +33,7 @@ def test_how_bodies_that_slide_touch(problem: Problem, touches: str) -> None:
     assert found["touches"] == touches
     assert found["effectivity"] == STRUCK and estimate.trust == "limited"
     assert "corners, curves and parts of an edge on non-matching interfaces" in found["text"][0]
-    assert found["untested"] == []
+    assert found["outside_tested_range"] == []
 
 
 def test_contact_of_more_than_two_elements_is_none_of_these() -> None:
@@ -160,7 +160,7 @@ def test_a_corner_on_a_stiff_plate_is_one_on_a_plane(angle: float, speed: float)
     expected, found = (pc.estimate(pc.simulate(problem, steps=steps), every=1) for problem in (alone, on_plate))
     # Measured: 0.9 % and 0.2 %; without a contact of its own 26 to 54 %.
     assert found.sup == pytest.approx(expected.sup, rel=0.02) and found.mean == pytest.approx(expected.mean, rel=0.01)
-    own = [json.loads(estimate.to_json())["own_contacts"] for estimate in (expected, found)]
+    own = [json.loads(estimate.to_json())["isolated_contact_nodes"] for estimate in (expected, found)]
     assert own == [1, 1]
 
 
@@ -213,7 +213,7 @@ def test_a_run_without_contact_of_surfaces_that_slide_is_limited() -> None:
     problem = pc.Problem(struck.mesh, material=struck.material, contacts=struck.contacts, initial_velocity=velocity)
     estimate, found = verdict(problem, 8e-7)
     assert found["touches"] == "none" and estimate.trust == "limited"
-    assert found["untested"] == ["non-matching interfaces without contact"]
+    assert found["outside_tested_range"] == ["non-matching interfaces without contact"]
     assert found["text"][-1].startswith("Refine the mesh where the error is")
 
 
@@ -229,7 +229,7 @@ def test_a_corner_that_strikes_two_bodies_has_low_trust() -> None:
     assert found["touches"] == "corner" and estimate.trust == "low"
     # Half a millimetre of edges of 5 mm.
     assert any(re.search(r"up to 0\.\d+ of its edge inside the other body", told) for told in estimate.warnings)
-    assert any("inside the other body" in told for told in found["untested"])
+    assert any("inside the other body" in told for told in found["outside_tested_range"])
     assert found["effectivity"] is None and "no range of estimate over true error is known" in found["text"][0]
     assert any("refine that surface" in sentence for sentence in found["text"])
 

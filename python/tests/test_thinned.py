@@ -83,7 +83,7 @@ def test_an_export_has_the_motion_that_is_kept(full: pc.History, tmp_path: Path)
 def test_velocities_beside_all_steps_leave_the_estimate_its_bits(full: pc.History, tmp_path: Path) -> None:
     history = thin(tmp_path / "h.vtkhdf", fields=["displacement", "velocity", "reaction"])
     estimate, expected = pc.estimate(history), pc.estimate(full)
-    assert not any(estimate.given.values())
+    assert not any(estimate.supplied.values())
     assert (estimate.sup, estimate.mean) == (expected.sup, expected.mean)
     with h5py.File(tmp_path / "h.vtkhdf") as file:
         assert np.array_equal(file["VTKHDF/PointData/velocity"][:, :2].reshape(full.velocity.shape), full.velocity)

@@ -58,7 +58,7 @@ class Row:
     touches: str
     given: float
     """Energy that contact has given to the auxiliary solution, over the largest energy of the simulation."""
-    untested: str
+    outside_tested_range: str
     situation: str
     error: str = ""
     """Why there is no estimate."""
@@ -119,7 +119,7 @@ def _judged(drawn: RandomBody, further: int) -> Row:
         (error,) = pc.true_errors([history], drawn.reference(further), end=drawn.end, courant=REFERENCE_COURANT)
     except pc.PercuteError as failed:
         none = dict.fromkeys(("relative_sup", "sup", "mean", "low", "high", "given"), math.nan)
-        texts = dict.fromkeys(("trust", "inside", "touches", "untested", "situation"), "")
+        texts = dict.fromkeys(("trust", "inside", "touches", "outside_tested_range", "situation"), "")
         return Row(**common, **none, **texts, steps=0, error=str(failed).replace("\n", " "))  # type: ignore[arg-type]
     document = json.loads(estimate.to_json())
     verdict = document["verdict"]
@@ -138,7 +138,7 @@ def _judged(drawn: RandomBody, further: int) -> Row:
         inside="" if math.isnan(low) else "yes" if inside else "no",
         touches=verdict["touches"],
         given=document["auxiliary_contact_energy"],
-        untested=", ".join(verdict["untested"]),
+        outside_tested_range=", ".join(verdict["outside_tested_range"]),
         situation=verdict["text"][0],
     )
 

@@ -12,9 +12,9 @@ pub(crate) struct Difference {
     /// D under the contact force of the auxiliary solution.
     pub(crate) dispersion: f64,
     /// The same with a quarter of the dispersion, that of elements and steps half as long.
-    pub(crate) half_size: f64,
+    pub(crate) halved_elements: f64,
     /// D of a simulation with steps half as long.
-    pub(crate) half_step: f64,
+    pub(crate) halved_step: f64,
     /// Sum over nodes of F²k, and of F²: F the contact force (N), k the halvings of its hats.
     pub(crate) halvings: [f64; 2],
 }
@@ -26,8 +26,8 @@ impl Difference {
         self.near += weight * other.near;
         self.contact += weight * other.contact;
         self.dispersion += weight * other.dispersion;
-        self.half_size += weight * other.half_size;
-        self.half_step += weight * other.half_step;
+        self.halved_elements += weight * other.halved_elements;
+        self.halved_step += weight * other.halved_step;
         (0..2).for_each(|k| self.halvings[k] += weight * other.halvings[k]);
     }
 

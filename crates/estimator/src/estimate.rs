@@ -126,7 +126,7 @@ impl ErrorMeasures {
 
 /// Which fields of the motion the history brought of its own; the others follow by the scheme.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Given {
+pub struct Supplied {
     /// v_n.
     pub velocity: bool,
     /// a_n.
@@ -166,10 +166,10 @@ pub struct Estimate {
     /// How far each field is from exactly admissible.
     pub residuals: Residuals,
     /// Normal impulse of the admissible contact force over that of the simulation; `None` without contact.
-    pub kept_impulse: Option<f64>,
+    pub impulse_ratio: Option<f64>,
     /// Nodes at which the auxiliary solution has had a contact of its own. With any, the kept impulse need not be near
     /// 1.
-    pub own_contacts: usize,
+    pub isolated_contact_nodes: usize,
     /// The largest energy that contact has given to the auxiliary solution, over the largest kinetic and strain energy
     /// of the simulation: no contact gives any.
     pub auxiliary_contact_energy: f64,
@@ -178,7 +178,7 @@ pub struct Estimate {
     /// [`ContactSurface::sliding`]: percute_core::contact::ContactSurface::sliding
     pub surfaces: Vec<SurfaceEstimate>,
     /// Where velocities and accelerations came from.
-    pub given: Given,
+    pub supplied: Supplied,
     /// Last step that is estimated.
     pub steps: usize,
     /// Its time T (s).

@@ -50,7 +50,7 @@ mod traction;
 mod wide;
 
 pub use error::{EstimateError, RunError};
-pub use estimate::{ErrorMeasures, Estimate, Given, Parts, Sample, SurfaceEstimate};
+pub use estimate::{ErrorMeasures, Estimate, Parts, Sample, Supplied, SurfaceEstimate};
 pub use estimator::{Estimator, estimate, memory};
 pub use map::{AdmissibleFields, ElementMap};
 pub use options::{Ablation, Acceleration, MOST_THREADS, Options, Reconstruction, UnknownName, UnsuitableAcceleration};

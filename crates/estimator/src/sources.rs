@@ -87,9 +87,9 @@ pub struct Separation {
     /// Their means over time (J); the sum is the square of `mean`.
     pub mean: Sources,
     /// The means expected with elements and steps half as long (J).
-    pub half_size: Sources,
+    pub halved_elements: Sources,
     /// The expected change of the sum of the means with steps half as long (J).
-    pub half_step: f64,
+    pub halved_step: f64,
     /// At all samples, in order of time (J).
     pub over_time: Vec<Sources>,
 }
@@ -98,14 +98,14 @@ impl Separation {
     /// The mean error expected with elements and steps half as long (J^½); `None` where the sources do not separate:
     /// where the mean of one is below −20 % of η, as on bars near the critical step.
     #[must_use]
-    pub fn mean_with_half_size(&self) -> Option<f64> {
-        self.expected(self.half_size.total())
+    pub fn mean_with_halved_elements(&self) -> Option<f64> {
+        self.expected(self.halved_elements.total())
     }
 
     /// The mean error expected with steps half as long (J^½); `None` where the sources do not separate.
     #[must_use]
-    pub fn mean_with_half_step(&self) -> Option<f64> {
-        self.expected(self.mean.total() + self.half_step)
+    pub fn mean_with_halved_step(&self) -> Option<f64> {
+        self.expected(self.mean.total() + self.halved_step)
     }
 
     fn expected(&self, total: f64) -> Option<f64> {
@@ -116,9 +116,9 @@ impl Separation {
 }
 
 /// The means expected with elements and steps half as long (J), from those of the run.
-pub(crate) fn half_size(mean: &Sources, difference: &Difference) -> Sources {
+pub(crate) fn halved_elements(mean: &Sources, difference: &Difference) -> Sources {
     let ratio = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
-    let kept = ratio(difference.half_size, difference.dispersion);
+    let kept = ratio(difference.halved_elements, difference.dispersion);
     let fresh = ratio(mean.front, 2.0 * mean.mesh.abs()).min(1.0);
     let halvings = ratio(difference.halvings[0], difference.halvings[1]);
     mean.scaled([

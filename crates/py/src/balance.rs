@@ -11,14 +11,14 @@ use std::sync::Arc;
 /// The rebound and the impacts as a JSON document; `null` without contact, and without several bodies.
 pub(crate) fn rebound(py: Python<'_>, run: &Arc<Run>) -> PyResult<String> {
     let contact = contact::of_run(py, run)?;
-    let balance = kept(py, run)?;
+    let balance = results(py, run)?;
     let rebound = Rebound::new(&run.problem, &balance, &contact, None);
     let impacts = Impacts::new(&run.problem, &contact, None);
     rebound_to_json(rebound.as_ref(), impacts.as_ref()).map_err(|error| errors::percute_error(py, &error.to_string()))
 }
 
 /// Energies, works and momentum at each instant, computed now or before.
-pub(crate) fn kept(py: Python<'_>, run: &Arc<Run>) -> PyResult<Vec<Balance>> {
+pub(crate) fn results(py: Python<'_>, run: &Arc<Run>) -> PyResult<Vec<Balance>> {
     let worker = run.clone();
     let kept = bridge::blocking(py, None, move |watch| worker.balance(watch).map(<[Balance]>::to_vec))?;
     kept.map_err(|error| errors::steps(py, &error))

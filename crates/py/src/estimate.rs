@@ -122,7 +122,7 @@ impl EstimateData {
         numbers.set_item("time_of_sup", estimate.time_of_sup)?;
         numbers.set_item("steps", estimate.steps)?;
         numbers.set_item("end", estimate.end)?;
-        numbers.set_item("kept_impulse", estimate.kept_impulse)?;
+        numbers.set_item("impulse_ratio", estimate.impulse_ratio)?;
         Ok(numbers)
     }
 
@@ -142,11 +142,12 @@ impl EstimateData {
     fn sources<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let Some(separation) = self.made.estimate.sources.as_ref() else { return Ok(None) };
         let numbers = PyDict::new(py);
-        let sources = [("at_sup", separation.at_sup), ("mean", separation.mean), ("half_size", separation.half_size)];
+        let sources =
+            [("at_sup", separation.at_sup), ("mean", separation.mean), ("halved_elements", separation.halved_elements)];
         for (name, source) in sources {
             numbers.set_item(name, SOURCES.map(|(_, number)| number(&source)).to_vec())?;
         }
-        numbers.set_item("half_step", separation.half_step)?;
+        numbers.set_item("halved_step", separation.halved_step)?;
         numbers.set_item("over_time", view::columns(py, &separation.over_time, &SOURCES)?)?;
         Ok(Some(numbers))
     }
@@ -165,12 +166,12 @@ impl EstimateData {
     }
 
     /// Whether the history brought velocities, and accelerations.
-    fn given(&self) -> (bool, bool) {
-        let given = &self.made.estimate.given;
-        (given.velocity, given.acceleration)
+    fn supplied(&self) -> (bool, bool) {
+        let supplied = &self.made.estimate.supplied;
+        (supplied.velocity, supplied.acceleration)
     }
 
-    /// The warnings of the command, each with whether it doubts the result: those that only the result shows; with
+    /// The warnings of the command, each with whether it concerns the result: those that only the result shows; with
     /// `options`, those about the options of the estimate; with `input`, those about the problem.
     fn warnings(&self, options: bool, input: bool) -> Vec<(String, bool)> {
         let told = |warning: &Warning| {

@@ -114,8 +114,8 @@ impl HistoryData {
 
     /// Whether it has velocities and accelerations of its own.
     #[getter]
-    fn given(&self) -> [bool; 2] {
-        self.run.given()
+    fn supplied(&self) -> [bool; 2] {
+        self.run.supplied()
     }
 
     #[getter]
@@ -225,7 +225,7 @@ impl HistoryData {
 
     /// The number of each instant in the run of a thinned history; none for one with all steps.
     fn steps<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<i64>>> {
-        let kept = self.run.file()?.kept()?;
+        let kept = self.run.file()?.stored_steps()?;
         Some(view::column(py, &kept.steps[..self.run.count()], |n| *n as i64))
     }
 
@@ -259,7 +259,7 @@ impl HistoryData {
 
     /// Energies, works and drifts at each instant.
     fn balance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        balance::columns(py, &balance::kept(py, &self.run)?)
+        balance::columns(py, &balance::results(py, &self.run)?)
     }
 
     /// Velocities before and after contact, of one body and of several, as a JSON document.

@@ -107,9 +107,9 @@ impl Run {
     }
 
     /// Whether it has velocities and accelerations of its own.
-    pub(crate) fn given(&self) -> [bool; 2] {
+    pub(crate) fn supplied(&self) -> [bool; 2] {
         match (self.file(), self.memory().and_then(|history| history.step(0))) {
-            (Some(file), _) => file.given(),
+            (Some(file), _) => file.supplied(),
             (None, Some(step)) => [step.velocity.is_some(), step.acceleration.is_some()],
             (None, None) => [false; 2],
         }
@@ -125,7 +125,7 @@ impl Run {
         let Self { problem, options, case, origin, .. } = self;
         let (case, origin) = (case.as_ref(), origin.as_ref());
         let steps = &self.stoppable(watch);
-        Whole { problem, steps, given: self.given(), options, case, origin }.write(path, overwrite)
+        Whole { problem, steps, supplied: self.supplied(), options, case, origin }.write(path, overwrite)
     }
 
     /// The instants planned.

@@ -62,7 +62,7 @@ pub fn open(path: &Path) -> Result<Stored, Failure> {
 /// The fields that a thinned history lacks; none for one with all steps, from which all fields follow.
 #[must_use]
 pub fn lacks(file: &HistoryFile) -> Option<Vec<&'static str>> {
-    file.kept()?;
+    file.stored_steps()?;
     let [velocity, acceleration] = file.stored();
     let there = [("velocity", velocity), ("acceleration", acceleration), ("reaction", !file.lacks_reactions())];
     Some(there.into_iter().filter(|(_, there)| !there).map(|(name, _)| name).collect())
@@ -99,7 +99,7 @@ impl Stored {
         if !self.file.is_foreign() {
             return None;
         }
-        let [reaction, touching] = self.file.given_contact().map(|given| !given);
+        let [reaction, touching] = self.file.supplied_contact().map(|given| !given);
         let file = Some(self.file.path().to_path_buf());
         let program = self.file.simulated_by().map(str::to_string);
         let derived = self.file.derived().iter().filter_map(|name| Derived::of_name(name)).collect();

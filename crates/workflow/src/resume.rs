@@ -12,7 +12,7 @@ use percute_core::dynamics::Simulation;
 use percute_core::history::Discard;
 use percute_core::observer::Observer;
 use percute_core::time::TimeGrid;
-use percute_io::history::{Kept, Unended};
+use percute_io::history::{StoredPart, Unended};
 use std::any::Any;
 use std::path::Path;
 
@@ -37,10 +37,10 @@ impl Stored {
     fn difference(&self, case: &Case, estimated: bool) -> Result<Option<String>, Failure> {
         let (file, times) = (&self.file, self.file.run_times());
         let problem = &case.problem;
-        let kept = |kept: Option<Kept>| {
+        let kept = |kept: Option<StoredPart>| {
             let kept = kept.unwrap_or_else(|| all(times));
             let reaction = kept.reaction || problem.contact_nodes().is_empty();
-            Kept { reaction, ..kept }
+            StoredPart { reaction, ..kept }
         };
         if file.is_foreign() {
             return Ok(Some("another program has simulated it".to_string()));
@@ -100,6 +100,6 @@ impl Stored {
 }
 
 /// All steps with their reactions.
-fn all(times: &TimeGrid) -> Kept {
-    Kept { steps: (0..=times.step_count()).collect(), velocity: false, acceleration: false, reaction: true }
+fn all(times: &TimeGrid) -> StoredPart {
+    StoredPart { steps: (0..=times.step_count()).collect(), velocity: false, acceleration: false, reaction: true }
 }

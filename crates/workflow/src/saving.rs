@@ -19,7 +19,7 @@ pub struct Whole<'a> {
     /// The steps.
     pub steps: &'a dyn StepSource,
     /// Whether these have their own velocities and accelerations.
-    pub given: [bool; 2],
+    pub supplied: [bool; 2],
     /// Options that its estimate takes unless told otherwise.
     pub options: &'a Options,
     /// The case that it came from.
@@ -37,14 +37,14 @@ impl Whole<'_> {
     /// A problem that the language of the case files cannot say; a file that exists and may not be replaced, or that
     /// cannot be written; steps that end with an error.
     pub fn write(&self, path: &Path, overwrite: Overwrite) -> Result<(), Failure> {
-        let Self { problem, steps, given: [velocity, acceleration], options, case, origin } = *self;
+        let Self { problem, steps, supplied: [velocity, acceleration], options, case, origin } = *self;
         let elsewhere = origin.map(|origin| Elsewhere {
             program: origin.program.clone().unwrap_or_default(),
             derived: origin.derived.iter().map(|part| part.name().to_string()).collect(),
             initial_displacement: problem.initial_displacement().to_vec(),
         });
         let plan = plan(problem, steps.times(), options, case, &Keep::default())?;
-        let plan = plan.with_given(velocity, acceleration).simulated_elsewhere(elsewhere);
+        let plan = plan.with_supplied(velocity, acceleration).simulated_elsewhere(elsewhere);
         let mut writer = plan.create_whole(path, overwrite, steps.count())?;
         let written = steps.replay(&mut |step| writer.push(step));
         written.map_err(|error| Failure::from_sink(error, RunError::Source))?;
@@ -109,7 +109,7 @@ mod tests {
         let path = folder.path().join("a.vtkhdf");
         let write = |steps: &dyn StepSource| {
             let (problem, options) = (&case.problem, &case.options);
-            Whole { problem, steps, given: [false; 2], options, case: None, origin: None }
+            Whole { problem, steps, supplied: [false; 2], options, case: None, origin: None }
                 .write(&path, Overwrite::Replace)
         };
         let files = || std::fs::read_dir(folder.path()).unwrap().count();
@@ -137,7 +137,7 @@ mod tests {
         let refused = stored.create(folder.path().join("run.vtkhdf"), Overwrite::Refuse).unwrap_err().to_string();
         assert!(refused.contains("bytes of room"), "{refused}");
         let path = folder.path().join("stopped.vtkhdf");
-        let whole = Whole { problem, steps, given: [false; 2], options, case: None, origin: None };
+        let whole = Whole { problem, steps, supplied: [false; 2], options, case: None, origin: None };
         whole.write(&path, Overwrite::Refuse).unwrap();
         let stored = open(&path).unwrap();
         assert!(stored.count() == 3 && !stored.has_ended());

@@ -7,7 +7,7 @@ use percute_core::history::{Checkpoint, SinkError, State, StateSink, Step};
 use percute_core::observer::Observer;
 use percute_core::time::TimeGrid;
 use percute_io::FileError;
-use percute_io::history::{Kept, Writer};
+use percute_io::history::{StoredPart, Writer};
 use std::any::Any;
 
 /// What a run gave, though its history file may not be what it should.
@@ -55,9 +55,9 @@ struct Storing<'o, 'p, 's> {
 impl Storing<'_, '_, '_> {
     /// Velocities and accelerations by the scheme at a step, as far as the file keeps them.
     fn motion(&self, state: &State<'_>) -> [Option<Vec<f64>>; 2] {
-        let kept = self.file.as_ref().and_then(Writer::kept);
+        let kept = self.file.as_ref().and_then(Writer::stored_part);
         let kept = kept.filter(|kept| kept.row_of(state.step().index).is_some());
-        let has = |has: fn(&Kept) -> bool| kept.is_some_and(has);
+        let has = |has: fn(&StoredPart) -> bool| kept.is_some_and(has);
         [
             has(|kept| kept.velocity).then(|| state.velocity()),
             has(|kept| kept.acceleration).then(|| state.acceleration()),

@@ -40,17 +40,17 @@ fn bar(more: &str) -> String {
 }
 
 /// Fails unless exactly this is named, and trust is limited by it.
-fn names(text: &str, untested: &str) {
+fn names(text: &str, outside_tested_range: &str) {
     let found = verdict(text);
-    assert_eq!(found.untested, [untested], "{found:?}\n{text}");
+    assert_eq!(found.outside_tested_range, [outside_tested_range], "{found:?}\n{text}");
     assert_eq!(found.trust, Trust::Limited, "{found:?}");
-    assert!(found.text[0].contains(&format!("outside the tested range: {untested}")), "{found:?}");
+    assert!(found.text[0].contains(&format!("outside the tested range: {outside_tested_range}")), "{found:?}");
 }
 
 /// Fails if anything is named.
 fn names_nothing(text: &str) {
     let found = verdict(text);
-    assert!(found.untested.is_empty() && found.trust == Trust::High, "{found:?}\n{text}");
+    assert!(found.outside_tested_range.is_empty() && found.trust == Trust::High, "{found:?}\n{text}");
 }
 
 #[test]
@@ -84,7 +84,7 @@ fn bodies_that_tractions_push_to_their_plane_are_not_tested() {
     let pushed = "an impact driven by a traction";
     names(&block([10, 8], 0.0, 0.0, 4e-5, push), pushed);
     let at_once = block([10, 8], 0.0, 0.0, 2e-5, "[[traction]]\ngroup = \"top\"\nvalue = [0.0, -1e8]\n");
-    assert_eq!(verdict(&at_once).untested, ["a sudden load", pushed]);
+    assert_eq!(verdict(&at_once).outside_tested_range, ["a sudden load", pushed]);
     // The traction changes the flight by little, or jumps by little of the 140 MPa of the impact.
     names_nothing(&block([10, 8], 1e-5, 10.0, 1.4e-5, push));
     let weak = |stress: f64| format!("[[traction]]\ngroup = \"top\"\nvalue = [0.0, -{stress}]\n");
@@ -99,7 +99,7 @@ fn bodies_that_tractions_push_to_their_plane_are_not_tested() {
 fn long_elements_are_not_tested() {
     names(&block([5, 40], 1e-5, 10.0, 1.4e-5, ""), "elements 10 times as long as their shortest edge");
     // √10 = 3.2 is above the limit of 3, √5 below.
-    assert_eq!(verdict(&block([10, 24], 1e-5, 10.0, 1.4e-5, "")).untested.len(), 1);
+    assert_eq!(verdict(&block([10, 24], 1e-5, 10.0, 1.4e-5, "")).outside_tested_range.len(), 1);
     names_nothing(&block([10, 16], 1e-5, 10.0, 1.4e-5, ""));
 }
 
@@ -113,7 +113,7 @@ fn long_elements_with_little_of_the_error_are_not_named() {
     let text = block([1, 1], 1e-5, 10.0, 5e-6, "");
     let (_, after) = text.split_once("[material]").unwrap();
     let found = verdict(&format!("[mesh]\npoints = {points:?}\ncells = {cells:?}\n[material]{after}"));
-    assert!(found.untested.is_empty(), "{found:?}");
+    assert!(found.outside_tested_range.is_empty(), "{found:?}");
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn a_force_at_the_last_instant_is_contact() {
     let found = verdict(&text);
     // Nothing vibrates yet: the error is as large.
     assert_eq!((found.touches, found.trust), (Touches::Edge, Trust::Low), "{found:?}");
-    assert_eq!(found.untested, ["0 wave passages after the first touch"], "{found:?}");
+    assert_eq!(found.outside_tested_range, ["0 wave passages after the first touch"], "{found:?}");
     assert!(found.at_contact > 0.5, "{found:?}");
     // A run that ends before has no contact.
     assert_eq!(verdict(&block([10, 8], 1e-5, 10.0, 3e-7, "")).touches, Touches::None);

@@ -46,7 +46,7 @@ fn nulls(path: &str, value: &Value, found: &mut Vec<String>) {
 #[test]
 fn the_json_document_has_its_keys() {
     let document = json(BLOCK, &[]);
-    let numbers = "time_step critical_time_step steps end time_of_sup seconds kept_impulse \
+    let numbers = "time_step critical_time_step steps end time_of_sup seconds impulse_ratio \
         error.sup error.mean error.mean_from_touch error.energy error.strain_energy error.kinetic_energy \
         error.relative_sup error.relative_mean error.relative_stress_sup error.relative_stress_mean \
         error.relative_velocity_sup error.relative_velocity_mean error.published_relative_sup \

@@ -11,7 +11,7 @@ use super::sliding::SlidingMisfit;
 use crate::contact_density::{CornerSliding, OffContact};
 use crate::element::Element;
 use crate::error::EstimateError;
-use crate::estimate::Given;
+use crate::estimate::Supplied;
 use crate::kinematic::{ContactTracks, FreeMotion, NodalMotion, NormalStep, half_way};
 use crate::loaded::LoadedFaces;
 use crate::nodal_field::{FieldPool, NodalField};
@@ -61,7 +61,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     unmeasured: Option<NodalField<D>>,
     /// Number of steps taken in.
     count: usize,
-    given: Given,
+    supplied: Supplied,
     vibration: Vibration,
     /// The level from whose forces on bodies touch.
     first_contact: Option<usize>,
@@ -93,7 +93,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             corner_sliding: Vec::new(),
             unmeasured: None,
             count: 0,
-            given: Given::default(),
+            supplied: Supplied::default(),
             vibration: Vibration::new(problem),
             first_contact: None,
             impulse: Impulse::default(),
@@ -116,8 +116,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     }
 
     /// The fields that the history brings of its own.
-    pub(super) fn given(&self) -> Given {
-        self.given
+    pub(super) fn supplied(&self) -> Supplied {
+        self.supplied
     }
 
     /// Samples these steps as well; they are in increasing order.
@@ -225,7 +225,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
     pub(super) fn push(&mut self, state: &State<'_>) -> Result<(), ScratchError> {
         let (problem, step, n) = (self.problem, state.step(), state.step().index);
         self.count += 1;
-        self.given = Given { velocity: step.velocity.is_some(), acceleration: step.acceleration.is_some() };
+        self.supplied = Supplied { velocity: step.velocity.is_some(), acceleration: step.acceleration.is_some() };
         let decision = self.decide(step);
         if decision.before {
             self.differ_at_last();

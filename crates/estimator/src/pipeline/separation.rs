@@ -2,7 +2,7 @@
 
 use super::sampled_interval::SampledInterval;
 use crate::difference::Difference;
-use crate::sources::{Separation, Sources, half_size};
+use crate::sources::{Separation, Sources, halved_elements};
 
 /// The sources of a run whose η is largest at one time and that ends at another (s), with the differences at all
 /// levels.
@@ -33,6 +33,12 @@ pub(super) fn separation(
             }
         }
     }
-    let half_size = half_size(&mean, &mean_difference);
-    Separation { at_sup, mean, half_size, half_step: mean_difference.half_step - mean_difference.energy, over_time }
+    let halved_elements = halved_elements(&mean, &mean_difference);
+    Separation {
+        at_sup,
+        mean,
+        halved_elements,
+        halved_step: mean_difference.halved_step - mean_difference.energy,
+        over_time,
+    }
 }

@@ -118,7 +118,7 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
     }
 
     /// Nodes at which the balanced fields have had a contact of their own.
-    fn own_contacts(&self) -> usize {
+    fn isolated_contact_nodes(&self) -> usize {
         0
     }
 

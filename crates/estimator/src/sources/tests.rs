@@ -3,7 +3,7 @@ use super::*;
 const MEAN: Sources = Sources { surface: 1.0, front: 2.0, dispersion: 4.0, mesh: 8.0 };
 
 fn difference(kept: f64, halvings: f64) -> Difference {
-    Difference { dispersion: 1.0, half_size: kept, halvings: [halvings, 1.0], ..Difference::default() }
+    Difference { dispersion: 1.0, halved_elements: kept, halvings: [halvings, 1.0], ..Difference::default() }
 }
 
 /// Sources of a sample, from parts of which each has another digit.
@@ -19,10 +19,11 @@ fn sources_add_up() {
 /// Smooth waves: dispersion of second order, h⁴ in energy, and interpolation of first order, h².
 #[test]
 fn smooth_waves() {
-    let smooth = half_size(&Sources { front: 0.0, ..MEAN }, &difference(1.0 / 16.0, 0.0));
+    let smooth = halved_elements(&Sources { front: 0.0, ..MEAN }, &difference(1.0 / 16.0, 0.0));
     assert_eq!((smooth.front, smooth.dispersion, smooth.mesh), (0.0, 0.25, 2.0));
     // A front that is small beside the misfit of the mesh brings few new waves.
-    let [few, many] = [0.8, 80.0].map(|front| half_size(&Sources { front, ..MEAN }, &difference(1.0 / 16.0, 0.0)));
+    let [few, many] =
+        [0.8, 80.0].map(|front| halved_elements(&Sources { front, ..MEAN }, &difference(1.0 / 16.0, 0.0)));
     assert!((few.mesh - 2.1).abs() < 1e-12 && many.mesh == 4.0, "{few:?}, {many:?}");
     assert!(few.dispersion < 0.7 && many.dispersion > 4.0, "{few:?}, {many:?}");
 }
@@ -30,7 +31,7 @@ fn smooth_waves() {
 /// From nothing, ⅓ is left, from a force within a thousandth of an edge nearly all.
 #[test]
 fn forces_within_an_edge() {
-    let [wide, some, narrow] = [0.0, 3.0, 10.0].map(|k| half_size(&MEAN, &difference(0.5, k)).surface);
+    let [wide, some, narrow] = [0.0, 3.0, 10.0].map(|k| halved_elements(&MEAN, &difference(0.5, k)).surface);
     assert!((wide - FLAT).abs() < 1e-15 && wide < some && some < narrow && (0.8..0.9).contains(&narrow));
 }
 
@@ -62,5 +63,5 @@ fn the_dispersion_of_a_jump() {
 /// Nothing is divided by nothing.
 #[test]
 fn no_error() {
-    assert_eq!(half_size(&Sources::default(), &Difference::default()), Sources::default());
+    assert_eq!(halved_elements(&Sources::default(), &Difference::default()), Sources::default());
 }

@@ -196,7 +196,7 @@ fn a_gap_of_whole_steps_at_the_critical_step() {
                 let measures = e.entries().map(|(_, x)| x);
                 assert!(measures.iter().chain(&all.by_element).all(|x| x.is_finite()), "{what}: {e:?}");
                 assert!(e.sup > 0.0 && e.relative_sup < 1.0, "{what}: {e:?}");
-                assert!(all.kept_impulse.is_some_and(f64::is_finite), "{what}");
+                assert!(all.impulse_ratio.is_some_and(f64::is_finite), "{what}");
             }
         }
         let (_, exact) = effectivity(&bar);

@@ -104,7 +104,7 @@ fn consistent_is_sharper_on_the_flat_block() {
             consistent.error.sup <= published.error.sup && consistent.error.mean <= published.error.mean,
             "{nx} × {ny}"
         );
-        let kept = [&consistent, &published].map(|e| e.kept_impulse.unwrap());
+        let kept = [&consistent, &published].map(|e| e.impulse_ratio.unwrap());
         assert!(kept[1] <= kept[0], "{nx} × {ny}: {kept:?}");
         // Above 1 by what the cone cuts off: the pulling densities of B⁻¹R, some 10 % of the largest.
         assert!(kept.iter().all(|k| *k > 0.0 && *k <= 1.1), "{nx} × {ny}: {kept:?}");
@@ -123,7 +123,7 @@ fn a_translation_has_no_error() {
     for options in all_choices() {
         let estimate = estimate(&problem, &history, options);
         assert_eq!((estimate.error.sup, estimate.error.mean), (0.0, 0.0), "{options:?}");
-        assert!(estimate.error.reference_sup > 0.0 && estimate.kept_impulse.is_none());
+        assert!(estimate.error.reference_sup > 0.0 && estimate.impulse_ratio.is_none());
     }
 }
 

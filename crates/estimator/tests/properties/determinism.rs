@@ -9,14 +9,15 @@ use percute_core::observer::Unobserved;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{
-    Acceleration, AdmissibleFields, ElementMap, Estimate, Given, Options, Reconstruction, Request, Sampling, Separation,
+    Acceleration, AdmissibleFields, ElementMap, Estimate, Options, Reconstruction, Request, Sampling, Separation,
+    Supplied,
 };
 use percute_testkit::{disc, random_rectangle};
 
 /// Every number of the sources of an error.
-fn of_sources(Separation { at_sup, mean, half_size, half_step, over_time }: &Separation) -> Vec<f64> {
-    let all = [at_sup, mean, half_size].into_iter().chain(over_time);
-    all.flat_map(|s| [s.surface, s.front, s.dispersion, s.mesh]).chain([*half_step]).collect()
+fn of_sources(Separation { at_sup, mean, halved_elements, halved_step, over_time }: &Separation) -> Vec<f64> {
+    let all = [at_sup, mean, halved_elements].into_iter().chain(over_time);
+    all.flat_map(|s| [s.surface, s.front, s.dispersion, s.mesh]).chain([*halved_step]).collect()
 }
 
 /// Every number of a map.
@@ -42,23 +43,23 @@ fn bits(estimate: &Estimate) -> Vec<u64> {
         by_element,
         maps,
         residuals,
-        kept_impulse,
-        own_contacts,
+        impulse_ratio,
+        isolated_contact_nodes,
         auxiliary_contact_energy,
         surfaces,
-        given,
+        supplied,
         steps,
         end,
     } = estimate;
-    assert_eq!(*given, Given::default());
+    assert_eq!(*supplied, Supplied::default());
     let mut numbers: Vec<f64> = error.entries().into_iter().map(|(_, value)| value).collect();
     numbers.extend([
         *time_of_sup,
         parts.kinetic,
         parts.elastic,
         parts.contact,
-        kept_impulse.unwrap_or(-1.0),
-        *own_contacts as f64,
+        impulse_ratio.unwrap_or(-1.0),
+        *isolated_contact_nodes as f64,
         *auxiliary_contact_energy,
         *steps as f64,
         *end,

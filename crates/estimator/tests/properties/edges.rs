@@ -40,11 +40,11 @@ fn a_node_that_touches_alone() {
         let estimate = estimate(&problem, &history, options);
         if options.reconstruction == Reconstruction::Corrected {
             // The node alone has a force of its own, which falls behind that of the simulation while contact is open.
-            let kept = estimate.kept_impulse.unwrap();
+            let kept = estimate.impulse_ratio.unwrap();
             assert!(kept > 0.5 && kept <= 1.0 + 1e-13 && estimate.parts.contact > 0.0, "{kept}");
             continue;
         }
-        assert_eq!((estimate.kept_impulse, estimate.parts.contact), (Some(0.0), 0.0));
+        assert_eq!((estimate.impulse_ratio, estimate.parts.contact), (Some(0.0), 0.0));
         // All of the impulse is missing: an error of the order of the energies.
         assert!(estimate.error.relative_mean > 0.1);
     }

@@ -7,7 +7,7 @@ use percute_core::history::{History, Step, StepError};
 use percute_core::load::{Support, Table};
 use percute_core::problem::TriangleProblem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{Estimate, EstimateError, Given, Options, Reconstruction};
+use percute_estimator::{Estimate, EstimateError, Options, Reconstruction, Supplied};
 use percute_testkit::random_rectangle;
 use std::f64::consts::PI;
 
@@ -76,11 +76,11 @@ fn the_own_motion_of_the_scheme_changes_nothing() {
         let motion = motion(&problem, &history, &times);
         for options in all_choices() {
             let own = estimate(&problem, &history, options);
-            assert!(own.given == Given::default());
+            assert!(own.supplied == Supplied::default());
             for given in [[true, false], [false, true], [true, true]] {
                 let told = estimate(&problem, &with(&history, &times, &motion, given), options);
                 let [velocity, acceleration] = given;
-                assert_eq!(told.given, Given { velocity, acceleration });
+                assert_eq!(told.supplied, Supplied { velocity, acceleration });
                 assert_admissible(&format!("{given:?}, {options:?}"), &told);
                 let distance = apart(&told, &own);
                 if velocity {

@@ -214,19 +214,20 @@ impl EstimateContents<'_> {
 
     fn measures(&self, ours: &Group) -> Result<(), FileCause> {
         let group = group(ours, "measures")?;
-        let Estimate { error: e, time_of_sup, end, kept_impulse, given, steps, .. } = self.estimate;
+        let Estimate { error: e, time_of_sup, end, impulse_ratio, supplied, steps, .. } = self.estimate;
         for (name, value) in e.entries() {
             attribute(&group, name, value)?;
         }
-        for (name, value) in [("time_of_sup", Some(*time_of_sup)), ("end", Some(*end)), ("kept_impulse", *kept_impulse)]
+        for (name, value) in
+            [("time_of_sup", Some(*time_of_sup)), ("end", Some(*end)), ("impulse_ratio", *impulse_ratio)]
         {
             if let Some(value) = value {
                 attribute(&group, name, value)?;
             }
         }
         attribute(&group, "steps", *steps as i64)?;
-        attribute(&group, "velocity_given", u8::from(given.velocity))?;
-        attribute(&group, "acceleration_given", u8::from(given.acceleration))
+        attribute(&group, "velocity_supplied", u8::from(supplied.velocity))?;
+        attribute(&group, "acceleration_supplied", u8::from(supplied.acceleration))
     }
 }
 

@@ -1,8 +1,8 @@
 //! An open history file.
 
 use super::elsewhere::Elsewhere;
-use super::kept::KeptSteps;
 use super::rows::FIELDS;
+use super::stored_part::StoredSteps;
 use super::sums::{check_rows, compare, of_flags, of_vectors};
 use crate::checksum::Checksum;
 use crate::error::{FileCause, FileError};
@@ -57,10 +57,10 @@ pub(super) struct Contents {
     pub(super) count: usize,
     pub(super) complete: bool,
     pub(super) contact_nodes: Vec<usize>,
-    pub(super) given: [bool; 2],
-    pub(super) given_contact: [bool; 2],
+    pub(super) supplied: [bool; 2],
+    pub(super) supplied_contact: [bool; 2],
     pub(super) stored: [bool; 2],
-    pub(super) kept: Option<KeptSteps>,
+    pub(super) kept: Option<StoredSteps>,
     pub(super) lacks_reactions: bool,
     /// Whether each field at each instant has a checksum.
     pub(super) checksums: bool,
@@ -197,14 +197,14 @@ impl HistoryFile {
 
     /// Whether the file has its own velocities and accelerations.
     #[must_use]
-    pub fn given(&self) -> [bool; 2] {
-        self.contents.given
+    pub fn supplied(&self) -> [bool; 2] {
+        self.contents.supplied
     }
 
     /// Whether the file has contact forces and touching status.
     #[must_use]
-    pub fn given_contact(&self) -> [bool; 2] {
-        self.contents.given_contact
+    pub fn supplied_contact(&self) -> [bool; 2] {
+        self.contents.supplied_contact
     }
 
     /// u_n at the nodes (m), in rows, step after step.
@@ -257,7 +257,7 @@ impl HistoryFile {
     /// # Errors
     /// As for [`HistoryFile::displacement`].
     pub fn touching(&self, steps: Range<usize>) -> Result<Vec<bool>, FileError> {
-        if !self.given_contact()[1] {
+        if !self.supplied_contact()[1] {
             let count = steps.len() * self.contact_nodes().len();
             return self.steps(steps, |_| Ok(vec![false; count]));
         }
@@ -381,8 +381,8 @@ impl HistoryFile {
                 }
             }
             if let Some(contact) = opened.root().group("percute")?.optional_group("contact")? {
-                let given = ["reaction", "touching"].into_iter().zip(self.given_contact());
-                for (name, _) in given.filter(|(_, given)| *given) {
+                let supplied = ["reaction", "touching"].into_iter().zip(self.supplied_contact());
+                for (name, _) in supplied.filter(|(_, supplied)| *supplied) {
                     let data = contact.data(name)?;
                     let offset =
                         if name == "reaction" { data.native_offset::<f64>()? } else { data.native_offset::<u8>()? };

@@ -3,7 +3,6 @@
 mod checkpoints;
 mod elsewhere;
 mod file;
-mod kept;
 mod native;
 mod nodal;
 mod open;
@@ -13,19 +12,20 @@ mod recover;
 mod resume;
 mod rows;
 mod source;
+mod stored_part;
 mod sums;
 mod thinned;
 mod writer;
 
 pub use elsewhere::Elsewhere;
 pub use file::{HistoryFile, NativeArray};
-pub use kept::{Kept, KeptSteps};
 pub use open::open;
 pub(crate) use open::{case, provenance};
 pub use plan::Plan;
 pub use recover::{Recovered, recover};
 pub use resume::Unended;
 pub use source::{HistorySource, StoredSteps};
+pub use stored_part::{StoredPart, StoredSteps};
 pub use writer::Writer;
 
 /// Path of the displacements in a file.

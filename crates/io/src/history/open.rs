@@ -3,9 +3,9 @@
 use super::DISPLACEMENT;
 use super::elsewhere::Elsewhere;
 use super::file::{Contents, HistoryFile, Identity};
-use super::kept;
 use super::nodal::{finite, nodal};
 use super::rows::FIELDS;
+use super::stored_part;
 use super::sums::{check_fixed_part, check_rows, fixed_part, of_vectors};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
@@ -55,11 +55,11 @@ pub(super) fn contents(path: &Path, identity: Identity, opened: &Opened) -> Resu
     let instants = times.instants().len();
     let (count, complete) = written(&vtk, &ours, instants)?;
     let (initial_displacement, stored) = fields(&vtk, instants, [nodes, d])?;
-    let kept = kept::read(&ours, times.instants())?;
+    let kept = stored_part::read(&ours, times.instants())?;
     // Motion by the scheme follows from all steps as well.
-    let given = if ours.has_attribute("by_scheme") { [false; 2] } else { stored };
+    let supplied = if ours.has_attribute("by_scheme") { [false; 2] } else { stored };
     let initial_velocity = nodal(&ours, "initial_velocity", [nodes, d])?;
-    let (contact_nodes, given_contact) = contact(&ours, instants, nodes, d)?;
+    let (contact_nodes, supplied_contact) = contact(&ours, instants, nodes, d)?;
     let statement =
         ours.optional_text("problem")?.ok_or_else(|| FileCause::MissingPart { name: "percute/problem".to_string() })?;
     let (case, provenance, elsewhere) = (case(&ours)?, provenance(&ours)?, Elsewhere::read(&ours, [nodes, d])?);
@@ -89,8 +89,8 @@ pub(super) fn contents(path: &Path, identity: Identity, opened: &Opened) -> Resu
         count,
         complete,
         contact_nodes,
-        given,
-        given_contact,
+        supplied,
+        supplied_contact,
         stored,
         kept,
         lacks_reactions: ours.has_attribute("without_reactions"),

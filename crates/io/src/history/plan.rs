@@ -2,9 +2,9 @@
 
 use super::checkpoints;
 use super::elsewhere::Elsewhere;
-use super::kept::Kept;
 use super::native::write_vectors;
 use super::rows::{FIELDS, Places};
+use super::stored_part::StoredPart;
 use super::sums::fixed_part;
 use super::writer::{Begun, Target, Writer};
 use crate::create::{Overwrite, Unnamed};
@@ -29,8 +29,8 @@ pub struct Plan<'p> {
     times: &'p TimeGrid,
     statement: String,
     case: Option<Case>,
-    given: [bool; 2],
-    kept: Option<Kept>,
+    supplied: [bool; 2],
+    kept: Option<StoredPart>,
     elsewhere: Option<Elsewhere>,
 }
 
@@ -40,13 +40,13 @@ impl<'p> Plan<'p> {
     #[must_use]
     pub fn new(problem: &'p AnyProblem, times: &'p TimeGrid, statement: &str, case: Option<&Case>) -> Self {
         let (statement, case) = (statement.to_string(), case.cloned());
-        Self { problem, times, statement, case, given: [false; 2], kept: None, elsewhere: None }
+        Self { problem, times, statement, case, supplied: [false; 2], kept: None, elsewhere: None }
     }
 
     /// Whether the steps have their own velocities and accelerations.
     #[must_use]
-    pub fn with_given(self, velocity: bool, acceleration: bool) -> Self {
-        Self { given: [velocity, acceleration], ..self }
+    pub fn with_supplied(self, velocity: bool, acceleration: bool) -> Self {
+        Self { supplied: [velocity, acceleration], ..self }
     }
 
     /// For a history that another program has simulated.
@@ -62,9 +62,9 @@ impl<'p> Plan<'p> {
 
     /// Keeps a part of the run only.
     #[must_use]
-    pub fn keeping(self, kept: Option<Kept>) -> Self {
-        let given = kept.as_ref().map_or(self.given, |kept| [kept.velocity, kept.acceleration]);
-        Self { given, kept, ..self }
+    pub fn keeping(self, kept: Option<StoredPart>) -> Self {
+        let supplied = kept.as_ref().map_or(self.supplied, |kept| [kept.velocity, kept.acceleration]);
+        Self { supplied, kept, ..self }
     }
 
     /// Whether the file has reactions and touching status.
@@ -79,7 +79,7 @@ impl<'p> Plan<'p> {
 
     /// Whether the file lacks steps or reactions.
     fn is_thinned(&self) -> bool {
-        let lacks = |kept: &Kept| kept.steps.len() <= self.times.step_count() || !kept.reaction;
+        let lacks = |kept: &StoredPart| kept.steps.len() <= self.times.step_count() || !kept.reaction;
         self.kept.as_ref().is_some_and(lacks)
     }
 
@@ -124,7 +124,7 @@ impl<'p> Plan<'p> {
 
     /// Number of nodal vector fields.
     fn vectors(&self) -> u64 {
-        1 + self.given.iter().filter(|given| **given).count() as u64
+        1 + self.supplied.iter().filter(|supplied| **supplied).count() as u64
     }
 
     fn instants(&self) -> usize {
@@ -185,8 +185,13 @@ impl<'p> Plan<'p> {
     }
 
     fn writer(&self, target: Target, places: Places) -> Result<Writer, FileCause> {
-        let begun =
-            Begun { last: self.times.step_count(), next: 0, stored: 0, given: self.given, kept: self.kept.clone() };
+        let begun = Begun {
+            last: self.times.step_count(),
+            next: 0,
+            stored: 0,
+            supplied: self.supplied,
+            kept: self.kept.clone(),
+        };
         Writer::new(target, places, begun).map_err(|source| FileCause::Create { source })
     }
 
@@ -214,7 +219,7 @@ impl<'p> Plan<'p> {
         unit(&numbers(&ours, "times", &[instants.len()], instants)?, "s")?;
         self.run(&ours)?;
         let (reaction, touching) = self.contact(&ours)?;
-        let [velocity, acceleration] = self.given;
+        let [velocity, acceleration] = self.supplied;
         let fields =
             [("displacement", "m", true), ("velocity", "m/s", velocity), ("acceleration", "m/s2", acceleration)];
         let (data, mut names, mut places) = (group(&vtk, "PointData")?, Vec::new(), [None; 3]);

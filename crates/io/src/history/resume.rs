@@ -2,9 +2,9 @@
 
 use super::checkpoints;
 use super::file::{HistoryFile, Identity};
-use super::kept::Kept;
 use super::open::contents;
 use super::rows::Places;
+use super::stored_part::StoredPart;
 use super::writer::{Begun, Target, Writer};
 use crate::create::reserve;
 use crate::error::{FileCause, FileError};
@@ -30,7 +30,7 @@ impl HistoryFile {
     /// All planned instants of the run (s), those that a thinned history does not keep included.
     #[must_use]
     pub fn run_times(&self) -> &TimeGrid {
-        self.kept().map_or(self.times(), |kept| &kept.times)
+        self.stored_steps().map_or(self.times(), |kept| &kept.times)
     }
 
     /// Whether the file holds all that its run was to give.
@@ -41,18 +41,18 @@ impl HistoryFile {
 
     /// The part of the run that the file keeps; none for one with all steps and without velocities and accelerations.
     #[must_use]
-    pub fn keeps(&self) -> Option<Kept> {
+    pub fn keeps(&self) -> Option<StoredPart> {
         let [velocity, acceleration] = self.stored();
-        let whole = self.kept().is_none() && !self.lacks_reactions();
+        let whole = self.stored_steps().is_none() && !self.lacks_reactions();
         let all = || (0..self.times().instants().len()).collect();
-        let steps = || self.kept().map_or_else(all, |kept| kept.steps.clone());
+        let steps = || self.stored_steps().map_or_else(all, |kept| kept.steps.clone());
         let reaction = !self.lacks_reactions();
-        (!whole || velocity || acceleration).then(|| Kept { steps: steps(), velocity, acceleration, reaction })
+        (!whole || velocity || acceleration).then(|| StoredPart { steps: steps(), velocity, acceleration, reaction })
     }
 
     /// Number of instants in a file with all steps of the run until this one.
     fn rows_until(&self, step: usize) -> usize {
-        self.kept().map_or(step + 1, |kept| kept.steps.partition_point(|kept| *kept <= step))
+        self.stored_steps().map_or(step + 1, |kept| kept.steps.partition_point(|kept| *kept <= step))
     }
 
     /// Lets the run of this problem go on, after it was killed or stopped. Other writers are refused from then on;
@@ -75,7 +75,7 @@ impl HistoryFile {
         if self.is_foreign() {
             return Err(FileCause::Elsewhere);
         }
-        if self.given() != [false; 2] {
+        if self.supplied() != [false; 2] {
             return Err(FileCause::GivenMotion);
         }
         if !self.has_checksums() {
@@ -102,8 +102,8 @@ impl HistoryFile {
             other => other,
         })?;
         write_all_at(held.file(), &[0], places.complete).map_err(create)?;
-        let (kept, given) = (now.keeps(), now.stored());
-        let begun = Begun { last: now.run_times().step_count(), next, stored, given, kept };
+        let (kept, supplied) = (now.keeps(), now.stored());
+        let begun = Begun { last: now.run_times().step_count(), next, stored, supplied, kept };
         Ok(Unended {
             checkpoint,
             writer: Writer::new(Target::Named(held, path.to_path_buf()), places, begun).map_err(create)?,

@@ -117,7 +117,7 @@ impl HistorySource {
         first: usize,
     ) -> Result<Option<Vec<f64>>, FileCause> {
         // Motion by the scheme is made again from all steps; a thinned history has no other.
-        let there = if self.file.kept().is_some() { self.file.stored() } else { self.file.given() };
+        let there = if self.file.stored_steps().is_some() { self.file.stored() } else { self.file.supplied() };
         if !there[which] {
             return Ok(None);
         }
@@ -137,7 +137,7 @@ impl HistorySource {
         let contact = opened.root().group("percute")?.group("contact")?;
         let data = contact.data("reaction")?;
         let reaction = data.float_rows(steps.clone())?;
-        let touching = match self.file.given_contact()[1] {
+        let touching = match self.file.supplied_contact()[1] {
             true => contact.data("touching")?.flag_rows(steps.clone())?,
             false => vec![false; reaction.len() / d],
         };

@@ -1,10 +1,10 @@
 //! Writes the steps of a run during the run.
 
 use super::checkpoints::is_due;
-use super::kept::Kept;
 use super::queue::Queue;
 use super::recover::{give_back_room, set_steps};
 use super::rows::Places;
+use super::stored_part::StoredPart;
 use crate::create::Unnamed;
 use crate::error::{FileCause, FileError};
 use crate::held::Held;
@@ -27,8 +27,8 @@ pub struct Writer {
     next: usize,
     /// Number of instants in the file.
     stored: usize,
-    given: [bool; 2],
-    kept: Option<Kept>,
+    supplied: [bool; 2],
+    kept: Option<StoredPart>,
     /// Until there is a step, the file is of no use.
     unfinished: Option<Unfinished>,
 }
@@ -94,17 +94,17 @@ pub(super) struct Begun {
     /// Number of instants in the file.
     pub(super) stored: usize,
     /// Whether the steps have their own velocities and accelerations.
-    pub(super) given: [bool; 2],
+    pub(super) supplied: [bool; 2],
     /// The part of the run that the file keeps; all without one.
-    pub(super) kept: Option<Kept>,
+    pub(super) kept: Option<StoredPart>,
 }
 
 impl Writer {
     pub(super) fn new(target: Target, places: Places, begun: Begun) -> io::Result<Self> {
-        let Begun { last, next, stored, given, kept } = begun;
+        let Begun { last, next, stored, supplied, kept } = begun;
         let queue = Queue::new(target.file().try_clone()?, places)?;
         let unfinished = if places.had == 0 { target.unfinished() } else { None };
-        Ok(Self { queue, target, places, last, next, stored, given, kept, unfinished })
+        Ok(Self { queue, target, places, last, next, stored, supplied, kept, unfinished })
     }
 
     /// The file.
@@ -121,7 +121,7 @@ impl Writer {
 
     /// The part of the run that the file keeps; all without one.
     #[must_use]
-    pub fn kept(&self) -> Option<&Kept> {
+    pub fn stored_part(&self) -> Option<&StoredPart> {
         self.kept.as_ref()
     }
 
@@ -165,7 +165,7 @@ impl Writer {
     fn check(&self, step: &Step<'_>) -> Result<(), StepError> {
         let n = step.index;
         for (had, (field, there)) in self
-            .given
+            .supplied
             .into_iter()
             .zip([("velocity", step.velocity.is_some()), ("acceleration", step.acceleration.is_some())])
         {

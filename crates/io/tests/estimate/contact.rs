@@ -64,7 +64,8 @@ fn contact_results_are_the_same_wherever_they_come_from() {
     assert_eq!(back, beside);
     without_steps(&problem, &times, &memory, &beside);
     // Nodes of surfaces that slide may face nothing, and have figures that one body does not have.
-    let mut apart = ContactResults { slip: 0.1, depth: 0.2, at_end: true, lean: 0.3, ..beside.clone() };
+    let mut apart =
+        ContactResults { slip: 0.1, penetration: 0.2, at_surface_end: true, inclination: 0.3, ..beside.clone() };
     apart.steps.as_mut().unwrap().gap[3] = f64::INFINITY;
     let apart_file = folder.path().join("apart.vtkhdf");
     with_contact(&apart_file, &problem, &estimated(&problem, 4, false), Some(&apart)).unwrap();

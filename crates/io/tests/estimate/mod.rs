@@ -109,7 +109,7 @@ fn what_was_estimated_comes_back() {
     let measures = hdf5::File::open(&path).unwrap().group("percute/measures").unwrap();
     let measure = |name: &str| measures.attr(name).unwrap().read_scalar::<f64>().unwrap();
     assert_eq!((measure("sup"), measure("mean")), (estimate.error.sup, estimate.error.mean));
-    assert_eq!((measure("end"), measure("kept_impulse")), (estimate.end, estimate.kept_impulse.unwrap()));
+    assert_eq!((measure("end"), measure("impulse_ratio")), (estimate.end, estimate.impulse_ratio.unwrap()));
 }
 
 /// Without maps there are no instants, and the file is a grid with e_E.

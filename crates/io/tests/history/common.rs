@@ -73,7 +73,7 @@ pub(crate) fn write_some(
     count: usize,
 ) -> percute_io::history::Writer {
     let given = history.step(0).map_or([false; 2], |s| [s.velocity.is_some(), s.acceleration.is_some()]);
-    let plan = Plan::new(problem, history.times(), STATEMENT, Some(&case())).with_given(given[0], given[1]);
+    let plan = Plan::new(problem, history.times(), STATEMENT, Some(&case())).with_supplied(given[0], given[1]);
     let mut writer = plan.create(path, Overwrite::Refuse).unwrap();
     (0..count).for_each(|n| writer.push(&history.step(n).unwrap()).unwrap());
     writer

@@ -5,7 +5,7 @@ use percute_core::dynamics::{resume, simulate};
 use percute_core::observer::Unobserved;
 use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
-use percute_io::history::{HistoryFile, Kept, Plan, Unended, recover};
+use percute_io::history::{HistoryFile, Plan, StoredPart, Unended, recover};
 use percute_io::{FileCause, Overwrite};
 use percute_testkit::Random;
 use std::path::{Path, PathBuf};
@@ -17,10 +17,10 @@ const RUN: &str = "PERCUTE_TEST_RESUMED_RUN";
 const FILE: &str = "PERCUTE_TEST_RESUMED_FILE";
 
 /// All steps, or each seventh and the last without reactions.
-fn kept(run: usize, times: &TimeGrid) -> Option<Kept> {
+fn kept(run: usize, times: &TimeGrid) -> Option<StoredPart> {
     let last = times.step_count();
     let steps = (0..last).step_by(7).chain([last]).collect();
-    (run % 3 == 2).then_some(Kept { steps, velocity: false, acceleration: false, reaction: false })
+    (run % 3 == 2).then_some(StoredPart { steps, velocity: false, acceleration: false, reaction: false })
 }
 
 /// Larger meshes with every run.
@@ -30,7 +30,7 @@ fn problem(run: usize) -> (AnyProblem, TimeGrid) {
     (problem, times)
 }
 
-fn begin(path: &Path, problem: &AnyProblem, times: &TimeGrid, kept: Option<Kept>) {
+fn begin(path: &Path, problem: &AnyProblem, times: &TimeGrid, kept: Option<StoredPart>) {
     let plan = Plan::new(problem, times, STATEMENT, Some(&case())).keeping(kept);
     let mut writer = plan.create(path, Overwrite::Refuse).unwrap();
     simulate(problem, times, &mut writer, &mut Unobserved).unwrap();
@@ -48,7 +48,7 @@ fn go_on(file: &HistoryFile, problem: &AnyProblem) -> Option<usize> {
     checkpoint.map(|checkpoint| checkpoint.step)
 }
 
-fn undisturbed(folder: &Path, problem: &AnyProblem, times: &TimeGrid, kept: Option<Kept>) -> Vec<u8> {
+fn undisturbed(folder: &Path, problem: &AnyProblem, times: &TimeGrid, kept: Option<StoredPart>) -> Vec<u8> {
     let path = folder.join("undisturbed.vtkhdf");
     begin(&path, problem, times, kept);
     let bytes = std::fs::read(&path).unwrap();

@@ -104,7 +104,7 @@ proptest! {
         prop_assert_eq!(bits(file.initial_displacement()), bits(problem.initial_displacement()));
         prop_assert_eq!(bits(file.initial_velocity()), bits(problem.initial_velocity()));
         prop_assert_eq!((file.statement(), file.case()), (STATEMENT, Some(&case())));
-        prop_assert_eq!((file.given(), file.count(), file.is_complete()), ([v, a], count + 1, true));
+        prop_assert_eq!((file.supplied(), file.count(), file.is_complete()), ([v, a], count + 1, true));
         prop_assert_eq!(file.times(), history.times());
         let again = replayed(&path, &problem).unwrap();
         assert_same(&again, &history, count + 1);
@@ -145,7 +145,7 @@ fn estimates_from_the_file_are_those_beside_the_run() {
     let source = file.source(&again).unwrap();
     let from_file =
         estimate(&again, &source, Options::default(), &Request::default(), &mut Discard, &mut Unobserved).unwrap();
-    assert!(beside.1.error.sup > 100.0 && beside.1.kept_impulse.is_some(), "nothing happens: {:?}", beside.1.error);
+    assert!(beside.1.error.sup > 100.0 && beside.1.impulse_ratio.is_some(), "nothing happens: {:?}", beside.1.error);
     // Every number is compared with ==, and none is NaN or a zero of another sign.
     assert_eq!(beside, from_file);
 
@@ -227,7 +227,7 @@ fn size_is_foretold() {
     };
     for (at, problem) in [block(1, 1), block(20, 16), block(7, 3)].into_iter().enumerate() {
         let times = steps(&problem, 10 * at + 2);
-        let plan = Plan::new(&problem, &times, STATEMENT, Some(&case())).with_given(at == 2, at > 0);
+        let plan = Plan::new(&problem, &times, STATEMENT, Some(&case())).with_supplied(at == 2, at > 0);
         let name = format!("{at}.vtkhdf");
         drop(plan.create(folder.path().join(&name), Overwrite::Refuse).unwrap());
         check(&name, plan.bytes(), 4);

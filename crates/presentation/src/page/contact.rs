@@ -47,7 +47,7 @@ fn facts(document: &Document) -> String {
     }
     let friction = document.column("contact.total.friction_energy").last().copied();
     row("energy dissipated by friction", quantity(friction, document.unit("J")));
-    row("impulse kept by the admissible force", share(value("kept_impulse")));
+    row("impulse of the admissible contact force over that of the simulation", share(value("impulse_ratio")));
     table.html()
 }
 

@@ -115,10 +115,10 @@ pub(super) fn sources(document: &Document) -> String {
         };
         let cells = [name.to_string(), meaning.to_string(), number(mean), html::share(Some(share))]
             .map(|cell| crate::typeset::html(&cell));
-        let others = ["at_sup", "half_size"].map(|key| crate::typeset::html(&number(value(key, name))));
+        let others = ["at_sup", "halved_elements"].map(|key| crate::typeset::html(&number(value(key, name))));
         table.marked("", cells.into_iter().chain([bar]).chain(others).collect());
     }
-    let of_all = ["mean", "at_sup", "half_size"].map(|key| SOURCES.map(|(name, _)| value(key, name)));
+    let of_all = ["mean", "at_sup", "halved_elements"].map(|key| SOURCES.map(|(name, _)| value(key, name)));
     let negative = of_all.iter().flatten().any(|value| value.is_some_and(|value| value < 0.0));
     let signs = if negative { remark(NEGATIVE) } else { String::new() };
     section("Sources of the error", &(table.html() + &signs + &outlook(document)))
@@ -131,7 +131,7 @@ fn outlook(document: &Document) -> String {
         let expected = document.number(&format!("sources.{key}"))?;
         Some(format!("{} {} ({})", trimmed(expected, 4), document.unit("J^½"), change(expected / mean - 1.0)))
     };
-    let (Some(size), Some(step)) = (expected("mean_with_half_size"), expected("mean_with_half_step")) else {
+    let (Some(size), Some(step)) = (expected("mean_with_halved_elements"), expected("mean_with_halved_step")) else {
         return String::new();
     };
     paragraph(&format!(

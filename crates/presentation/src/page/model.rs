@@ -82,7 +82,11 @@ const CONSISTENCY: [Named; 17] = [
     ("velocity", "velocities off those of the displacements", "%"),
     ("acceleration", "accelerations off those of the displacements", "%"),
     ("cone", "contact force in tension or beyond Coulomb’s limit", "%"),
-    ("opposite", "contact force on one surface of a non-matching interface beyond that of its multipliers", "%"),
+    (
+        "interface_balance",
+        "contact force on one surface of a non-matching interface beyond that of its multipliers",
+        "%",
+    ),
     ("slip", "misfit of Coulomb’s law at nodes that slide", "%"),
     ("plane", "gap under contact forces, the same everywhere, over the element size", "%"),
     ("gap_under_force", "gap under a contact force, over the element size", "%"),
@@ -205,7 +209,7 @@ fn time(document: &Document) -> String {
         row(name, value.as_str().map_or_else(|| number(value.as_f64()), str::to_string));
     }
     for (key, name) in [("velocity", "velocities"), ("acceleration", "accelerations")] {
-        if document.flag(&format!("given.{key}")) {
+        if document.flag(&format!("supplied.{key}")) {
             row(name, "of the history itself".to_string());
         }
     }

@@ -206,7 +206,7 @@ impl Adapting {
         if self.warnings.is_empty() && self.meshing.keeps_polygons() {
             self.warnings.extend(basis.as_ref().and_then(|basis| polygon::warning(mesh, basis)));
         }
-        let worth = |run: &Iteration| (!run.doubts.is_empty(), run.error);
+        let worth = |run: &Iteration| (!run.reasons.is_empty(), run.error);
         // The limit of a quantity is nearer on each finer mesh.
         let better = |best: &Arc<Best>| quantity.is_some() || worth(&iteration) < worth(&self.iterations[best.run]);
         if self.best.as_ref().is_none_or(better) {

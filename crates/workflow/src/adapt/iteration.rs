@@ -54,7 +54,7 @@ pub struct Iteration {
     /// How far the estimate can be trusted.
     pub trust: Trust,
     /// Reasons not to trust it, beside strains and rotations that are not small.
-    pub doubts: Vec<String>,
+    pub reasons: Vec<String>,
 }
 
 impl Iteration {
@@ -72,7 +72,7 @@ impl Iteration {
             quantity: None,
             sources: basis.map(Basis::shares),
             trust: report.verdict.trust,
-            doubts: report.verdict.doubts.clone(),
+            reasons: report.verdict.reasons.clone(),
         }
     }
 }
@@ -97,7 +97,7 @@ pub enum Reason {
     /// The next mesh is that of the last run.
     SameMesh,
     /// The estimate of the last run is not trusted, for reasons that finer meshes do not remove: a run before counts.
-    Doubt,
+    NotTrusted,
     /// The quantity of the target has no limit: a sentence with the reason and the way out.
     NoLimit(String),
     /// There are no sources of the error to plan from.

@@ -79,9 +79,9 @@ pub fn conclusion(adaptation: &Adaptation) -> String {
         ),
         Reason::Runs => format!("Target {target} not reached in {}: {reached}.{needed}", counted(wish.runs, "run")),
         Reason::SameMesh => format!("Target {target} not reached: {reached}, and the next mesh is the same."),
-        Reason::Doubt => {
-            let doubts = adaptation.iterations.last().map_or_else(String::new, |last| last.doubts.join("; "));
-            format!("Target {target} not reached: {reached}. The estimate of the last run is not trusted: {doubts}.")
+        Reason::NotTrusted => {
+            let reasons = adaptation.iterations.last().map_or_else(String::new, |last| last.reasons.join("; "));
+            format!("Target {target} not reached: {reached}. The estimate of the last run is not trusted: {reasons}.")
         }
         Reason::NoLimit(why) => format!("Target {target} not reached: {reached}. {why}"),
         Reason::NoSources => {

@@ -24,14 +24,14 @@ impl Wish {
     /// Why the last of these runs ends the adaptation, if it does; `obstruction` may keep a quantity from converging.
     pub(super) fn end(&self, iterations: &[Iteration], obstruction: Option<&Obstruction>) -> Option<Reason> {
         let last = iterations.last()?;
-        let (doubtful, is_last) = (!last.doubts.is_empty(), iterations.len() == self.runs);
+        let (untrusted, is_last) = (!last.reasons.is_empty(), iterations.len() == self.runs);
         let Some(quantity) = &self.on else {
             let reached = last.error <= self.target;
             let earlier = &iterations[..iterations.len() - 1];
-            let trusted = earlier.iter().any(|earlier| earlier.doubts.is_empty());
+            let trusted = earlier.iter().any(|earlier| earlier.reasons.is_empty());
             let grows = earlier.last().is_some_and(|before| before.error < last.error);
             return match () {
-                () if doubtful && (trusted || reached || grows) => Some(Reason::Doubt),
+                () if untrusted && (trusted || reached || grows) => Some(Reason::NotTrusted),
                 () if reached => Some(Reason::Reached),
                 () if is_last => Some(Reason::Runs),
                 () => None,

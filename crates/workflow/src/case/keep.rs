@@ -6,7 +6,7 @@ use super::value::Value;
 use crate::choice::{StepChoice, late, too_late};
 use crate::message::hint;
 use percute_core::time::TimeGrid;
-use percute_io::history::Kept;
+use percute_io::history::StoredPart;
 
 /// Fields of a history.
 pub const FIELDS: [&str; 4] = ["displacement", "velocity", "acceleration", "reaction"];
@@ -25,7 +25,7 @@ pub struct Keep {
 impl Keep {
     /// What the history of a run over these instants keeps; none if all.
     #[must_use]
-    pub fn of(&self, times: &TimeGrid) -> Option<Kept> {
+    pub fn of(&self, times: &TimeGrid) -> Option<StoredPart> {
         if self.steps == StepChoice::All && self.fields.is_none() {
             return None;
         }
@@ -36,7 +36,7 @@ impl Keep {
         steps.sort_unstable();
         steps.dedup();
         let has = |name: &str| self.fields.as_ref().is_none_or(|fields| fields.iter().any(|field| field == name));
-        Some(Kept { steps, velocity: has(FIELDS[1]), acceleration: has(FIELDS[2]), reaction: has(FIELDS[3]) })
+        Some(StoredPart { steps, velocity: has(FIELDS[1]), acceleration: has(FIELDS[2]), reaction: has(FIELDS[3]) })
     }
 
     /// The fault of a name of a field, if it is none of a history.

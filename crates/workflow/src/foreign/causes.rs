@@ -72,7 +72,7 @@ impl Suspect<'_> {
             (penalty::UNSTABLE, &|| self.unstable()),
             ("energy", &|| self.unstable()),
             (THROUGH_PLANES, &|| self.without_contact()),
-            ("opposite", &|| self.evidence.contact.not_opposite()),
+            ("interface_balance", &|| self.evidence.contact.unbalanced_interface()),
             ("plane", &|| planes::place(self, false).unwrap_or_default()),
             ("touching", &|| self.touching()),
             ("cone", &|| planes::friction(self, "or a normal ")),

@@ -1,7 +1,7 @@
 //! What a history of another program lacks, derived from the rest of it.
 
 use super::derive::{Derivation, Heard};
-use super::opposite::groups;
+use super::interface_balance::groups;
 use super::pairs;
 use super::window::{Held, rows_of, windows};
 use crate::message::{counted, trimmed};

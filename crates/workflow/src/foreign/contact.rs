@@ -4,8 +4,8 @@ use super::balance::{Motion, Terms, dot, norm};
 use super::conditions::Conditions;
 use super::figures::Consistency;
 use super::gaps::Gaps;
+use super::interface_balance::InterfaceBalance;
 use super::nearness::{ADDED, Nearness, unsure};
-use super::opposite::Opposite;
 use super::window::{Window, rows_of, vectors_of};
 use percute_core::border::Vector;
 use percute_core::contact::{ContactNode, Frame};
@@ -47,7 +47,7 @@ pub(super) struct Contact<'p> {
     /// The forces of the instant before (N), and the gaps at its end (m).
     before: Option<(Vec<Vector>, Vec<f64>)>,
     /// Of each two surfaces that slide.
-    opposite: Vec<Opposite>,
+    interface_balance: Vec<InterfaceBalance>,
     /// Nodes of the surface on which a force acts at some instant.
     pub(super) forced: Vec<bool>,
     /// Largest normal force (N), cone excess (N), product of force and gap (N m), penetration (m).
@@ -71,7 +71,7 @@ impl<'p> Contact<'p> {
             nearness: Nearness::new(problem),
             planes: vec![PlaneSums::new(problem.contact_nodes().len()); problem.obstacle_count()],
             before: None,
-            opposite: vec![Opposite::default(); problem.sliding_count()],
+            interface_balance: vec![InterfaceBalance::default(); problem.sliding_count()],
             forced: vec![false; problem.contact_nodes().len()],
             largest: [0.0; 4],
             pressed: [0.0; 3],
@@ -100,8 +100,8 @@ impl<'p> Contact<'p> {
         let faint = |at: usize, mass: f64| (FAINT * speed / h * mass).max(rounding * problem.moved_mass(at));
         let (rows, before, d) = (conditions.forces(now.step().reaction), self.before.take(), problem.dimension());
         let forces = vectors_of(&rows, d);
-        for (sliding, opposite) in self.opposite.iter_mut().enumerate() {
-            opposite.take(&problem.sides_of_sliding(sliding), &now.reaction, &forces);
+        for (sliding, balance) in self.interface_balance.iter_mut().enumerate() {
+            balance.take(&problem.sides_of_sliding(sliding), &now.reaction, &forces);
         }
         let forward = motion.map(|motion| rows_of(&motion.forward, d));
         let mut gaps = vec![f64::INFINITY; forces.len()];
@@ -242,17 +242,17 @@ impl<'p> Contact<'p> {
     }
 
     /// What is wrong with forces on surfaces that slide.
-    pub(super) fn not_opposite(&self) -> String {
-        let all = self.opposite.iter().enumerate();
+    pub(super) fn unbalanced_interface(&self) -> String {
+        let all = self.interface_balance.iter().enumerate();
         let worst = all.max_by(|(_, a), (_, b)| a.share().total_cmp(&b.share()));
-        worst.map_or(String::new(), |(sliding, opposite)| opposite.cause(self.problem, sliding))
+        worst.map_or(String::new(), |(sliding, balance)| balance.cause(self.problem, sliding))
     }
 
     /// Enters the figures.
     pub(super) fn enter(&self, found: &mut Consistency) {
         let ([normal, excess, product, depth], size) = (self.largest, self.nearness.element);
         found.cone = super::ratio(excess, normal.max(excess));
-        found.opposite = self.opposite.iter().map(Opposite::share).reduce(f64::max);
+        found.interface_balance = self.interface_balance.iter().map(InterfaceBalance::share).reduce(f64::max);
         found.gap_under_force = super::ratio(product, normal * size);
         found.penetration = depth / size;
         let [product, force, path] = self.pressed;

@@ -27,7 +27,7 @@ pub struct Consistency {
     pub cone: f64,
     /// Largest difference between the sum of the contact forces on either of two surfaces that slide and that of the
     /// multipliers, over the largest sum of their sizes; none without such surfaces.
-    pub opposite: Option<f64>,
+    pub interface_balance: Option<f64>,
     /// Misfit of Coulomb's law at nodes that slide, ∑(μR_n|w_t| + R_t·w_t)Δt over ∑μR_n|w_t|Δt, w_t of the step after
     /// t_n; none if no node slides with friction.
     pub slip: Option<f64>,

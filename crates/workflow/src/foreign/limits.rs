@@ -20,7 +20,7 @@ pub(super) const BALANCE: f64 = 1e-2;
 pub(super) const LONG_STEP: f64 = 5e-4;
 /// Limit of `initial_displacement`, a share of the body: single precision has 1e-7.
 pub(super) const PLACE: f64 = 1e-6;
-/// Limit of `opposite`: single precision has 1e-6.
+/// Limit of `interface_balance`: single precision has 1e-6.
 const OPPOSITE: f64 = 1e-2;
 /// Limit of `cone`: single precision has 1e-6.
 pub(super) const CONE: f64 = 1e-2;
@@ -134,9 +134,9 @@ fn of_contact(found: &Consistency) -> [Option<Excess>; 7] {
     let slip = if is_off_contact(found) { f64::INFINITY } else { SLIP };
     [
         excess(
-            found.opposite.unwrap_or(0.0),
+            found.interface_balance.unwrap_or(0.0),
             OPPOSITE,
-            "opposite",
+            "interface_balance",
             "the contact force on one surface of a non-matching interface, beyond its multipliers, over all forces,",
         ),
         excess(

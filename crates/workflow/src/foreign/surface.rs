@@ -3,7 +3,7 @@
 
 use super::axes::{READINGS, read};
 use super::balance::{Balance, dot};
-use super::opposite::groups;
+use super::interface_balance::groups;
 use super::suspect::Suspect;
 use super::tried::Tried;
 use super::window::windows;

@@ -18,7 +18,7 @@ use crate::report::build::problem_summary;
 use crate::report::summary::{body, layout, step};
 use crate::report::{FORMAT, ProblemSummary, Versions};
 use percute_core::time::TimeGrid;
-use percute_estimator::Given;
+use percute_estimator::Supplied;
 use percute_io::Provenance;
 use serde::Serialize;
 
@@ -77,8 +77,8 @@ pub struct HistoryInfo {
     pub time: TimeInfo,
     pub steps: Option<usize>,
     pub complete: bool,
-    pub given: Given,
-    pub kept: Option<KeptInfo>,
+    pub supplied: Supplied,
+    pub stored: Option<StoredInfo>,
     pub bytes: u64,
     pub estimate_memory: u64,
 }
@@ -86,17 +86,17 @@ pub struct HistoryInfo {
 /// The part of its run that a thinned history keeps.
 #[derive(Clone, Debug, Serialize)]
 #[allow(missing_docs)]
-pub struct KeptInfo {
+pub struct StoredInfo {
     pub instants: usize,
     pub fields: Vec<&'static str>,
 }
 
 /// The instants and fields of a history.
-fn kept(stored: &Stored) -> KeptInfo {
+fn stored_info(stored: &Stored) -> StoredInfo {
     let [velocity, acceleration] = stored.file.stored();
     let there = [true, velocity, acceleration, !stored.file.lacks_reactions()];
     let fields = FIELDS.into_iter().zip(there).filter(|(_, there)| *there).map(|(name, _)| name).collect();
-    KeptInfo { instants: stored.file.count(), fields }
+    StoredInfo { instants: stored.file.count(), fields }
 }
 
 /// The steps of a run.
@@ -174,7 +174,7 @@ pub fn of_case(case: &Case) -> Result<Info, NotRepresentable> {
 #[must_use]
 pub fn of_history(stored: &Stored) -> Info {
     let (file, problem, subject) = (&stored.file, &stored.problem, stored.subject());
-    let [velocity, acceleration] = file.given();
+    let [velocity, acceleration] = file.supplied();
     Info::History(Box::new(HistoryInfo {
         format: FORMAT,
         versions: Versions::of_this_program(),
@@ -187,11 +187,11 @@ pub fn of_history(stored: &Stored) -> Info {
         case: file.case().map(|case| case.name.clone()),
         problem: problem_summary(&subject),
         planes: setting::planes(problem),
-        time: TimeInfo::new(file.kept().map_or(file.times(), |kept| &kept.times), subject.critical_step),
-        steps: file.count().checked_sub(1).map(|last| file.kept().map_or(last, |kept| kept.steps[last])),
-        kept: file.kept().map(|_| kept(stored)),
+        time: TimeInfo::new(file.stored_steps().map_or(file.times(), |kept| &kept.times), subject.critical_step),
+        steps: file.count().checked_sub(1).map(|last| file.stored_steps().map_or(last, |kept| kept.steps[last])),
+        stored: file.stored_steps().map(|_| stored_info(stored)),
         complete: file.is_complete(),
-        given: Given { velocity, acceleration },
+        supplied: Supplied { velocity, acceleration },
         bytes: file.bytes(),
         estimate_memory: percute_estimator::memory(problem, file.times(), &stored.options) as u64,
     }))
@@ -273,13 +273,15 @@ impl HistoryInfo {
             }
         };
         lines.push(("holds", format!("{held} of {} planned; {ended}", self.time.steps_planned)));
-        if let Some(KeptInfo { instants, fields }) = &self.kept {
+        if let Some(StoredInfo { instants, fields }) = &self.stored {
             lines.push(("keeps", format!("{} only: {}", counted(*instants, "instant"), fields.join(", "))));
         }
-        let given = [("velocities", self.given.velocity), ("accelerations", self.given.acceleration)];
-        lines.extend(given.iter().filter(|(_, given)| *given).map(|(what, _)| ("", format!("{what} of its own"))));
+        let supplied = [("velocities", self.supplied.velocity), ("accelerations", self.supplied.acceleration)];
+        lines.extend(
+            supplied.iter().filter(|(_, supplied)| *supplied).map(|(what, _)| ("", format!("{what} of its own"))),
+        );
         // There is no estimate of a part of a run.
-        if self.kept.is_none() {
+        if self.stored.is_none() {
             lines.push(("memory", format!("about {} for the estimate", bytes(self.estimate_memory))));
         }
         lines

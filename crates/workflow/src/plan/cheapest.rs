@@ -198,8 +198,8 @@ mod tests {
         let nothing = Separation {
             at_sup: Default::default(),
             mean: Default::default(),
-            half_size: Default::default(),
-            half_step: 0.0,
+            halved_elements: Default::default(),
+            halved_step: 0.0,
             over_time: Vec::new(),
         };
         let touches = vec![false; size.len()];

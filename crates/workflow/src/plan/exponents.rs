@@ -24,10 +24,10 @@ pub struct Exponents {
 impl Exponents {
     /// From the sources, and those that are expected with elements and steps half as long.
     pub(super) fn of(sources: &Separation) -> Self {
-        let (mean, half) = (&sources.mean, &sources.half_size);
-        let expected = sources.mean_with_half_size().unwrap_or(0.0);
+        let (mean, half) = (&sources.mean, &sources.halved_elements);
+        let expected = sources.mean_with_halved_elements().unwrap_or(0.0);
         let all = exponent(mean.total(), expected * expected);
-        let step = (sources.half_step / mean.total()).clamp(0.0, 0.5);
+        let step = (sources.halved_step / mean.total()).clamp(0.0, 0.5);
         if mean.surface <= MOST * mean.total() {
             return Self { near: all, far: all, step };
         }

@@ -6,19 +6,19 @@
 //! sizes by the error of each element. Error and cost of other sizes follow from exponents q of e_E ~ h^q, which the
 //! sources give ([`Exponents`]).
 
-mod advice;
 mod basis;
 mod cheapest;
 mod exponents;
 mod next_mesh;
+mod recommendation;
 mod size_field;
 mod wanted;
 
-pub use advice::Advice;
 pub use basis::Basis;
 pub(crate) use basis::{shares_told, sizes};
 pub use exponents::Exponents;
 pub use next_mesh::NextMesh;
+pub use recommendation::Recommendation;
 pub use size_field::SizeField;
 pub(crate) use wanted::Wanted;
 

@@ -49,7 +49,7 @@ impl Report {
             end: estimate.end,
             steps_planned: times.step_count(),
             interrupted: estimate.steps < times.step_count(),
-            given: estimate.given,
+            supplied: estimate.supplied,
             derived: checked.map(|checked| checked.derived.clone()).unwrap_or_default(),
             consistency: checked.map(|checked| checked.consistency),
             samples: checked.and_then(|checked| checked.samples),
@@ -66,8 +66,8 @@ impl Report {
             largest_residual,
             balance: simulation.balance,
             balance_over_time: EnergiesOverTime::new(times.instants(), &simulation.balance_over_time),
-            kept_impulse: estimate.kept_impulse,
-            own_contacts: estimate.own_contacts,
+            impulse_ratio: estimate.impulse_ratio,
+            isolated_contact_nodes: estimate.isolated_contact_nodes,
             auxiliary_contact_energy: estimate.auxiliary_contact_energy,
             contact: ContactReport::new(contact),
             rebound,
@@ -112,7 +112,7 @@ fn judged(
 /// The plausibility warnings; a contact that came is not foreseen to fail.
 fn foreseen(subject: &Subject<'_>, estimate: &Estimate) -> Vec<PlausibilityWarning> {
     let mut all = plausibility_warnings(subject.problem, subject.times);
-    all.retain(|warning| warning.name != "never_touches" || estimate.kept_impulse.is_none());
+    all.retain(|warning| warning.name != "never_touches" || estimate.impulse_ratio.is_none());
     all
 }
 
@@ -147,15 +147,15 @@ fn warnings(
         steps_vary: times.varies(),
         interrupted: estimate.steps < times.step_count(),
         reconstruction: options.reconstruction,
-        kept_impulse: estimate.kept_impulse,
+        impulse_ratio: estimate.impulse_ratio,
         touches: contact.total.iter().any(|sum| sum.force.iter().any(|f| *f != 0.0)),
-        own_contacts: estimate.own_contacts,
+        isolated_contact_nodes: estimate.isolated_contact_nodes,
         auxiliary_contact_energy: auxiliary_contact_energy(estimate, checked),
         touches_again: rebound.and_then(|rebound| rebound.touches_again),
         narrow: NarrowContact::new(subject.problem, contact),
         slip: contact.slip,
-        depth: contact.depth,
-        common_slope: contact.lean.to_degrees(),
+        penetration: contact.penetration,
+        inclination: contact.inclination.to_degrees(),
         linearity: &Linearity::new(deformation),
         residual: &largest_residual(estimate),
         flat: flat.as_ref(),

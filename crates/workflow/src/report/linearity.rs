@@ -41,7 +41,7 @@ pub(super) struct Departure {
     /// Whether it is so far from small that trust is low.
     pub(super) is_far: bool,
     /// The reason for low trust.
-    pub(super) doubt: String,
+    pub(super) reason: String,
 }
 
 /// A body that turns too far.
@@ -75,12 +75,12 @@ impl Linearity {
         let strain = self.is_strained(0).then(|| Departure {
             named: format!("strains of up to {}", self.shown_strain()),
             is_far: self.is_strained(1),
-            doubt: format!("strains of up to {} are not small, as the theory supposes", self.shown_strain()),
+            reason: format!("strains of up to {} are not small, as the theory supposes", self.shown_strain()),
         });
         let turned = self.turned.as_ref().map(|Turned { subject, angle, .. }| Departure {
             named: format!("a rotation of {} rad", short(*angle, 2)),
             is_far: *angle > ROTATION[1],
-            doubt: format!("{subject} turns by {} rad, and small rotations are supposed", short(*angle, 2)),
+            reason: format!("{subject} turns by {} rad, and small rotations are supposed", short(*angle, 2)),
         });
         strain.into_iter().chain(turned).collect()
     }

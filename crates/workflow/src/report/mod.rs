@@ -46,7 +46,7 @@ use percute_core::dynamics::{Balance, Simulation};
 use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_core::units::Units;
-use percute_estimator::{ErrorMeasures, Estimate, Given, Options, Parts, Residuals, Sample};
+use percute_estimator::{ErrorMeasures, Estimate, Options, Parts, Residuals, Sample, Supplied};
 use serde::Serialize;
 
 /// Number of the layout of the JSON document; it grows when a key changes its meaning or goes.
@@ -105,7 +105,7 @@ pub struct Report {
     pub steps_planned: usize,
     pub end: f64,
     pub interrupted: bool,
-    pub given: Given,
+    pub supplied: Supplied,
     pub derived: Vec<Derived>,
     pub consistency: Option<Consistency>,
     pub samples: Option<Samples>,
@@ -123,8 +123,8 @@ pub struct Report {
     pub largest_residual: LargestResidual,
     pub balance: Balance,
     pub balance_over_time: EnergiesOverTime,
-    pub kept_impulse: Option<f64>,
-    pub own_contacts: usize,
+    pub impulse_ratio: Option<f64>,
+    pub isolated_contact_nodes: usize,
     pub auxiliary_contact_energy: f64,
     pub contact: Option<ContactReport>,
     pub rebound: Option<Rebound>,

@@ -10,10 +10,10 @@ use serde::Serialize;
 pub struct SourceReport {
     pub at_sup: Sources,
     pub mean: Sources,
-    pub half_size: Sources,
-    pub half_step: f64,
-    pub mean_with_half_size: Option<f64>,
-    pub mean_with_half_step: Option<f64>,
+    pub halved_elements: Sources,
+    pub halved_step: f64,
+    pub mean_with_halved_elements: Option<f64>,
+    pub mean_with_halved_step: Option<f64>,
     pub over_time: Columns<Sources, 4>,
 }
 
@@ -22,10 +22,10 @@ impl SourceReport {
         Self {
             at_sup: separation.at_sup,
             mean: separation.mean,
-            half_size: separation.half_size,
-            half_step: separation.half_step,
-            mean_with_half_size: separation.mean_with_half_size(),
-            mean_with_half_step: separation.mean_with_half_step(),
+            halved_elements: separation.halved_elements,
+            halved_step: separation.halved_step,
+            mean_with_halved_elements: separation.mean_with_halved_elements(),
+            mean_with_halved_step: separation.mean_with_halved_step(),
             over_time: Columns::new(separation.over_time.clone(), SOURCES),
         }
     }

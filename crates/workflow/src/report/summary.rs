@@ -48,7 +48,7 @@ fn lines(report: &Report) -> Vec<(&'static str, String)> {
     lines.extend(balance(report));
     lines.push(("residual", residual(report)));
     lines.extend(report.consistency.as_ref().map(|found| ("history", consistency(found))));
-    lines.extend(kept_impulse(report).map(|line| ("impulse", line)));
+    lines.extend(impulse_ratio(report).map(|line| ("impulse", line)));
     lines.extend(contact(report).map(|line| ("contact", line)));
     let label = |rebound: &Rebound| if rebound.is_rebound() { "rebound" } else { "motion" };
     lines.extend(report.rebound.as_ref().map(|rebound| (label(rebound), returned(rebound, size(report)))));
@@ -104,10 +104,10 @@ fn what_was_run(report: &Report) -> Vec<(&'static str, String)> {
             ),
         ),
     ]);
-    let given = [("velocities", report.given.velocity), ("accelerations", report.given.acceleration)];
-    let given: Vec<_> = given.iter().filter(|(_, given)| *given).map(|(name, _)| *name).collect();
-    if !given.is_empty() {
-        lines.push(("given", format!("{} of the history itself", given.join(" and "))));
+    let supplied = [("velocities", report.supplied.velocity), ("accelerations", report.supplied.acceleration)];
+    let supplied: Vec<_> = supplied.iter().filter(|(_, supplied)| *supplied).map(|(name, _)| *name).collect();
+    if !supplied.is_empty() {
+        lines.push(("supplied", format!("{} of the history itself", supplied.join(" and "))));
     }
     if !report.derived.is_empty() {
         let derived = report.derived.iter().map(|derived| derived.name()).collect::<Vec<_>>().join(" and ");
@@ -170,7 +170,7 @@ fn sources(report: &Report) -> Option<String> {
 /// The error in one line, the last one, for `tail -n 1`.
 fn result(report: &Report) -> String {
     let e = &report.error;
-    if !report.problem.obstacles.is_empty() && report.kept_impulse.is_none() && e.sup == 0.0 {
+    if !report.problem.obstacles.is_empty() && report.impulse_ratio.is_none() && e.sup == 0.0 {
         return "no contact and no error: see the warnings".to_string();
     }
     let (sup, time) = (short(e.sup, 4), trimmed(report.time_of_sup, 5));
@@ -227,9 +227,9 @@ fn consistency(found: &Consistency) -> String {
 }
 
 /// Nothing where all is kept.
-fn kept_impulse(report: &Report) -> Option<String> {
-    let Some(kept) = report.kept_impulse.map(percent) else { return Some("no contact".to_string()) };
-    (kept != percent(1.0)).then(|| format!("{kept} of the contact impulse kept by the admissible force"))
+fn impulse_ratio(report: &Report) -> Option<String> {
+    let Some(kept) = report.impulse_ratio.map(percent) else { return Some("no contact".to_string()) };
+    (kept != percent(1.0)).then(|| format!("the admissible contact force has {kept} of the contact impulse"))
 }
 
 /// When it began, and its largest force and pressure, averaged over the time in which a wave crosses the struck

@@ -1,4 +1,4 @@
-//! Figures of a motion that are outside of their range: doubts about the result.
+//! Figures of a motion that are outside of their range: reasons not to trust the result.
 
 use super::flat::FlatElements;
 use super::linearity::{Linearity, STRAIN, Turned, growth};
@@ -19,16 +19,16 @@ pub(crate) const AUXILIARY_CONTACT_ENERGY: f64 = 0.1;
 /// of their squared norms: e/D is 1/√2 where they are orthogonal.
 const NEAR_CEILING: f64 = 0.6;
 /// So is a contact impulse of which less than the one or more than the other is kept.
-pub(crate) const KEPT: [f64; 2] = [0.9, 1.1];
+pub(crate) const IMPULSE_RATIO: [f64; 2] = [0.9, 1.1];
 /// Pairs of nodes that slip by more edges leave the range of the method.
 pub(crate) const SLIP: f64 = 0.1;
 /// Nodes of surfaces that slide that are deeper in the other body, over their edge, are outside of the evidence: there,
 /// up to 200 m/s, corners and curves are at most 0.021 of it inside.
-pub(crate) const DEPTH: f64 = 0.05;
+pub(crate) const PENETRATION: f64 = 0.05;
 /// Surfaces that touch and lean together by more than this (degrees) face each other along another direction than their
 /// normal. Between chevrons of aluminium of 5, 15 and 30°, without friction, the motion differs by 2, 9 and 24 % from
 /// that with a contact for each slope.
-pub(crate) const COMMON_SLOPE: f64 = 10.0;
+pub(crate) const INCLINATION: f64 = 10.0;
 /// The remedy for all figures of a history that contradicts itself or its problem.
 const INCONSISTENT: &str = "the history is not consistent: correct it first";
 /// A gain of the time step by more than this is told.
@@ -70,11 +70,11 @@ pub(super) fn symptoms(facts: &Facts<'_>) -> impl Iterator<Item = Symptom> {
         given_to_auxiliary(facts.auxiliary_contact_energy),
         relative_error(facts.published_relative),
         flat_elements(facts),
-        kept_impulse(facts),
+        impulse_ratio(facts),
         no_contact(facts),
         slipped(facts.slip),
-        entered(facts.depth),
-        leant(facts.common_slope),
+        penetrating(facts.penetration),
+        inclined(facts.inclination),
         strained(facts.linearity),
         turned(facts.linearity),
     ];
@@ -171,10 +171,11 @@ fn flat_elements(facts: &Facts<'_>) -> Option<Symptom> {
     symptom("flat_elements", format!("nearly flat elements have {share} of the estimate"), figure, remedy)
 }
 
-fn kept_impulse(facts: &Facts<'_>) -> Option<Symptom> {
-    let [least, most] = KEPT;
+fn impulse_ratio(facts: &Facts<'_>) -> Option<Symptom> {
+    let [least, most] = IMPULSE_RATIO;
     // A node with a contact of its own touches at other instants in the admissible fields than in the simulation.
-    let kept = facts.kept_impulse.filter(|kept| facts.own_contacts == 0 && !(least..=most).contains(kept))?;
+    let kept =
+        facts.impulse_ratio.filter(|kept| facts.isolated_contact_nodes == 0 && !(least..=most).contains(kept))?;
     let shown = percent(kept);
     let advice = match facts.reconstruction {
         // It drops nothing, but what stops a node goes on for a few steps, and what no contact force can be is cut off.
@@ -192,13 +193,13 @@ fn kept_impulse(facts: &Facts<'_>) -> Option<Symptom> {
              the simulation"
         );
         let brief = format!("{shown} of the contact impulse in the admissible force");
-        return symptom("kept_impulse", brief, figure, advice);
+        return symptom("impulse_ratio", brief, figure, advice);
     }
     let figure = format!(
         "the admissible contact force keeps {shown} of the simulated impulse, and below 90 % the estimate is \
          pessimistic"
     );
-    symptom("kept_impulse", format!("only {shown} of the contact impulse kept"), figure, advice)
+    symptom("impulse_ratio", format!("only {shown} of the contact impulse in the admissible force"), figure, advice)
 }
 
 fn no_contact(facts: &Facts<'_>) -> Option<Symptom> {
@@ -229,31 +230,31 @@ fn slipped(slip: f64) -> Option<Symptom> {
 }
 
 /// Nodes inside the other body, of which only mean gaps are known.
-fn entered(depth: f64) -> Option<Symptom> {
-    if depth <= DEPTH {
+fn penetrating(penetration: f64) -> Option<Symptom> {
+    if penetration <= PENETRATION {
         return None;
     }
-    let edges = short(depth, 2);
+    let edges = short(penetration, 2);
     let figure = format!(
         "a node of a non-matching interface was up to {edges} of its edge inside the other body: its gap is a mean \
          over edges, and its contact force is missing or acts too late"
     );
     let brief = format!("a node was {edges} of its edge inside the other body");
-    symptom("depth", brief, figure, "use shorter edges on both surfaces")
+    symptom("penetration", brief, figure, "use shorter edges on both surfaces")
 }
 
 /// Surfaces whose common normal is that of neither.
-fn leant(slope: f64) -> Option<Symptom> {
-    if slope <= COMMON_SLOPE {
+fn inclined(inclination: f64) -> Option<Symptom> {
+    if inclination <= INCLINATION {
         return None;
     }
-    let angle = short(slope, 2);
+    let angle = short(inclination, 2);
     let figure = format!(
         "surfaces in contact are inclined by up to {angle}° to their common normal, along which all contact forces act"
     );
     let remedy = "define a contact by `groups` of the edges around the point of contact, or one contact for each slope \
                   of a ridge, without the edges at the ridge";
-    symptom("common_slope", format!("surfaces inclined by {angle}° to their common normal"), figure, remedy)
+    symptom("inclined_surfaces", format!("surfaces inclined by {angle}° to their common normal"), figure, remedy)
 }
 
 /// Strains that are not small.

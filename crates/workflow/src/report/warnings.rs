@@ -41,10 +41,10 @@ pub(super) struct Facts<'a> {
     pub(super) steps_vary: bool,
     pub(super) interrupted: bool,
     pub(super) reconstruction: Reconstruction,
-    pub(super) kept_impulse: Option<f64>,
+    pub(super) impulse_ratio: Option<f64>,
     /// Whether a contact force acts at any instant.
     pub(super) touches: bool,
-    pub(super) own_contacts: usize,
+    pub(super) isolated_contact_nodes: usize,
     /// Energy that contact gives to the auxiliary solution, over that of the simulation.
     pub(super) auxiliary_contact_energy: f64,
     /// The first point that would reach a plane again, if the run went on.
@@ -54,9 +54,9 @@ pub(super) struct Facts<'a> {
     /// The farthest that pairs of nodes slip, over their shortest edge.
     pub(super) slip: f64,
     /// The deepest that a node of surfaces that slide was inside the other body, over its shortest edge.
-    pub(super) depth: f64,
-    /// The largest angle by which surfaces that slide and touch lean together from their normal (degrees).
-    pub(super) common_slope: f64,
+    pub(super) penetration: f64,
+    /// The largest angle of surfaces in contact to their common normal (degrees).
+    pub(super) inclination: f64,
     pub(super) linearity: &'a Linearity,
     pub(super) residual: &'a LargestResidual,
     pub(super) flat: Option<&'a FlatElements>,
@@ -65,7 +65,7 @@ pub(super) struct Facts<'a> {
 }
 
 impl Warning {
-    /// Whether it doubts the result, rather than the input or how it was taken.
+    /// Whether it concerns the result, rather than the input or how it was taken.
     #[must_use]
     pub fn doubts_result(&self) -> bool {
         [
@@ -76,11 +76,11 @@ impl Warning {
             "auxiliary_contact_energy",
             "relative_error",
             "flat_elements",
-            "kept_impulse",
+            "impulse_ratio",
             "no_contact",
             "slip",
-            "depth",
-            "common_slope",
+            "penetration",
+            "inclined_surfaces",
             "large_strain",
             "rotation",
         ]

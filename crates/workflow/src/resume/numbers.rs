@@ -3,7 +3,7 @@
 use crate::difference::OF_RUN;
 use percute_core::mesh::Mesh;
 use percute_core::time::TimeGrid;
-use percute_io::history::Kept;
+use percute_io::history::StoredPart;
 use std::collections::BTreeMap;
 use std::fmt::{Debug, Display};
 
@@ -76,9 +76,9 @@ pub(super) fn of_instants(case: &TimeGrid, history: &TimeGrid) -> Option<String>
 }
 
 /// The first difference between what two histories keep.
-pub(super) fn of_kept(case: &Kept, history: &Kept) -> Option<String> {
+pub(super) fn of_kept(case: &StoredPart, history: &StoredPart) -> Option<String> {
     let [one, other] = [case, history].map(|kept| kept.steps.len());
-    let part = |kept: &Kept| [kept.velocity, kept.acceleration, kept.reaction];
+    let part = |kept: &StoredPart| [kept.velocity, kept.acceleration, kept.reaction];
     let kept = |there| if there { "kept" } else { "left out" };
     if one != other {
         return Some(told("[output], the number of instants kept", one, other));
@@ -151,9 +151,13 @@ mod tests {
 
     #[test]
     fn histories_differ_in_a_field_or_an_instant_that_they_keep() {
-        let kept =
-            |steps: &[usize], velocity| Kept { steps: steps.to_vec(), velocity, acceleration: false, reaction: true };
-        let told = |one: &Kept| of_kept(one, &kept(&[0, 2, 4], false));
+        let kept = |steps: &[usize], velocity| StoredPart {
+            steps: steps.to_vec(),
+            velocity,
+            acceleration: false,
+            reaction: true,
+        };
+        let told = |one: &StoredPart| of_kept(one, &kept(&[0, 2, 4], false));
         assert_eq!(told(&kept(&[0, 2, 4], false)), None);
         for (one, words) in [
             (kept(&[0, 4], false), "[output], the number of instants kept is 2 in this case and 3 in the history"),

@@ -42,14 +42,14 @@ pub struct ContactResults {
     pub slip: f64,
     /// The deepest that a node of two surfaces that slide was inside the other body at its own place, along the normal,
     /// over the length of its shortest edge: its gap is a mean. 0 without such nodes.
-    pub depth: f64,
+    pub penetration: f64,
     /// Whether a node of a slave that has touched is at the end of its master: it faces nothing, or is a corner that
     /// faces so little of its edge that its gap is a mean, or that is beyond the end by less than 1e-3 of its edge.
-    pub at_end: bool,
+    pub at_surface_end: bool,
     /// The largest angle by which surfaces of two bodies lean together from the normal of their contact where forces
     /// act, or by which a side leans on which a corner of the slave acts (rad): forces have the direction of the
     /// normal.
-    pub lean: f64,
+    pub inclination: f64,
     /// The largest force, averaged over the time in which a wave crosses the struck element; none without force.
     pub averaged_peak: Option<AveragedPeak>,
     /// The gap that is left where nothing has touched; none without contact surface, or after any touch or force.

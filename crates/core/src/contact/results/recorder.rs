@@ -121,9 +121,9 @@ impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
             total: Vec::new(),
             obstacles: vec![Vec::new(); problem.obstacles().len()],
             slip: 0.0,
-            depth: 0.0,
-            at_end: false,
-            lean: 0.0,
+            penetration: 0.0,
+            at_surface_end: false,
+            inclination: 0.0,
             averaged_peak: None,
             nearest: None,
             steps: None,
@@ -153,10 +153,10 @@ impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
         self.gaps.advance(step.time, touches, gaps);
     }
 
-    /// By which angle surfaces lean where forces act (rad), or have leant before.
-    fn lean(&self) -> f64 {
+    /// The inclination of surfaces where forces act (rad), so far.
+    fn inclination(&self) -> f64 {
         let acts = |at: usize| self.now[at].status != Status::Free;
-        self.leaning.largest(self.results.lean, acts, |sliding| self.facing.shifts(sliding))
+        self.leaning.largest(self.results.inclination, acts, |sliding| self.facing.shifts(sliding))
     }
 
     /// Records one node, which is free up to this normal force (N); returns its share of the resultants.
@@ -174,13 +174,13 @@ impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
             let slip = dot(&aside, &aside).sqrt() / self.shortest[at];
             self.results.slip = self.results.slip.max(slip);
         }
-        let depth = self.facing.depth(at, step.displacement()) / self.shortest[at];
-        self.results.depth = self.results.depth.max(depth);
+        let penetration = self.facing.depth(at, step.displacement()) / self.shortest[at];
+        self.results.penetration = self.results.penetration.max(penetration);
         let summary = &mut self.results.summary[at];
         summary.at(step.time, step.touching[at], normal_force, area);
         let mut sliding = [0.0; D];
         let before = std::mem::replace(&mut self.now[at], NodeState { relative, force, status });
-        self.results.at_end |= summary.first_touch.is_some() && self.facing.is_at_end(at);
+        self.results.at_surface_end |= summary.first_touch.is_some() && self.facing.is_at_end(at);
         if step.index > 0 {
             let dt = self.times.step(step.index - 1);
             let path = std::array::from_fn(|c| relative[c] - before.relative[c]);
@@ -251,7 +251,7 @@ impl<const D: usize, const N: usize> Record for Recorder<'_, D, N> {
             }
         }
         self.averages.sum(step.time, averaged);
-        self.results.lean = self.lean();
+        self.results.inclination = self.inclination();
         let dt = if step.index == 0 { 0.0 } else { self.times.step(step.index - 1) };
         for (sum, over_time) in sums.into_iter().zip(&mut self.results.obstacles) {
             over_time.push(sum.finish(over_time.last(), dt));

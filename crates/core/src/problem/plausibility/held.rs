@@ -59,7 +59,7 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
                 );
                 return Some(plausibility_warning(
                     place,
-                    "edge_left_out",
+                    "edge_excluded",
                     "an edge beside a support that is left out of the contact",
                     message,
                 ));

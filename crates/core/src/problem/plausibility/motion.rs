@@ -70,7 +70,7 @@ fn no_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option
     );
     Some(plausibility_warning(
         at("contact", None, ""),
-        "no_contact_stated",
+        "no_contact_defined",
         "a body without contact with others",
         message,
     ))

@@ -188,7 +188,7 @@ fn halves_may_be_driven_along_their_line() {
             Support { group: "upper.top".to_string(), components: [false, true, false], velocity: Some(velocity) };
         let held = ["lower.left", "upper.left"].map(|group| (group, [true, false]));
         let (normal, warnings) = found(falling(&lower, &upper, &held).support(press));
-        assert!(normal[0] == 0.0 && !warnings.contains(&"edge_left_out"), "{rows}: {normal:?} {warnings:?}");
+        assert!(normal[0] == 0.0 && !warnings.contains(&"edge_excluded"), "{rows}: {normal:?} {warnings:?}");
     }
 }
 
@@ -220,7 +220,7 @@ fn an_edge_beside_a_support_is_left_out() {
         let upper = block(0.01001, 0.0).mapped(|p| [p[0] + wide, p[1]]).unwrap();
         falling(&lower, &upper, &[("lower.left", components)])
     };
-    let warns = |builder| found(builder).1.contains(&"edge_left_out");
+    let warns = |builder| found(builder).1.contains(&"edge_excluded");
     assert!(warns(bodies(0.0, [true, true])) && warns(bodies(0.002, [false, true])));
     // Beside the edge, which is 5 mm long, and with a support along the surface alone.
     assert!(!warns(bodies(0.005, [true, true])) && !warns(bodies(0.0, [true, false])));
@@ -229,5 +229,5 @@ fn an_edge_beside_a_support_is_left_out() {
     assert!(!warns(bodies(0.0, [true, true]).traction(traction)));
     let groups = Between::Groups(["lower.others", "upper.bottom"].map(str::to_string));
     let named = bodies(0.0, [true, true]).contact(Contact::new(2, groups, 0.2, None).unwrap()).build().unwrap();
-    assert!(plausibility_warnings(&named, &steps(&named, 20e-6)).iter().all(|warning| warning.name != "edge_left_out"));
+    assert!(plausibility_warnings(&named, &steps(&named, 20e-6)).iter().all(|warning| warning.name != "edge_excluded"));
 }

@@ -365,7 +365,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         self.concentration.as_ref()
     }
 
-    fn own_contacts(&self) -> usize {
+    fn isolated_contact_nodes(&self) -> usize {
         self.own_forces.count()
     }
 

@@ -48,10 +48,14 @@ pub(super) fn write(
     write("peak_pressure", "Pa", &[nodes], &column(summary, |s| s.peak_pressure))?;
     write("impulse", "N s", &[nodes, d], &vectors(summary, d, |s| s.impulse))?;
     write("time", "s", &[instants], &results.instants)?;
-    let at_end = f64::from(u8::from(results.at_end));
-    let (slip, depth, lean) = (("slip", "", results.slip), ("depth", "", results.depth), ("lean", "rad", results.lean));
-    for (name, of, value) in [slip, depth, lean, ("at_end", "", at_end)].into_iter().filter(|(.., value)| *value > 0.0)
-    {
+    let at_surface_end = f64::from(u8::from(results.at_surface_end));
+    let scalars = [
+        ("slip", "", results.slip),
+        ("penetration", "", results.penetration),
+        ("inclination", "rad", results.inclination),
+        ("at_surface_end", "", at_surface_end),
+    ];
+    for (name, of, value) in scalars.into_iter().filter(|(.., value)| *value > 0.0) {
         write(name, of, &[1], &[value])?;
     }
     if let Some(AveragedPeak { force, time, pressure, at }) = results.averaged_peak {

@@ -58,9 +58,9 @@ impl<'f> Reader<'_, 'f> {
         Ok(ContactResults {
             dimension: self.dimension,
             slip: self.one("slip")?,
-            depth: self.one("depth")?,
-            at_end: self.one("at_end")? > 0.0,
-            lean: self.one("lean")?,
+            penetration: self.one("penetration")?,
+            at_surface_end: self.one("at_surface_end")? > 0.0,
+            inclination: self.one("inclination")?,
             averaged_peak: self.averaged_peak(count)?,
             nearest: Nearest::of_steps(&instants, &nodes, &summary, &steps),
             nodes,

@@ -5,7 +5,7 @@ use super::touches::{Contact, first_contacts};
 use super::uneven::Uneven;
 use crate::deformation::Deformation;
 use crate::foreign::{Checked, Contradiction, by_a_penalty, is_off_contact, off_contact};
-use crate::plan::{Advice, Basis};
+use crate::plan::{Basis, Recommendation};
 use crate::report::flat::FlatElements;
 use crate::report::linearity::Linearity;
 use crate::report::poor::{PoorElement, poor_elements};
@@ -61,11 +61,11 @@ pub(in crate::report) struct Facts {
     /// The farthest that nodes of two bodies in contact were moved along their interface, over their shortest edge.
     pub(super) slip: f64,
     /// The deepest that a node of surfaces that slide was inside the other body, over its shortest edge.
-    pub(super) depth: f64,
+    pub(super) penetration: f64,
     /// Whether a node of surfaces that slide that has touched was at the end of the other surface, or beyond it.
-    pub(super) at_end: bool,
+    pub(super) at_surface_end: bool,
     /// The largest angle by which two surfaces that slide lean together from their common normal (degrees).
-    pub(super) common_slope: f64,
+    pub(super) inclination: f64,
     pub(super) supported: bool,
     /// Part of the squared mean error in elements with a node that touches.
     pub(super) at_contact: f64,
@@ -76,7 +76,7 @@ pub(in crate::report) struct Facts {
     /// Energy that contact gives to the auxiliary solution, over that of the simulation.
     pub(super) auxiliary_contact_energy: f64,
     pub(super) admissible: bool,
-    pub(super) kept_impulse: Option<f64>,
+    pub(super) impulse_ratio: Option<f64>,
     pub(super) expected: Option<Expected>,
     /// Of a history of another program: its first figure over a limit.
     pub(super) inconsistent: Option<Contradiction>,
@@ -96,10 +96,10 @@ pub(in crate::report) struct Facts {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expected {
     /// How half the error is had.
-    pub(super) advice: Advice,
+    pub(super) recommendation: Recommendation,
     /// Whether the layer at a front is a larger source than dispersion.
     pub(super) front: bool,
-    pub(super) half_step: f64,
+    pub(super) halved_step: f64,
 }
 
 /// What is known beside the problem, the contact results and the estimate.
@@ -157,9 +157,9 @@ impl Facts {
             bodies,
             slides: problem.sliding_count() > 0,
             slip: results.slip,
-            depth: results.depth,
-            at_end: results.at_end,
-            common_slope: results.lean.to_degrees(),
+            penetration: results.penetration,
+            at_surface_end: results.at_surface_end,
+            inclination: results.inclination.to_degrees(),
             supported: !problem.prescribed().is_empty(),
             at_contact: at_contact(problem, estimate, results),
             error: estimate.error,
@@ -168,7 +168,7 @@ impl Facts {
             auxiliary_contact_energy: auxiliary_contact_energy(estimate, beside.checked),
             admissible: beside.admissible,
             // A node with a contact of its own touches at other instants in the admissible fields.
-            kept_impulse: estimate.kept_impulse.filter(|_| estimate.own_contacts == 0),
+            impulse_ratio: estimate.impulse_ratio.filter(|_| estimate.isolated_contact_nodes == 0),
             expected: expected(problem, estimate, results),
             inconsistent: beside.checked.and_then(|checked| checked.contradiction.clone()),
             unbalanced: figures.map_or(0.0, |found| found.balance),
@@ -200,9 +200,9 @@ fn other_acceleration(options: Options, dimension: usize) -> Option<Acceleration
 fn expected(problem: &AnyProblem, estimate: &Estimate, results: &ContactResults) -> Option<Expected> {
     let basis = Basis::new(problem.mesh(), estimate, results)?;
     let sources = basis.sources();
-    let half_step = sources.mean_with_half_step()? / estimate.error.mean - 1.0;
+    let halved_step = sources.mean_with_halved_step()? / estimate.error.mean - 1.0;
     let front = sources.mean.front > sources.mean.dispersion;
-    half_step.is_finite().then(|| Expected { advice: Advice::new(&basis), front, half_step })
+    halved_step.is_finite().then(|| Expected { recommendation: Recommendation::new(&basis), front, halved_step })
 }
 
 /// The time from the first touch to the last instant (s); 0 without contact.

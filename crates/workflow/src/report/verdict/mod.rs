@@ -5,17 +5,17 @@ mod facts;
 mod narrow;
 mod onset;
 mod rules;
+mod tested_range;
 mod text;
 mod touches;
 mod uneven;
-mod untested;
 
 pub(super) use facts::{Beside, Facts};
 pub(super) use narrow::NarrowContact;
 pub use touches::Touches;
 
 use super::PoorElement;
-use crate::plan::Advice;
+use crate::plan::Recommendation;
 use percute_estimator::Parts;
 use rules::{RULES, Rule};
 use serde::Serialize;
@@ -75,13 +75,13 @@ pub struct Verdict {
     /// Part of the squared mean error in elements with a node that touches.
     pub at_contact: f64,
     /// Properties of the run that no case of the evidence has.
-    pub untested: Vec<String>,
+    pub outside_tested_range: Vec<String>,
     /// Reasons not to trust the estimate, beside strains and rotations that are not small.
-    pub doubts: Vec<String>,
+    pub reasons: Vec<String>,
     /// Strains and rotations that are not small.
     pub not_small: Vec<String>,
     /// How half the error is had; none without sources, or where they do not separate.
-    pub advice: Option<Advice>,
+    pub recommendation: Option<Recommendation>,
     /// The elements of bad shape with the largest parts of the squared mean error, if such elements matter.
     pub poor_elements: Vec<PoorElement>,
 }
@@ -102,19 +102,19 @@ impl Verdict {
     #[must_use]
     pub(super) fn new(facts: &Facts, parts: &Parts) -> Self {
         let rule = RULES.iter().find(|rule| (rule.applies)(facts)).unwrap_or(&RULES[RULES.len() - 1]);
-        let (untested, shares) = (untested::untested(facts), shares(parts));
-        let (doubts, departures) = (text::doubts(facts, rule), facts.linearity.departures());
-        let far = departures.iter().filter(|departure| departure.is_far).map(|departure| departure.doubt.clone());
-        let all: Vec<String> = doubts.iter().cloned().chain(far).collect();
+        let (outside_tested_range, shares) = (tested_range::outside(facts), shares(parts));
+        let (reasons, departures) = (text::reasons(facts, rule), facts.linearity.departures());
+        let far = departures.iter().filter(|departure| departure.is_far).map(|departure| departure.reason.clone());
+        let all: Vec<String> = reasons.iter().cloned().chain(far).collect();
         let not_small: Vec<String> = departures.into_iter().map(|departure| departure.named).collect();
         let trust = match () {
             () if !all.is_empty() => Trust::Low,
-            () if !untested.is_empty() || !not_small.is_empty() || !within(rule) => Trust::Limited,
+            () if !outside_tested_range.is_empty() || !not_small.is_empty() || !within(rule) => Trust::Limited,
             () => Trust::High,
         };
         Self {
             trust,
-            text: text::sentences(facts, rule, &untested, &all, shares),
+            text: text::sentences(facts, rule, &outside_tested_range, &all, shares),
             effectivity: rules::outside(facts).is_none().then_some(rule.range),
             touches: facts.contact.touches,
             speed_ratio: facts.speed_ratio,
@@ -125,10 +125,10 @@ impl Verdict {
             slenderness: facts.slenderness,
             shares,
             at_contact: facts.at_contact,
-            untested,
-            doubts,
+            outside_tested_range,
+            reasons,
             not_small,
-            advice: facts.expected.map(|expected| expected.advice),
+            recommendation: facts.expected.map(|expected| expected.recommendation),
             poor_elements: facts.poor.clone(),
         }
     }

@@ -3,7 +3,7 @@
 
 use super::facts::Facts;
 use super::touches::Touches;
-use crate::report::symptoms::COMMON_SLOPE;
+use crate::report::symptoms::INCLINATION;
 use percute_estimator::{Acceleration, Reconstruction};
 
 /// A situation that the evidence has, and its effectivity indices.
@@ -15,7 +15,7 @@ pub(super) struct Rule {
     /// The situation in words, after "in tests of".
     pub(super) situation: &'static str,
     /// The reason to distrust the number, if there is one.
-    pub(super) doubt: Option<&'static str>,
+    pub(super) reason: Option<&'static str>,
 }
 
 /// Bodies of less mean thickness over their diagonal bend: 0.13 for the frame of the evidence, 0.18 and more for its
@@ -42,22 +42,22 @@ pub(super) const RULES: [Rule; 28] = [
         applies: |f| f.reconstruction == Reconstruction::Consistent,
         range: [0.23, 18.0],
         situation: "impacts with `consistent`",
-        doubt: Some("`consistent` drops forces; estimate with `corrected`"),
+        reason: Some("`consistent` drops forces; estimate with `corrected`"),
     },
     Rule {
         applies: |f| f.reconstruction == Reconstruction::Published,
         range: [0.27, 65.0],
         situation: "impacts with `published`",
-        doubt: Some("`published` drops forces; estimate with `corrected`"),
+        reason: Some("`published` drops forces; estimate with `corrected`"),
     },
     // See `report/flat.rs`; studies/flat_elements.py.
-    Rule { applies: |f| f.flat, range: [0.95, 10.0], situation: "meshes with nearly flat elements", doubt: None },
+    Rule { applies: |f| f.flat, range: [0.95, 10.0], situation: "meshes with nearly flat elements", reason: None },
     // effectivity-turning.csv, closest.
     Rule {
         applies: |f| f.vibrates_with_closest(),
         range: [1.2, 2.1],
         situation: "bodies that vibrate without contact, with `closest`,",
-        doubt: None,
+        reason: None,
     },
     // effectivity-turning.csv, time-steps-mass.csv: bodies that vibrate freely. 90 random bodies over 1 to 30 periods
     // have 0.81 to 1.39 (studies/random_bodies, vibration).
@@ -65,14 +65,14 @@ pub(super) const RULES: [Rule; 28] = [
         applies: |f| f.contact.touches == Touches::None,
         range: [0.8, 1.4],
         situation: "bodies that vibrate without contact",
-        doubt: None,
+        reason: None,
     },
     // The time from the first touch counts for both planes together.
     Rule {
         applies: |f| f.is_cornered() && f.has_just_begun(),
         range: [0.7, 3.5],
         situation: "impacts just after the first touch",
-        doubt: None,
+        reason: None,
     },
     // studies/corners.py: triangles with an obtuse angle have up to 2.4 at 45 degrees, 4.4 at 30
     // and 8.5 at 20.
@@ -80,21 +80,21 @@ pub(super) const RULES: [Rule; 28] = [
         applies: |f| f.is_cornered() && f.corner.is_some_and(|opening| opening < ACUTE),
         range: [0.9, 10.0],
         situation: "bodies in an acute corner of two planes",
-        doubt: None,
+        reason: None,
     },
     // The same, pressed for 200 µs: 0.88 to 2.07.
     Rule {
         applies: |f| f.is_cornered() && f.passages > LONG,
         range: [0.85, 2.2],
         situation: "bodies pressed for long into the corner of two planes",
-        doubt: None,
+        reason: None,
     },
     // The same, and crates/estimator/tests/corner.rs: 0.90 to 1.57.
     Rule {
         applies: Facts::is_cornered,
         range: [0.89, 1.7],
         situation: "bodies in the corner of two planes",
-        doubt: None,
+        reason: None,
     },
     // speeds.csv, frame; examples/beam.toml (test `as_far_from_the_truth_as_measured`). Random frames, rings and beams
     // have 0.92 to 1.46.
@@ -102,21 +102,21 @@ pub(super) const RULES: [Rule; 28] = [
         applies: |f| f.is_thin() && f.contact.touches != Touches::Edge,
         range: [0.8, 1.6],
         situation: "thin parts that bend",
-        doubt: None,
+        reason: None,
     },
     // bounces-runs.csv: after 3, 5 and 10 phases.
     Rule {
         applies: |f| f.phases > 1,
         range: [0.49, 2.8],
         situation: "several contact phases",
-        doubt: Some("after several contacts, small errors of timing dominate"),
+        reason: Some("after several contacts, small errors of timing dominate"),
     },
     // studies/struck.py has 0.90 to 1.66, random_strikes.py 1.01 to 1.85.
     Rule {
         applies: Facts::slides_on_little,
         range: [0.83, 2.2],
         situation: "corners, curves and parts of an edge on non-matching interfaces",
-        doubt: None,
+        reason: None,
     },
     // crates/estimator/tests/sliding_blocks.rs has 1.08 to 1.37 for surfaces that slide, two_blocks.rs 1.07 to 1.15 for
     // blocks of metals. studies/two_bodies.py has 0.86 to 1.66 for soft and skewed bodies, with
@@ -125,90 +125,90 @@ pub(super) const RULES: [Rule; 28] = [
         applies: |f| f.bodies && f.dimension == 2,
         range: [0.83, 1.8],
         situation: "bodies that strike each other",
-        doubt: None,
+        reason: None,
     },
     // bar-maps.csv at Δt = Δt_c: after release the shortest wave grows.
     Rule {
         applies: |f| f.dimension == 1 && f.courant > 0.99,
         range: [0.5, 1.7],
         situation: "bars at the critical step",
-        doubt: Some("at the critical step a short wave grows after release; take courant = 0.9"),
+        reason: Some("at the critical step a short wave grows after release; take courant = 0.9"),
     },
     // bar-rows.csv.
     Rule {
         applies: |f| f.bodies && f.dimension == 1,
         range: [0.82, 1.26],
         situation: "bars that strike each other",
-        doubt: None,
+        reason: None,
     },
     // bar-maps.csv, effectivity-steps.csv.
-    Rule { applies: |f| f.dimension == 1, range: [0.85, 1.26], situation: "bars that strike a wall", doubt: None },
+    Rule { applies: |f| f.dimension == 1, range: [0.85, 1.26], situation: "bars that strike a wall", reason: None },
     // speeds.csv, trapezoid 45° with a corner of one element, has 1.61 to 1.88; random bodies have 0.97 to 1.35.
     Rule {
         applies: |f| f.contact.single_element,
         range: [0.95, 2.0],
         situation: "obtuse corners of a single element",
-        doubt: None,
+        reason: None,
     },
     // speeds.csv, L tilted by 10°: its second corner arrives at another instant than that of the reference.
     Rule {
         applies: |f| f.contact.zones > 1,
         range: [0.49, 1.8],
         situation: "bodies that touch at several places",
-        doubt: Some("at a second contact zone, a small error of timing is a large error of the motion"),
+        reason: Some("at a second contact zone, a small error of timing is a large error of the motion"),
     },
     // studies/durations.py: the index falls in the first passage, and grows slowly after it.
     Rule {
         applies: Facts::has_just_begun,
         range: [0.7, 3.5],
         situation: "impacts just after the first touch",
-        doubt: None,
+        reason: None,
     },
     Rule {
         applies: |f| f.contact.touches == Touches::Edge && f.passages > LONG,
         range: [0.7, 1.6],
         situation: "flat impacts of up to 10 wave passages",
-        doubt: None,
+        reason: None,
     },
     // effectivity.csv, flat; speeds.csv, flat.
     Rule {
         applies: |f| f.contact.touches == Touches::Edge && f.is_short(),
         range: [0.85, 1.25],
         situation: "flat impacts",
-        doubt: None,
+        reason: None,
     },
     // The same with more passages, shorter steps or larger elements; effectivity-steps.csv, block.
     Rule {
         applies: |f| f.contact.touches == Touches::Edge && f.courant < SHORT.1,
         range: [0.85, 1.6],
         situation: "flat impacts with short steps",
-        doubt: None,
+        reason: None,
     },
     Rule {
         applies: |f| f.contact.touches == Touches::Edge && f.elements_in_contact < SHORT.2,
         range: [0.85, 1.6],
         situation: "flat impacts on few elements",
-        doubt: None,
+        reason: None,
     },
     Rule {
         applies: |f| f.contact.touches == Touches::Edge,
         range: [0.85, 1.6],
         situation: "flat impacts of up to 5 wave passages",
-        doubt: None,
+        reason: None,
     },
     // speeds.csv, trapezoid, flat.
     Rule {
         applies: |f| f.contact.touches == Touches::End,
         range: [0.9, 1.35],
         situation: "edges beside an inclined side",
-        doubt: None,
+        reason: None,
     },
     // effectivity.csv, curved; speeds.csv, curved; bounces-runs.csv after one phase. Random bodies have 1.03 to 1.35.
     Rule {
         applies: |f| f.contact.touches == Touches::Curve,
         range: [0.95, 1.6],
         situation: "impacts of curves",
-        doubt: None,
+        reason: None,
     },
     // effectivity.csv, tilted and corner first; effectivity-steps.csv, tilted block; speeds.csv, corner first;
     // durations.py, short steps.
@@ -216,9 +216,9 @@ pub(super) const RULES: [Rule; 28] = [
         applies: |f| f.contact.touches == Touches::Corner,
         range: [0.85, 1.6],
         situation: "impacts with a corner",
-        doubt: None,
+        reason: None,
     },
-    Rule { applies: |_| true, range: [0.4, 2.8], situation: "impacts", doubt: None },
+    Rule { applies: |_| true, range: [0.4, 2.8], situation: "impacts", reason: None },
 ];
 
 impl Facts {
@@ -269,8 +269,8 @@ pub(super) fn outside(facts: &Facts) -> Option<&'static str> {
         // studies/penalties.py: 1.02 to 2.97 in flat and tilted impacts.
         () if facts.by_a_penalty => Some(PENALTY),
         () if facts.acts_late() => Some(LATE),
-        () if facts.at_end && touches_at_a_point => Some(AT_END),
-        () if facts.common_slope > COMMON_SLOPE => Some(LEANING),
+        () if facts.at_surface_end && touches_at_a_point => Some(AT_SURFACE_END),
+        () if facts.inclination > INCLINATION => Some(INCLINED),
         () => None,
     }
 }
@@ -282,8 +282,8 @@ const LATE: &str = "corners and curves that penetrate the struck edges";
 
 /// Corners that slide off a plate at 100 to 400 m/s: 1.2 to 24; that strike within a 16th of their edge from its end:
 /// up to 9; that are beyond it by less than a thousandth of their edge: up to 41.
-const AT_END: &str =
+const AT_SURFACE_END: &str =
     "corners and curves that slide off the end of the other surface, or strike within 1/16 of an edge of it";
 
 /// The motion differs by a tenth and more from that with a contact for each slope.
-const LEANING: &str = "surfaces inclined to their common normal";
+const INCLINED: &str = "surfaces inclined to their common normal";

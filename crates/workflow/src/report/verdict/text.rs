@@ -9,7 +9,7 @@ use crate::message::{change, percent, short, trimmed, whole_percent};
 use crate::plan::Branch;
 use crate::report::flat;
 use crate::report::poor::PoorElement;
-use crate::report::symptoms::{AUXILIARY_CONTACT_ENERGY, CONTACT_ENERGY, DRIFT, KEPT};
+use crate::report::symptoms::{AUXILIARY_CONTACT_ENERGY, CONTACT_ENERGY, DRIFT, IMPULSE_RATIO};
 use percute_core::contact::Nearest;
 
 /// A mean error above this has as much energy as the deformation and the vibration together.
@@ -24,64 +24,64 @@ const WORTH: f64 = -0.1;
 const FAR: f64 = 100.0;
 
 /// The reasons not to trust the estimate, beside strains and rotations that are not small.
-pub(super) fn doubts(facts: &Facts, rule: &Rule) -> Vec<String> {
-    let mut doubts = Vec::new();
-    let kept = facts.kept_impulse.unwrap_or(1.0);
+pub(super) fn reasons(facts: &Facts, rule: &Rule) -> Vec<String> {
+    let mut reasons = Vec::new();
+    let kept = facts.impulse_ratio.unwrap_or(1.0);
     if !facts.admissible {
-        doubts.push("a residual shows that the fields are not admissible".to_string());
+        reasons.push("a residual shows that the fields are not admissible".to_string());
     }
-    doubts.extend(facts.inconsistent.iter().map(|Contradiction { figure, cause, .. }| {
+    reasons.extend(facts.inconsistent.iter().map(|Contradiction { figure, cause, .. }| {
         let cause = cause.as_ref().map_or(String::new(), |cause| format!(" (likely cause: {cause})"));
         format!("the history is not consistent: {figure}{cause}")
     }));
     // A drift that is no number must not pass.
     if facts.energy_drift.is_nan() || facts.energy_drift > DRIFT {
-        doubts.push(format!("the energy balance is off by {}", whole_percent(facts.energy_drift)));
+        reasons.push(format!("the energy balance is off by {}", whole_percent(facts.energy_drift)));
     }
     if facts.contact_energy > CONTACT_ENERGY {
-        doubts.push(format!("contact forces give the bodies {} of their energy", whole_percent(facts.contact_energy)));
+        reasons.push(format!("contact forces give the bodies {} of their energy", whole_percent(facts.contact_energy)));
     }
     let given = facts.auxiliary_contact_energy;
     if given > AUXILIARY_CONTACT_ENERGY {
         let given = whole_percent(given);
-        doubts.push(format!(
+        reasons.push(format!(
             "contact gives the auxiliary solution {given} of the energy, and the estimate is probably too large"
         ));
     }
     // Beside a fast common motion, the second is small however large the error is.
     if facts.error.relative_mean > AS_VIBRATION || facts.error.published_relative_mean > AS_LARGE {
-        doubts.push("the error is as large as the solution".to_string());
+        reasons.push("the error is as large as the solution".to_string());
     }
-    if !(KEPT[0]..=KEPT[1]).contains(&kept) {
-        doubts.push(format!("the admissible force has {} of the contact impulse", whole_percent(kept)));
+    if !(IMPULSE_RATIO[0]..=IMPULSE_RATIO[1]).contains(&kept) {
+        reasons.push(format!("the admissible force has {} of the contact impulse", whole_percent(kept)));
     }
     if facts.slip > 1.0 {
-        doubts.push(format!("node pairs are up to {} edges apart along the interface", short(facts.slip, 2)));
+        reasons.push(format!("node pairs are up to {} edges apart along the interface", short(facts.slip, 2)));
     }
     if facts.acts_late() {
-        doubts.push(
+        reasons.push(
             "a corner or a curve penetrates the struck edges before their mean gap closes, and its tractions are as \
              wide as these edges; refine that surface"
                 .to_string(),
         );
     }
-    doubts.extend(rule.doubt.map(str::to_string));
-    doubts
+    reasons.extend(rule.reason.map(str::to_string));
+    reasons
 }
 
 /// The sentences: that nothing touched, situation, place, recommendation, elements to repair, stress.
 pub(super) fn sentences(
     facts: &Facts,
     rule: &Rule,
-    untested: &[String],
-    doubts: &[String],
+    outside_tested_range: &[String],
+    reasons: &[String],
     shares: Shares,
 ) -> Vec<String> {
-    if facts.is_exact() && doubts.is_empty() {
+    if facts.is_exact() && reasons.is_empty() {
         let exact = "Nothing deforms: the error is zero to rounding.".to_string();
         return nothing_touched(facts).into_iter().chain([exact]).collect();
     }
-    let usual = [situation(facts, rule, untested), place(facts, shares), recommendation(facts, doubts)];
+    let usual = [situation(facts, rule, outside_tested_range), place(facts, shares), recommendation(facts, reasons)];
     let beside = [repair(&facts.poor), facts.linearity.stress.clone()];
     nothing_touched(facts).into_iter().chain(usual).chain(beside.into_iter().flatten()).collect()
 }
@@ -112,7 +112,7 @@ fn repair(poor: &[PoorElement]) -> Option<String> {
     (!poor.is_empty()).then(told)
 }
 
-fn situation(facts: &Facts, rule: &Rule, untested: &[String]) -> String {
+fn situation(facts: &Facts, rule: &Rule, outside_tested_range: &[String]) -> String {
     let touches = match facts.contact.touches {
         Touches::Edge if facts.dimension == 1 => "An end of the bar touches",
         Touches::Edge => "An edge touches",
@@ -131,11 +131,12 @@ fn situation(facts: &Facts, rule: &Rule, untested: &[String]) -> String {
             format!("in tests of {} the estimate was {least} to {most} times the true error", rule.situation)
         }
     };
-    let untested: Vec<&str> = untested.iter().map(String::as_str).filter(|one| Some(*one) != outside).collect();
-    let missing = if untested.is_empty() {
+    let outside_tested_range: Vec<&str> =
+        outside_tested_range.iter().map(String::as_str).filter(|one| Some(*one) != outside).collect();
+    let missing = if outside_tested_range.is_empty() {
         String::new()
     } else {
-        format!("; outside the tested range: {}", untested.join(", "))
+        format!("; outside the tested range: {}", outside_tested_range.join(", "))
     };
     let near = facts.linearity.departures().into_iter().filter(|departure| !departure.is_far);
     let not_small = near.map(|departure| departure.named).collect::<Vec<_>>().join(", ");
@@ -157,9 +158,9 @@ fn place(facts: &Facts, shares: Shares) -> String {
     )
 }
 
-fn recommendation(facts: &Facts, doubts: &[String]) -> String {
-    if !doubts.is_empty() {
-        return format!("Do not trust the number: {}.", doubts.join("; "));
+fn recommendation(facts: &Facts, reasons: &[String]) -> String {
+    if !reasons.is_empty() {
+        return format!("Do not trust the number: {}.", reasons.join("; "));
     }
     if facts.flat {
         return "Improve the nearly flat elements, or mesh again.".to_string();
@@ -169,23 +170,23 @@ fn recommendation(facts: &Facts, doubts: &[String]) -> String {
         _ => "",
     };
     let Some(expected) = facts.expected else { return format!("{cut}Refine the mesh for a smaller error.") };
-    let steps = if expected.half_step < WORTH {
+    let steps = if expected.halved_step < WORTH {
         "halving the step alone would change it by about"
     } else {
         "shorter steps alone do not help:"
     };
-    let (way, step) = (way(&expected, facts.error.relative_mean), change(expected.half_step));
+    let (way, step) = (way(&expected, facts.error.relative_mean), change(expected.halved_step));
     format!("{cut}{way}; {steps} {step}.")
 }
 
 /// The way to half the mean error.
 fn way(expected: &Expected, error: f64) -> String {
-    let (half, advice) = (percent(0.5 * error), &expected.advice);
+    let (half, recommendation) = (percent(0.5 * error), &expected.recommendation);
     let times = |factor: Option<f64>| factor.map_or_else(|| "many".to_string(), |factor| short(factor, 2));
-    let (finer, cost) = (times(advice.finer), times(advice.cost));
-    let far = advice.cost.is_some_and(|cost| cost > FAR);
-    let about = advice.cost.map_or_else(String::new, |_| format!(" at about {cost} times the cost"));
-    match advice.branch {
+    let (finer, cost) = (times(recommendation.finer), times(recommendation.cost));
+    let far = recommendation.cost.is_some_and(|cost| cost > FAR);
+    let about = recommendation.cost.map_or_else(String::new, |_| format!(" at about {cost} times the cost"));
+    match recommendation.branch {
         Branch::Uniform if far => {
             let cause = match expected.front {
                 true => "the front is discontinuous",

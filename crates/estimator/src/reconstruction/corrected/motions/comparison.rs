@@ -293,8 +293,8 @@ fn compare_energies<const D: usize, const N: usize>(
         let nodes = problem.mesh().nodes_of::<3>()[e];
         problem.surface().nodes().iter().any(|contact| nodes.contains(&contact.node))
     };
-    let [own, half_size, half_step, contact] = levels.map(|level| [level.displacement, level.velocity]);
-    let differences = [minus(&simulated, &own), contact, minus(&half_size, &own), minus(&half_step, &own)];
+    let [own, halved_elements, halved_step, contact] = levels.map(|level| [level.displacement, level.velocity]);
+    let differences = [minus(&simulated, &own), contact, minus(&halved_elements, &own), minus(&halved_step, &own)];
     let product = |a: usize, b: usize| energy(problem, [&differences[a], &differences[b]], |_| true);
     let [whole, square] = [product(0, 0), product(1, 1)];
     let pairs = [
@@ -303,8 +303,8 @@ fn compare_energies<const D: usize, const N: usize>(
         // The product may be small beside the two energies.
         (found.contact, product(0, 1), (whole * square).sqrt()),
         (found.dispersion, whole - 2.0 * product(0, 1) + square, whole + square),
-        (found.half_size, product(2, 2), product(2, 2)),
-        (found.half_step, product(3, 3), product(3, 3)),
+        (found.halved_elements, product(2, 2), product(2, 2)),
+        (found.halved_step, product(3, 3), product(3, 3)),
     ];
     for (k, (found, expected, scale)) in pairs.into_iter().enumerate() {
         // Differences of like motions have lost digits.

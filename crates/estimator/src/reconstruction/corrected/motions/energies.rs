@@ -47,11 +47,11 @@ impl<'p, const D: usize, const N: usize> Energies<'p, D, N> {
             (0..8).for_each(|i| products[i] += sum[1][i]);
         }
         let half = |motion: usize, of: &[f64; 8]| 0.5 * (of[place(motion, 0)] + of[place(motion, 1)]);
-        let [energy, half_size, half_step, square] = [0, 1, 2, 3].map(|motion| half(motion, &squares));
+        let [energy, halved_elements, halved_step, square] = [0, 1, 2, 3].map(|motion| half(motion, &squares));
         let contact = half(0, &products);
         let dispersion = energy - 2.0 * contact + square;
         let near = self.near(&fields.internal, &fields.rate);
-        Difference { energy, near, contact, dispersion, half_size, half_step, halvings: [0.0; 2] }
+        Difference { energy, near, contact, dispersion, halved_elements, halved_step, halvings: [0.0; 2] }
     }
 
     /// The energy of the first difference in the elements with a node that may touch (J).

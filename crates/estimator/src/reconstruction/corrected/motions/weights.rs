@@ -82,8 +82,8 @@ impl BodyWeights {
 
 /// The shares of all motions, with these of the auxiliary solution.
 pub(super) fn shares(auxiliary: Shares) -> [Shares; MOTIONS] {
-    let [half_size, half_step, contact] = BESIDE;
-    [auxiliary, half_size, half_step, contact]
+    let [halved_elements, halved_step, contact] = BESIDE;
+    [auxiliary, halved_elements, halved_step, contact]
 }
 
 impl Weights {

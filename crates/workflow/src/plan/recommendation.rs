@@ -10,7 +10,7 @@ const HALF: f64 = 0.5;
 
 /// How the mean error becomes half of that of a run, and the cost.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Advice {
+pub struct Recommendation {
     /// How elements are made smaller.
     pub branch: Branch,
     /// By which factor all become smaller, of a uniform mesh; none of others.
@@ -19,7 +19,7 @@ pub struct Advice {
     pub cost: Option<f64>,
 }
 
-impl Advice {
+impl Recommendation {
     /// From an estimated run.
     #[must_use]
     pub fn new(basis: &Basis) -> Self {

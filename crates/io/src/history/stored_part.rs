@@ -6,7 +6,7 @@ use percute_core::time::TimeGrid;
 
 /// The part of a run that its history keeps, beside the displacements.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Kept {
+pub struct StoredPart {
     /// The steps, ascending; the first is 0.
     pub steps: Vec<usize>,
     /// Velocities v_n by the scheme.
@@ -17,7 +17,7 @@ pub struct Kept {
     pub reaction: bool,
 }
 
-impl Kept {
+impl StoredPart {
     /// The place of a step among those kept.
     #[must_use]
     pub fn row_of(&self, step: usize) -> Option<usize> {
@@ -27,7 +27,7 @@ impl Kept {
 
 /// The steps of a thinned history in its run.
 #[derive(Clone, Debug)]
-pub struct KeptSteps {
+pub struct StoredSteps {
     /// The number of each instant in the run.
     pub steps: Vec<usize>,
     /// All planned instants of the run (s).
@@ -35,7 +35,7 @@ pub struct KeptSteps {
 }
 
 /// Reads them; `instants` are those of the file.
-pub(super) fn read(ours: &Part<'_>, instants: &[f64]) -> Result<Option<KeptSteps>, FileCause> {
+pub(super) fn read(ours: &Part<'_>, instants: &[f64]) -> Result<Option<StoredSteps>, FileCause> {
     let Some(steps) = ours.optional("steps")? else { return Ok(None) };
     steps.expect(&[instants.len()], "the number of each instant in the run")?;
     let run = ours.data("run_times")?;
@@ -50,5 +50,5 @@ pub(super) fn read(ours: &Part<'_>, instants: &[f64]) -> Result<Option<KeptSteps
         );
         return Err(FileCause::Value { name: steps.name, detail });
     }
-    Ok(Some(KeptSteps { steps: numbers, times }))
+    Ok(Some(StoredSteps { steps: numbers, times }))
 }

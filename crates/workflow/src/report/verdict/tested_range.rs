@@ -4,7 +4,7 @@ use super::facts::Facts;
 use super::rules::{LONG, PENALTY};
 use super::touches::Touches;
 use crate::message::{percent, short};
-use crate::report::symptoms::{DEPTH, SLIP};
+use crate::report::symptoms::{PENETRATION, SLIP};
 
 /// Speeds over the wave speed that the evidence has: 0.4 m/s in ν = 0.45 (9.9 km/s) to 400 m/s in a bar (5.1 km/s).
 pub(super) const SPEEDS: [f64; 2] = [4e-5, 0.08];
@@ -40,77 +40,77 @@ const POISSON: f64 = 0.49;
 const STATED: f64 = 1e-6;
 
 /// The properties of a run that no case of the evidence has.
-pub(super) fn untested(facts: &Facts) -> Vec<String> {
-    let mut untested = Vec::new();
+pub(super) fn outside(facts: &Facts) -> Vec<String> {
+    let mut outside = Vec::new();
     if let Some(ratio) = facts.speed_ratio {
         if ratio > SPEEDS[1] || (ratio > 0.0 && ratio < SPEEDS[0]) {
-            untested.push(format!("an impact velocity of {} of the wave speed", short(ratio, 2)));
+            outside.push(format!("an impact velocity of {} of the wave speed", short(ratio, 2)));
         } else if ratio <= 0.0 {
-            untested.push("no impact velocity".to_string());
+            outside.push("no impact velocity".to_string());
         }
     }
     // Rounding moves the last digits of a stated Courant number; a bar may have the critical step.
     let most = if facts.dimension == 1 { 1.0 } else { STEPS[1] };
     if facts.courant < STEPS[0] * 0.99 || facts.courant > most * 1.01 {
-        untested.push(format!("steps of {} Δt_c", short(facts.courant, 2)));
+        outside.push(format!("steps of {} Δt_c", short(facts.courant, 2)));
     }
     if facts.largest_friction > FRICTION {
-        untested.push(format!("friction above {FRICTION}"));
+        outside.push(format!("friction above {FRICTION}"));
     }
     if let Some(other) = facts.acceleration.filter(|_| !facts.vibrates_with_closest()) {
-        untested.push(format!("acceleration `{other}`"));
+        outside.push(format!("acceleration `{other}`"));
     }
-    untested.extend(untested_of_bodies(facts));
-    untested.extend(at_the_start(facts));
-    untested.extend(of_uneven_meshes(facts));
-    untested.extend(untested_durations(facts));
+    outside.extend(of_bodies(facts));
+    outside.extend(at_the_start(facts));
+    outside.extend(of_uneven_meshes(facts));
+    outside.extend(of_durations(facts));
     if facts.is_thin() && facts.contact.touches == Touches::Edge {
-        untested.push("edge contact of a thin body".to_string());
+        outside.push("edge contact of a thin body".to_string());
     }
     if facts.supported {
-        untested.push("supports".to_string());
+        outside.push("supports".to_string());
     }
-    untested.extend(untested_of_histories(facts));
-    untested
+    outside.extend(of_histories(facts));
+    outside
 }
 
 /// How long after the first touch no case of the evidence ends.
-fn untested_durations(facts: &Facts) -> Vec<String> {
-    let mut untested = Vec::new();
+fn of_durations(facts: &Facts) -> Vec<String> {
+    let mut outside = Vec::new();
     if facts.dimension == 2 && facts.contact.touches != Touches::None && facts.passages > LONGEST {
-        untested.push(format!("{} wave passages", short(facts.passages, 2)));
+        outside.push(format!("{} wave passages", short(facts.passages, 2)));
     }
     if facts.has_just_begun() && facts.passages < SHORTEST {
-        untested.push(format!("{} wave passages after the first touch", short(facts.passages, 2)));
+        outside.push(format!("{} wave passages after the first touch", short(facts.passages, 2)));
     }
     if facts.corner.is_some() && facts.passages > LONG {
-        untested.push(format!("{} wave passages in a corner", short(facts.passages, 2)));
+        outside.push(format!("{} wave passages in a corner", short(facts.passages, 2)));
     }
-    untested
+    outside
 }
 
 /// What no history of the evidence has.
-fn untested_of_histories(facts: &Facts) -> Vec<String> {
-    let mut untested = Vec::new();
+fn of_histories(facts: &Facts) -> Vec<String> {
+    let mut outside = Vec::new();
     if facts.unbalanced > UNBALANCED {
-        untested.push(format!("a force balance off by {}", percent(facts.unbalanced)));
+        outside.push(format!("a force balance off by {}", percent(facts.unbalanced)));
     }
     if facts.by_a_penalty {
-        untested.push(PENALTY.to_string());
+        outside.push(PENALTY.to_string());
     } else if let Some(off) = facts.off_contact {
-        untested.push(format!("contact nodes off their plane by {} of an element", short(off, 2)));
+        outside.push(format!("contact nodes off their plane by {} of an element", short(off, 2)));
     }
     if facts.shifted {
-        untested.push("contact forces of another step".to_string());
+        outside.push("contact forces of another step".to_string());
     }
     if facts.sampled {
-        untested.push("samples instead of steps".to_string());
+        outside.push("samples instead of steps".to_string());
     }
-    untested
+    outside
 }
 
 /// How bodies touch each other where no case of the evidence has it.
-fn untested_of_bodies(facts: &Facts) -> Vec<String> {
+fn of_bodies(facts: &Facts) -> Vec<String> {
     let touches = match facts.contact.touches {
         _ if !facts.bodies || facts.dimension == 1 => None,
         // A mean gap may be open although a corner is inside the other body.
@@ -121,9 +121,9 @@ fn untested_of_bodies(facts: &Facts) -> Vec<String> {
     };
     let edges = |value: f64| short(value, 2);
     let slip = (facts.slip > SLIP).then(|| format!("node pairs with a slip of {} edges", edges(facts.slip)));
-    let depth =
-        (facts.depth > DEPTH).then(|| format!("nodes inside the other body by {} of an edge", edges(facts.depth)));
-    touches.map(str::to_string).into_iter().chain(slip).chain(depth).collect()
+    let penetration = (facts.penetration > PENETRATION)
+        .then(|| format!("nodes inside the other body by {} of an edge", edges(facts.penetration)));
+    touches.map(str::to_string).into_iter().chain(slip).chain(penetration).collect()
 }
 
 /// How the motion begins where no case of the evidence does so.

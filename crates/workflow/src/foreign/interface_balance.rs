@@ -6,7 +6,7 @@ use percute_core::problem::AnyProblem;
 
 /// Sums of forces on two surfaces that slide, against those of their multipliers: the largest of all instants.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Opposite {
+pub(super) struct InterfaceBalance {
     /// The force on the slave beyond that of the multipliers (N): nodes that face nothing have none.
     lost: f64,
     /// The force on the master beyond the opposite one (N).
@@ -15,7 +15,7 @@ pub(super) struct Opposite {
     size: f64,
 }
 
-impl Opposite {
+impl InterfaceBalance {
     /// Takes in an instant, with the forces on the nodes and those of the multipliers (N).
     pub(super) fn take(&mut self, [slave, master]: &[Vec<usize>; 2], reaction: &[Vector], forces: &[Vector]) {
         let total = |of: &[Vector], side: &[usize]| -> Vector {
@@ -100,12 +100,12 @@ mod tests {
         for (at, force) in reaction.iter_mut().enumerate() {
             change(force, facing.has_condition(at), sliding.slave().node_at(at).is_some());
         }
-        let mut opposite = Opposite::default();
+        let mut balance = InterfaceBalance::default();
         let forces = facing.forces(&reaction);
         let [reaction, forces] = [&reaction, &forces].map(|all| vectors_of(all.as_flattened(), 2));
         let any = AnyProblem::from(problem.clone());
-        opposite.take(&any.sides_of_sliding(0), &reaction, &forces);
-        (opposite.share(), opposite.cause(&any, 0))
+        balance.take(&any.sides_of_sliding(0), &reaction, &forces);
+        (balance.share(), balance.cause(&any, 0))
     }
 
     #[test]

@@ -12,7 +12,7 @@ from percute.checks import names, whole
 from percute.errors import InputError
 
 
-def kept(every: int | None, times: ArrayLike | None, fields: Iterable[str] | None, file: str | None) -> _percute._Kept:
+def storage(every: int | None, times: ArrayLike | None, fields: Iterable[str] | None, file: str | None) -> _percute._Storage:
     """Check the part of a run that its file keeps."""
     given = {"every": every, "times": times, "fields": fields}
     named = [name for name, value in given.items() if value is not None]
