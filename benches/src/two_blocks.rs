@@ -24,14 +24,14 @@ pub enum Contact {
     None,
     /// They meet in the second step, in pairs of nodes.
     Pairs,
-    /// The same, with surfaces that slide; the nodes do not match.
-    Sliding,
+    /// The same, with non-matching interfaces; the nodes do not match.
+    NonMatching,
 }
 
 impl Contact {
     /// All of them, with their names.
     pub const ALL: [(Self, &'static str); 3] =
-        [(Self::None, "none"), (Self::Pairs, "pairs"), (Self::Sliding, "sliding")];
+        [(Self::None, "none"), (Self::Pairs, "pairs"), (Self::NonMatching, "non_matching")];
 }
 
 /// The two blocks. Those that slide have 164 elements less, of 41 000.
@@ -41,7 +41,7 @@ impl Contact {
 pub fn two_blocks(contact: Contact) -> Result<Block, Failure> {
     let [width, height] = SIDES;
     let lower = Mesh::rectangle(width, height, CELLS[0], CELLS[1])?;
-    let cells = if contact == Contact::Sliding { OTHER_CELLS } else { CELLS };
+    let cells = if contact == Contact::NonMatching { OTHER_CELLS } else { CELLS };
     let upper = Mesh::rectangle(width, height, cells[0], cells[1])?;
     let at = |gap: f64| -> Result<TriangleProblem, Failure> {
         let upper = translated(&upper, [0.0, height + gap])?;
@@ -53,7 +53,7 @@ pub fn two_blocks(contact: Contact) -> Result<Block, Failure> {
         let builder = match contact {
             Contact::None => builder,
             Contact::Pairs => builder.interface(Interface::matching(2, "upper.bottom", "lower.top", 0.2)?),
-            Contact::Sliding => builder.interface(Interface::sliding(2, "upper.bottom", "lower.top", 0.2)?),
+            Contact::NonMatching => builder.interface(Interface::non_matching(2, "upper.bottom", "lower.top", 0.2)?),
         };
         Ok(builder.build()?)
     };

@@ -40,7 +40,7 @@ from percute.estimating import estimate
 from percute.estimation import Estimate
 from percute.files import open, resume, run
 from percute.history import History
-from percute.impacts import BodyMotion, Impacts, InterfaceRebound, SlidingEstimate
+from percute.impacts import BodyMotion, Impacts, InterfaceRebound, NonMatchingEstimate
 from percute.iterations import Iterations
 from percute.mesh import Mesh
 from percute.names import name_arguments as _name_arguments
@@ -98,7 +98,7 @@ __all__ = [
     "Separation",
     "SimulationError",
     "SimulationWarning",
-    "SlidingEstimate",
+    "NonMatchingEstimate",
     "Sources",
     "SourcesOverTime",
     "StorageError",

@@ -18,7 +18,7 @@ from percute.deformation import ContactPeak, Deformation, Nearest, PoorElement
 from percute.documents import optional, records
 from percute.history import History
 from percute.immutable import Immutable
-from percute.impacts import Impacts, SlidingEstimate
+from percute.impacts import Impacts, NonMatchingEstimate
 from percute.mesh import Mesh
 from percute.problem import Problem
 from percute.rebound import Rebound
@@ -174,9 +174,9 @@ class ErrorResults(Immutable):
         return optional(Nearest, (self._verdict.get("contact") or {}).get("nearest"))
 
     @cached_property
-    def sliding(self) -> tuple[SlidingEstimate, ...]:
+    def non_matching(self) -> tuple[NonMatchingEstimate, ...]:
         """The estimate at non-matching interfaces, in the order of ``problem.contacts``; empty without any."""
-        return records(SlidingEstimate, ({"couple": None, **each} for each in self._verdict.get("sliding", ())))
+        return records(NonMatchingEstimate, ({"couple": None, **each} for each in self._verdict.get("non_matching", ())))
 
     @property
     def impulse_ratio(self) -> float | None:

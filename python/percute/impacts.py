@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from percute.documents import record
 
-__all__ = ["BodyMotion", "Impacts", "InterfaceRebound", "SlidingEstimate"]
+__all__ = ["BodyMotion", "Impacts", "InterfaceRebound", "NonMatchingEstimate"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -77,7 +77,7 @@ class Impacts:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SlidingEstimate:
+class NonMatchingEstimate:
     """The estimate at a non-matching interface."""
 
     groups: tuple[str, str]

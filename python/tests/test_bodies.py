@@ -92,7 +92,7 @@ def test_surfaces_that_do_not_match(tmp_path: Path) -> None:
     impacts = history.impacts
     assert impacts is not None and impacts.interfaces[0].first_touch is not None
     estimate = pc.estimate(history)
-    (surfaces,) = estimate.sliding
+    (surfaces,) = estimate.non_matching
     assert surfaces.groups == impacts.interfaces[0].groups
     # Cells cut along one diagonal move the surfaces along each other a little.
     assert 0.0 < surfaces.slide < 1e-5 and 0.0 < surfaces.lift < 2e-6 and surfaces.rounds >= 2 and 0.0 < surfaces.stress < 0.05
@@ -103,7 +103,7 @@ def test_surfaces_that_do_not_match(tmp_path: Path) -> None:
     couple = np.abs((press * places).sum(axis=1)).max() / force.max()
     assert surfaces.couple == pytest.approx(couple, rel=1e-6)
     estimate.save(tmp_path / "unlike.vtkhdf")
-    assert pc.open(tmp_path / "unlike.vtkhdf").sliding == estimate.sliding
+    assert pc.open(tmp_path / "unlike.vtkhdf").non_matching == estimate.non_matching
     (tmp_path / "unlike.vtkhdf").unlink()
     stored = pc.simulate(problem, end=14e-6, courant=0.9, store=tmp_path / "unlike.vtkhdf")
     again = pc.open(tmp_path / "unlike.vtkhdf")

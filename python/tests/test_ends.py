@@ -1,4 +1,4 @@
-"""Ends of surfaces that slide along the edges of the other one."""
+"""Ends of non-matching interfaces along the edges of the other one."""
 
 import pytest
 from studies import ends

@@ -1,4 +1,4 @@
-"""Histories of other programs with surfaces that slide: read, checked and refused, in memory and from files."""
+"""Histories of other programs with non-matching interfaces: read, checked and refused, in memory and from files."""
 
 import json
 import re

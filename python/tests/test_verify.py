@@ -320,7 +320,7 @@ def test_the_command(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["bar", "two_bars", "stack", "sliding_blocks"])
 def test_the_page_has_the_rows_of_the_examples(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The cheapest rows of the table of docs/verdict.md, and one of surfaces that slide."""
+    """The cheapest rows of the table of docs/verdict.md, and one of non-matching interfaces."""
     monkeypatch.syspath_prepend(str(EXAMPLES.parent / "tools"))
     verdict_rows = importlib.import_module("verdict_rows")
     (written,) = (found for found in verdict_rows.ROW.finditer(verdict_rows.PAGE.read_text(encoding="utf-8")) if found[1] == name)

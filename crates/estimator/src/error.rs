@@ -24,7 +24,7 @@ pub enum EstimateError {
     /// Maps that cannot be kept.
     #[error(transparent)]
     Request(#[from] RequestError),
-    /// Surfaces that slide along each other, with a reconstruction that has none.
+    /// A non-matching interface, with a reconstruction that has none.
     #[error(
         "\"{}\" and \"{}\" are a non-matching interface, and only the reconstruction \"corrected\" estimates the error \
          of such contact; choose it, or define the contact as matching",

@@ -133,7 +133,7 @@ pub struct Supplied {
     pub acceleration: bool,
 }
 
-/// The estimate at two surfaces that slide along each other (`docs/bodies.md`).
+/// The estimate at a non-matching interface (`docs/bodies.md`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SurfaceEstimate {
     /// How far they are along each other from their places at the start, at most (m).
@@ -173,9 +173,9 @@ pub struct Estimate {
     /// The largest energy that contact has given to the auxiliary solution, over the largest kinetic and strain energy
     /// of the simulation: no contact gives any.
     pub auxiliary_contact_energy: f64,
-    /// That at surfaces that slide along each other, in the order of [`ContactSurface::sliding`].
+    /// That at non-matching interfaces, in the order of [`ContactSurface::non_matching`].
     ///
-    /// [`ContactSurface::sliding`]: percute_core::contact::ContactSurface::sliding
+    /// [`ContactSurface::non_matching`]: percute_core::contact::ContactSurface::sliding
     pub surfaces: Vec<SurfaceEstimate>,
     /// Where velocities and accelerations came from.
     pub supplied: Supplied,

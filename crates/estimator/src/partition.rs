@@ -1,6 +1,6 @@
-//! Pieces of the partition of two surfaces that slide along each other.
+//! Pieces of the partition of a non-matching interface.
 
-use percute_core::contact::{Coupling, SlidingSurfaces};
+use percute_core::contact::{Coupling, NonMatchingSurfaces};
 
 /// A part of the partition, on one edge of each surface.
 #[derive(Clone, Copy, Debug)]
@@ -21,14 +21,15 @@ pub(crate) struct Piece {
 
 /// All pieces, in ascending order of ξ on each part of the slave.
 pub(crate) fn pieces<'a, const D: usize>(
-    sliding: &'a SlidingSurfaces<D>,
+    non_matching: &'a NonMatchingSurfaces<D>,
     coupling: &'a Coupling,
 ) -> impl Iterator<Item = Piece> + 'a {
     let hat = |ends: [f64; 2], from: f64, to: f64| ends.map(|end| ((end - from) / (to - from)).clamp(0.0, 1.0));
     coupling.segments().iter().map(move |segment| {
-        let (first, other) = (sliding.slave().edges()[segment.slave], sliding.master().edges()[segment.master]);
-        let part = sliding.slave().part_of_edge(segment.slave);
-        let (xi, places) = (sliding.slave().xi(), coupling.places(part));
+        let (first, other) =
+            (non_matching.slave().edges()[segment.slave], non_matching.master().edges()[segment.master]);
+        let part = non_matching.slave().part_of_edge(segment.slave);
+        let (xi, places) = (non_matching.slave().xi(), coupling.places(part));
         Piece {
             slave: [segment.slave, first],
             master: [segment.master, other],

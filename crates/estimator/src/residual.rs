@@ -48,7 +48,7 @@ pub struct Residuals {
     pub hat_resultants: f64,
     /// Divergence of the stress of hats, its tractions on the sides of sub-triangles, and their continuity inside.
     pub hat_stress: f64,
-    /// Force and couple of the densities on two surfaces that slide along each other: opposite.
+    /// Force and couple of the densities on both sides of a non-matching interface: opposite.
     #[serde(default)]
     pub opposite_forces: f64,
 }

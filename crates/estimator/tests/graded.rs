@@ -37,9 +37,9 @@ fn estimate(problem: &TriangleProblem, courant: f64) -> Estimate {
 }
 
 /// On a sound estimate contact gives the auxiliary solution no energy, and a refined corner changes the error little:
-/// the rest of the body has it. Where own forces are found for a motion that is not made, or answer the gap of the node
-/// instead of the mean gap of their traction, these corners have 8 to 67 %, and contact gives up to ten times the
-/// energy.
+/// the rest of the body has it. Where auxiliary contact forces are found for a motion that is not made, or answer the
+/// gap of the node instead of the mean gap of their traction, these corners have 8 to 67 %, and contact gives up to ten
+/// times the energy.
 #[test]
 fn a_refined_corner_changes_little() {
     let found: Vec<_> = [(4, 0.9), (5, 0.9), (5, 0.5)]

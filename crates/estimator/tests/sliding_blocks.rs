@@ -133,7 +133,7 @@ impl Row {
             .material_of("upper", aluminium)
             .material_of("lower", if self.steel { steel } else { aluminium })
             .initial_velocity(Initial::Nodal(velocity))
-            .interface(Interface::sliding(2, "upper.bottom", "lower.top", self.friction).unwrap())
+            .interface(Interface::non_matching(2, "upper.bottom", "lower.top", self.friction).unwrap())
             .build()
             .unwrap()
     }

@@ -30,7 +30,7 @@ pub(crate) fn export(
     let instants = if choice.2.is_some() { "`times`" } else { "`steps`" };
     let names = Names { path: "`path`", instants, fields: "`fields`", estimate: "`estimate`" };
     let lacks = history.run.file().and_then(lacks);
-    let kept = history.run.file().and_then(|file| Some(file.stored_steps()?.steps.clone()));
+    let kept = history.run.file().and_then(|file| Some(file.thinned_steps()?.steps.clone()));
     let request = Request { lacks, kept, names, steps: chosen(choice), fields, error };
     let run = history.run.clone();
     let work = move |mut watch: Watch| -> Result<Vec<PathBuf>, Failure> {

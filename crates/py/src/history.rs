@@ -225,7 +225,7 @@ impl HistoryData {
 
     /// The number of each instant in the run of a thinned history; none for one with all steps.
     fn steps<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<i64>>> {
-        let kept = self.run.file()?.stored_steps()?;
+        let kept = self.run.file()?.thinned_steps()?;
         Some(view::column(py, &kept.steps[..self.run.count()], |n| *n as i64))
     }
 

@@ -36,10 +36,10 @@ use std::time::Instant;
 pub(crate) type Times = (Option<f64>, Option<f64>, Option<f64>, Option<Vec<f64>>);
 
 /// The part of a run that its file keeps: every k-th step, or times (s); and names of fields.
-type Storage = (Option<usize>, Option<Vec<f64>>, Option<Vec<String>>);
+type StorageOptions = (Option<usize>, Option<Vec<f64>>, Option<Vec<String>>);
 
 /// Checks it against the instants of the run.
-fn keep_of(py: Python<'_>, (every, wanted, fields): Storage, times: &TimeGrid) -> PyResult<Keep> {
+fn keep_of(py: Python<'_>, (every, wanted, fields): StorageOptions, times: &TimeGrid) -> PyResult<Keep> {
     let steps = match (every, wanted) {
         (Some(every), _) => StepChoice::Every(every),
         (None, Some(wanted)) => StepChoice::Times(wanted),
@@ -60,7 +60,7 @@ pub(crate) fn simulate(
     problem: &ProblemData,
     times: Times,
     store: Option<PathBuf>,
-    keep: Storage,
+    keep: StorageOptions,
     overwrite: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(HistoryData, Option<String>)> {

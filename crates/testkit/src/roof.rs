@@ -102,7 +102,7 @@ impl Roof {
         Ok(TriangleProblem::builder(self.mesh(&mesh)?)
             .material(aluminium()?)
             .initial_velocity(velocity)
-            .interface(Interface::sliding(2, "roof.bottom", "plate.top", FRICTION)?))
+            .interface(Interface::non_matching(2, "roof.bottom", "plate.top", FRICTION)?))
     }
 
     fn mesh(&self, mesh: &Mesh) -> Result<Mesh, MeshError> {

@@ -62,7 +62,7 @@ pub fn open(path: &Path) -> Result<Stored, Failure> {
 /// The fields that a thinned history lacks; none for one with all steps, from which all fields follow.
 #[must_use]
 pub fn lacks(file: &HistoryFile) -> Option<Vec<&'static str>> {
-    file.stored_steps()?;
+    file.thinned_steps()?;
     let [velocity, acceleration] = file.stored();
     let there = [("velocity", velocity), ("acceleration", acceleration), ("reaction", !file.lacks_reactions())];
     Some(there.into_iter().filter(|(_, there)| !there).map(|(name, _)| name).collect())

@@ -109,10 +109,10 @@ fn meetings(problem: &AnyProblem, body_of_node: &[usize]) -> Vec<Meeting> {
         }
     }
     let of_obstacle = |(at, of): (usize, &Vec<usize>)| {
-        let (opposite, frame) = (problem.opposite_obstacle(at), problem.obstacle(at).frame());
+        let (partner, frame) = (problem.partner_obstacle(at), problem.obstacle(at).frame());
         let others: Vec<Option<usize>> =
-            opposite.map_or(vec![None], |opposite| bodies[opposite].iter().copied().map(Some).collect());
-        let first = opposite.is_none_or(|opposite| at < opposite);
+            partner.map_or(vec![None], |partner| bodies[partner].iter().copied().map(Some).collect());
+        let first = partner.is_none_or(|partner| at < partner);
         let of = if first { of.clone() } else { Vec::new() };
         of.into_iter().flat_map(move |body| others.clone().into_iter().map(move |other| Meeting { frame, body, other }))
     };

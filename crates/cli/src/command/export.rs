@@ -23,7 +23,7 @@ pub(super) fn command(arguments: &ExportArguments, console: &mut Console<'_>) ->
     let names = Names { path: "--output", instants, fields: "--fields", estimate: "--estimate" };
     let request = Request {
         lacks: lacks(&stored.file),
-        kept: stored.file.stored_steps().map(|kept| kept.steps.clone()),
+        kept: stored.file.thinned_steps().map(|kept| kept.steps.clone()),
         names,
         steps: choice(arguments),
         fields: arguments.fields.clone(),

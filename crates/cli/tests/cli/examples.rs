@@ -35,7 +35,7 @@ const EXAMPLES: [Example; 13] = [
     Example("beam", "result    sup 38.1 % (1.091 J^½ at 2.9906e-4 s), mean 25.9 %", 0.974),
 ];
 
-/// Those with surfaces that slide, of which `corrected` alone has an estimate.
+/// Those with non-matching interfaces, of which `corrected` alone has an estimate.
 const SLIDING: [&str; 3] = ["block_on_two", "disc_on_plate", "sliding_blocks"];
 
 fn folder() -> PathBuf {

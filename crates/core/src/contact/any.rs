@@ -1,6 +1,6 @@
 //! Obstacles and the nodes that face them, of either dimension.
 
-use super::{Coulomb, Facing, Frame, Obstacle, ObstacleError, Plane};
+use super::{ContactConfiguration, Coulomb, Frame, Obstacle, ObstacleError, Plane};
 use crate::border::{Vector, cut, padded, vectors};
 use std::any::Any;
 
@@ -91,8 +91,8 @@ impl AnyObstacle {
 
     /// The interface whose nodes do not face each other, of which it is a side.
     #[must_use]
-    pub fn sliding(&self) -> Option<usize> {
-        on!(self, obstacle => obstacle.sliding())
+    pub fn non_matching(&self) -> Option<usize> {
+        on!(self, obstacle => obstacle.non_matching())
     }
 
     /// Whether it is a plane; else it is the surface of another body.
@@ -123,48 +123,48 @@ impl AnyObstacle {
     }
 }
 
-/// What the nodes of the contact surface face at an instant, in either dimension. Fields are in rows.
+/// The contact surface at an instant, in either dimension. Fields are in rows.
 #[derive(Clone, Debug)]
-pub enum AnyFacing<'a> {
+pub enum AnyContactConfiguration<'a> {
     /// Of a bar.
-    D1(Facing<'a, 1>),
+    D1(ContactConfiguration<'a, 1>),
     /// Of a plane body.
-    D2(Facing<'a, 2>),
+    D2(ContactConfiguration<'a, 2>),
 }
 
-impl AnyFacing<'_> {
-    /// A nodal field at a node less that at what it faces: [`Facing::relative`].
+impl AnyContactConfiguration<'_> {
+    /// A nodal field at a node less that at its counterpart: [`ContactConfiguration::relative`].
     #[must_use]
     pub fn relative(&self, at: usize, field: &[f64]) -> Vector {
-        on!(self, facing => padded(&facing.relative(at, vectors(field))))
+        on!(self, configuration => padded(&configuration.relative(at, vectors(field))))
     }
 
-    /// The gap of a node (m): [`Facing::gap`].
+    /// The gap of a node (m): [`ContactConfiguration::gap`].
     #[must_use]
     pub fn gap(&self, at: usize, displacement: &[f64]) -> f64 {
-        on!(self, facing => facing.gap(at, vectors(displacement)))
+        on!(self, configuration => configuration.gap(at, vectors(displacement)))
     }
 
-    /// How far a condition gives way (m): [`Facing::give`].
+    /// How far a condition gives way (m): [`ContactConfiguration::give`].
     #[must_use]
     pub fn give(&self, at: usize, forces: &[f64]) -> f64 {
-        on!(self, facing => facing.give(at, vectors(forces)))
+        on!(self, configuration => configuration.give(at, vectors(forces)))
     }
 
-    /// Whether a node has a condition of contact: [`Facing::has_condition`].
+    /// Whether a node has a condition of contact: [`ContactConfiguration::has_condition`].
     #[must_use]
     pub fn has_condition(&self, at: usize) -> bool {
-        on!(self, facing => facing.has_condition(at))
+        on!(self, configuration => configuration.has_condition(at))
     }
 
-    /// The forces that the conditions are about (N): [`Facing::forces`].
+    /// The forces that the conditions are about (N): [`ContactConfiguration::forces`].
     #[must_use]
     pub fn forces(&self, reaction: &[f64]) -> Vec<f64> {
-        on!(self, facing => facing.forces(vectors(reaction)).into_flattened())
+        on!(self, configuration => configuration.forces(vectors(reaction)).into_flattened())
     }
 
-    /// Gives masters the status that follows from that of their slaves: [`Facing::settle_masters`].
+    /// Gives masters the status that follows from that of their slaves: [`ContactConfiguration::settle_masters`].
     pub fn settle_masters(&self, touching: &mut [bool]) {
-        on!(self, facing => facing.settle_masters(touching));
+        on!(self, configuration => configuration.settle_masters(touching));
     }
 }

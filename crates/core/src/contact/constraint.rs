@@ -36,7 +36,7 @@ impl<const D: usize> Constraint<D> {
 /// The constraints of a step, in the order of the contact surface.
 #[derive(Clone, Debug)]
 pub(crate) struct Constraints<const D: usize> {
-    /// The nodes that may have one, by their position. Those of surfaces that slide have none here.
+    /// The nodes that may have one, by their position. Those of non-matching interfaces have none here.
     candidates: Vec<usize>,
     /// [`ContactSurface::moved_mass`] of all nodes (kg).
     moved: Vec<f64>,
@@ -58,8 +58,8 @@ impl<const D: usize> Motion<D> {
     #[inline]
     fn new(surface: &ContactSurface<D>, at: usize, prediction: &Prediction<'_, D>) -> Self {
         let mut motion = prediction.nodes[at];
-        if let Some(opposite) = surface.nodes()[at].opposite {
-            motion = motion.against(&prediction.nodes[opposite]);
+        if let Some(partner) = surface.nodes()[at].partner {
+            motion = motion.against(&prediction.nodes[partner]);
         }
         let frame = surface.frame(at, &motion.displacement);
         let gap = surface.gap(at, &motion.displacement) + prediction.steps[0] * dot(&motion.velocity, frame.normal());
@@ -71,7 +71,7 @@ impl<const D: usize> Constraints<D> {
     /// From the masses of all nodes (kg).
     pub(crate) fn new(surface: &ContactSurface<D>, mass: &[f64]) -> Self {
         let nodes = surface.nodes();
-        let has = |at: &usize| nodes[*at].free && surface.leads(*at) && surface.sliding_of(*at).is_none();
+        let has = |at: &usize| nodes[*at].free && surface.leads(*at) && surface.non_matching_of(*at).is_none();
         Self {
             candidates: (0..nodes.len()).filter(has).collect(),
             moved: (0..nodes.len()).map(|at| surface.moved_mass(at, mass)).collect(),
@@ -92,16 +92,16 @@ impl<const D: usize> Constraints<D> {
             Constraint { at, frame, law, mass, gap, velocity }
         };
         for &at in &*candidates {
-            let beside = nodes[at].beside.filter(|&beside| nodes[beside].free);
-            if beside.is_some_and(|beside| beside < at) {
+            let second_slot = nodes[at].second_slot.filter(|&second_slot| nodes[second_slot].free);
+            if second_slot.is_some_and(|second_slot| second_slot < at) {
                 continue;
             }
             let own = Motion::new(surface, at, prediction);
             let violated = is_violated(&own);
-            if let Some(beside) = beside {
-                let other = Motion::new(surface, beside, prediction);
+            if let Some(second_slot) = second_slot {
+                let other = Motion::new(surface, second_slot, prediction);
                 if violated || is_violated(&other) {
-                    corners.push([(at, own), (beside, other)].map(|(at, motion)| constraint(at, motion)));
+                    corners.push([(at, own), (second_slot, other)].map(|(at, motion)| constraint(at, motion)));
                 }
             } else if violated {
                 single.push(constraint(at, own));

@@ -34,7 +34,7 @@ impl Interface {
     ///
     /// # Errors
     /// As [`Interface::matching`].
-    pub fn sliding(
+    pub fn non_matching(
         dimension: usize,
         first: impl Into<String>,
         second: impl Into<String>,

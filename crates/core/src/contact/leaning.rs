@@ -1,6 +1,6 @@
 //! By how much surfaces that touch face each other along another direction than the normal of their contact.
 
-use super::mortar::{Side, SlidingSurfaces};
+use super::mortar::{NonMatchingSurfaces, Side};
 use super::surface::ContactSurface;
 use super::{dot, tangent};
 use crate::mesh::Mesh;
@@ -12,12 +12,12 @@ pub struct Leaning<'s, const D: usize> {
     surface: &'s ContactSurface<D>,
     /// Edges of pairs that lean together, by the positions of their nodes, and by which angle (rad).
     pairs: Vec<([usize; D], f64)>,
-    sliding: Vec<Slopes>,
+    non_matching: Vec<Slopes>,
     /// Whether each node is inside a surface although it is at its end, as on a line of symmetry.
     inside: Vec<bool>,
 }
 
-/// The angles of the edges of the slave and of the master of surfaces that slide (rad).
+/// The angles of the edges of the slave and of the master of non-matching interfaces (rad).
 #[derive(Clone, Debug)]
 struct Slopes {
     slave: Vec<f64>,
@@ -34,36 +34,37 @@ impl<'s, const D: usize> Leaning<'s, D> {
     #[must_use]
     pub fn new(surface: &'s ContactSurface<D>, mesh: &Mesh, inside: Vec<bool>) -> Self {
         // Bars are in a row.
-        let (pairs, sliding) = if D == 1 {
+        let (pairs, non_matching) = if D == 1 {
             (Vec::new(), Vec::new())
         } else {
-            (pairs(surface, mesh), surface.sliding().iter().map(Slopes::new).collect())
+            (pairs(surface, mesh), surface.non_matching().iter().map(Slopes::new).collect())
         };
-        Self { surface, pairs, sliding, inside }
+        Self { surface, pairs, non_matching, inside }
     }
 
     /// The largest angle (rad) by which surfaces lean where they are at an instant, or `least` if that is larger: the
     /// angle by which two edges lean to the same side, with forces on all of their nodes, and that of an edge at which
     /// a force acts on a corner of the slave. `acts` says whether a force acts on a node. `shifts` has how far
-    /// the parts of the slave are along the tangent against the master (m), of surfaces that slide, by their number.
+    /// the parts of the slave are along the tangent against the master (m), of non-matching interfaces, by their
+    /// number.
     #[must_use]
     pub fn largest<'a>(&self, least: f64, acts: impl Fn(usize) -> bool, shifts: impl Fn(usize) -> &'a [f64]) -> f64 {
         let paired = self.pairs.iter().filter(|(nodes, lean)| *lean > least && nodes.iter().all(|&at| acts(at)));
         let mut largest = paired.fold(least, |most, (_, lean)| most.max(*lean));
-        for (index, slopes) in self.sliding.iter().enumerate().filter(|(_, slopes)| slopes.largest > least) {
-            let found = self.of_sliding((&self.surface.sliding()[index], slopes), &acts, shifts(index));
+        for (index, slopes) in self.non_matching.iter().enumerate().filter(|(_, slopes)| slopes.largest > least) {
+            let found = self.of_non_matching((&self.surface.non_matching()[index], slopes), &acts, shifts(index));
             largest = largest.max(found);
         }
         largest
     }
 
-    fn of_sliding(
+    fn of_non_matching(
         &self,
-        (sliding, slopes): (&SlidingSurfaces<D>, &Slopes),
+        (non_matching, slopes): (&NonMatchingSurfaces<D>, &Slopes),
         acts: &impl Fn(usize) -> bool,
         shifts: &[f64],
     ) -> f64 {
-        let (slave, master, tolerance) = (sliding.slave(), sliding.master(), sliding.tolerance());
+        let (slave, master, tolerance) = (non_matching.slave(), non_matching.master(), non_matching.tolerance());
         let acts_on = |side: &Side, first: usize| [first, first + 1].iter().all(|&node| acts(side.position(node)));
         let place = |node: usize| slave.xi()[node] + shifts[slave.part_of(node)];
         let mut largest = 0.0_f64;
@@ -91,8 +92,8 @@ fn lean_at(slopes: &[f64], edges: impl Iterator<Item = usize>) -> f64 {
 }
 
 impl Slopes {
-    fn new<const D: usize>(sliding: &SlidingSurfaces<D>) -> Self {
-        let [slave, master] = [sliding.slave(), sliding.master()].map(|side| {
+    fn new<const D: usize>(non_matching: &NonMatchingSurfaces<D>) -> Self {
+        let [slave, master] = [non_matching.slave(), non_matching.master()].map(|side| {
             let slope = |&first: &usize| {
                 let [xi, eta] = [side.xi(), side.eta()].map(|values| values[first + 1] - values[first]);
                 let angle = eta.atan2(xi);
@@ -112,7 +113,7 @@ fn common(one: f64, other: f64) -> f64 {
 
 /// The edges of pairs of nodes that lean together, and by which angle (rad).
 fn pairs<const D: usize>(surface: &ContactSurface<D>, mesh: &Mesh) -> Vec<([usize; D], f64)> {
-    let opposite = |at: usize| surface.nodes()[at].opposite;
+    let partner = |at: usize| surface.nodes()[at].partner;
     let sorted = |mut nodes: [usize; D]| {
         nodes.sort_unstable();
         nodes
@@ -120,7 +121,7 @@ fn pairs<const D: usize>(surface: &ContactSurface<D>, mesh: &Mesh) -> Vec<([usiz
     let faces: BTreeMap<[usize; D], _> = surface.faces().iter().map(|face| (sorted(face.nodes), face)).collect();
     let mut leaning = Vec::new();
     for face in surface.faces() {
-        let other = face.nodes.map(|at| opposite(at).unwrap_or(at));
+        let other = face.nodes.map(|at| partner(at).unwrap_or(at));
         let Some(other) = faces.get(&sorted(other)).filter(|other| other.face != face.face) else { continue };
         let frame = surface.obstacles()[face.obstacle].flat_frame();
         let (normal, along) = (frame.normal(), tangent(frame.normal()));

@@ -54,8 +54,8 @@ pub struct Obstacle<const D: usize> {
 #[derive(Clone, Debug, PartialEq)]
 enum Shape<const D: usize> {
     Plane(Plane<D>),
-    /// The surface of another body, which moves; its frame does not turn. With the index of the surfaces that slide, if
-    /// they do.
+    /// The surface of another body, which moves; its frame does not turn. With the index of the non-matching
+    /// interfaces, if they do.
     Surface(Frame<D>, Option<usize>),
 }
 
@@ -109,18 +109,18 @@ impl<const D: usize> Obstacle<D> {
     }
 
     /// The surface of another body, as a group of faces meets it; `normal` is the unit normal from there to the group.
-    /// With `sliding`, the two slide along each other: it is their index in the contact surface.
-    pub(crate) fn surface(normal: [f64; D], law: Coulomb, group: String, sliding: Option<usize>) -> Self {
-        Self { shape: Shape::Surface(Frame::new(normal), sliding), law, group: Some(group), gap: None }
+    /// With `non_matching`, the two slide along each other: it is their index in the contact surface.
+    pub(crate) fn surface(normal: [f64; D], law: Coulomb, group: String, non_matching: Option<usize>) -> Self {
+        Self { shape: Shape::Surface(Frame::new(normal), non_matching), law, group: Some(group), gap: None }
     }
 
-    /// The index of the surfaces that slide, if it is one of them.
+    /// The index of the non-matching interfaces, if it is one of them.
     #[inline]
     #[must_use]
-    pub fn sliding(&self) -> Option<usize> {
+    pub fn non_matching(&self) -> Option<usize> {
         match self.shape {
             Shape::Plane(_) => None,
-            Shape::Surface(_, sliding) => sliding,
+            Shape::Surface(_, non_matching) => non_matching,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::coulomb::Coulomb;
 use super::frame::Frame;
-use super::mortar::{Facing, SlidingSurfaces};
+use super::mortar::{ContactConfiguration, NonMatchingSurfaces};
 use super::obstacle::Obstacle;
 use crate::ids::{FaceId, NodeId};
 use crate::mesh::{Mesh, NewNumbers};
@@ -14,8 +14,8 @@ pub struct ContactNode {
     pub node: NodeId,
     /// The obstacle it may touch.
     pub obstacle: usize,
-    /// Gap of its place in the undeformed mesh (m); infinite if it may touch all of a surface that slides along, of
-    /// which [`Facing::gap`] has the gap.
+    /// Gap of its place in the undeformed mesh (m); infinite on a non-matching interface, where it may touch all of the
+    /// other side, of which [`ContactConfiguration::gap`] has the gap.
     pub undeformed_gap: f64,
     /// Whether it is a candidate: its normal motion is not prescribed.
     pub free: bool,
@@ -24,10 +24,10 @@ pub struct ContactNode {
     pub guided: bool,
     /// The node of another body that it may touch, by its position in [`ContactSurface::nodes`]; `None` at a rigid
     /// obstacle. The two have each other, and opposite reactions.
-    pub opposite: Option<usize>,
-    /// The other entry of the same node, for a second plane that it may touch, by its position in
+    pub partner: Option<usize>,
+    /// The other slot of the same node, for a second plane that it may touch, by its position in
     /// [`ContactSurface::nodes`].
-    pub beside: Option<usize>,
+    pub second_slot: Option<usize>,
 }
 
 /// A face that may touch an obstacle.
@@ -52,7 +52,7 @@ pub struct ContactSurface<const D: usize> {
     /// Places of the nodes in the undeformed mesh (m).
     points: Vec<[f64; D]>,
     faces: Vec<ContactFace<D>>,
-    sliding: Vec<SlidingSurfaces<D>>,
+    non_matching: Vec<NonMatchingSurfaces<D>>,
 }
 
 impl<const D: usize> ContactSurface<D> {
@@ -80,24 +80,24 @@ impl<const D: usize> ContactSurface<D> {
         &self.faces
     }
 
-    /// All pairs of surfaces that slide along each other.
+    /// All non-matching interfaces.
     #[inline]
     #[must_use]
-    pub fn sliding(&self) -> &[SlidingSurfaces<D>] {
-        &self.sliding
+    pub fn non_matching(&self) -> &[NonMatchingSurfaces<D>] {
+        &self.non_matching
     }
 
-    /// Which of [`ContactSurface::sliding`] a node belongs to.
+    /// Which of [`ContactSurface::non_matching`] a node belongs to.
     #[inline]
     #[must_use]
-    pub fn sliding_of(&self, at: usize) -> Option<usize> {
-        self.obstacles[self.nodes[at].obstacle].sliding()
+    pub fn non_matching_of(&self, at: usize) -> Option<usize> {
+        self.obstacles[self.nodes[at].obstacle].non_matching()
     }
 
     /// What each node faces with these displacements of all nodes of the mesh (m).
     #[must_use]
-    pub fn facing(&self, displacement: &[[f64; D]]) -> Facing<'_, D> {
-        Facing::new(self, displacement)
+    pub fn configuration(&self, displacement: &[[f64; D]]) -> ContactConfiguration<'_, D> {
+        ContactConfiguration::new(self, displacement)
     }
 
     /// Tributary area (m²) of each node: its share of the candidate faces, ℓ_k of eq. \[45\].
@@ -111,25 +111,25 @@ impl<const D: usize> ContactSurface<D> {
     }
 
     /// The value of a nodal field at a node less that at the node that it may touch, if there is one: displacement or
-    /// velocity against the obstacle. [`Facing::relative`] has it for surfaces that slide, too.
+    /// velocity against the obstacle. [`ContactConfiguration::relative`] has it for non-matching interfaces, too.
     #[inline]
     #[must_use]
     pub fn against_obstacle(&self, at: usize, field: &[[f64; D]]) -> [f64; D] {
         let contact = &self.nodes[at];
         let own = field[contact.node.index()];
-        let Some(opposite) = contact.opposite else { return own };
-        let other = &field[self.nodes[opposite].node.index()];
+        let Some(partner) = contact.partner else { return own };
+        let other = &field[self.nodes[partner].node.index()];
         std::array::from_fn(|c| own[c] - other[c])
     }
 
-    /// Whether contact is solved for at a node: of two nodes that may touch, at the first one; of surfaces that slide,
-    /// on the slave.
+    /// Whether contact is solved for at a node: of two nodes that may touch, at the first one; of non-matching
+    /// interfaces, on the slave.
     #[inline]
     #[must_use]
     pub fn leads(&self, at: usize) -> bool {
-        match self.sliding_of(at) {
-            Some(index) => self.sliding[index].slave().node_at(at).is_some(),
-            None => self.nodes[at].opposite.is_none_or(|opposite| at < opposite),
+        match self.non_matching_of(at) {
+            Some(index) => self.non_matching[index].slave().node_at(at).is_some(),
+            None => self.nodes[at].partner.is_none_or(|partner| at < partner),
         }
     }
 
@@ -137,9 +137,9 @@ impl<const D: usize> ContactSurface<D> {
     #[inline]
     #[must_use]
     pub fn is_of_first(&self, at: usize) -> bool {
-        match self.sliding_of(at) {
+        match self.non_matching_of(at) {
             Some(index) => {
-                let [slave, master] = [self.sliding[index].slave(), self.sliding[index].master()];
+                let [slave, master] = [self.non_matching[index].slave(), self.non_matching[index].master()];
                 at < slave.position(0).max(master.position(0))
             }
             None => self.leads(at),
@@ -153,7 +153,7 @@ impl<const D: usize> ContactSurface<D> {
     pub fn moved_mass(&self, at: usize, mass: &[f64]) -> f64 {
         let contact = &self.nodes[at];
         let own = mass[contact.node.index()];
-        contact.opposite.map_or(own, |opposite| 1.0 / (1.0 / own + 1.0 / mass[self.nodes[opposite].node.index()]))
+        contact.partner.map_or(own, |partner| 1.0 / (1.0 / own + 1.0 / mass[self.nodes[partner].node.index()]))
     }
 
     /// The part of a motion against the obstacle that the node itself does if forces between the two cause it: 1 at a
@@ -163,8 +163,8 @@ impl<const D: usize> ContactSurface<D> {
     pub fn own_part(&self, at: usize, mass: &[f64]) -> f64 {
         let contact = &self.nodes[at];
         let own = mass[contact.node.index()];
-        contact.opposite.map_or(1.0, |opposite| {
-            let other = mass[self.nodes[opposite].node.index()];
+        contact.partner.map_or(1.0, |partner| {
+            let other = mass[self.nodes[partner].node.index()];
             other / (own + other)
         })
     }
@@ -173,21 +173,21 @@ impl<const D: usize> ContactSurface<D> {
     #[inline]
     #[must_use]
     pub fn part_of_contact(&self, at: usize) -> f64 {
-        if self.nodes[at].opposite.is_some() { 0.5 } else { 1.0 }
+        if self.nodes[at].partner.is_some() { 0.5 } else { 1.0 }
     }
 
-    /// The first entry of the node of an entry.
+    /// The first slot of the node of a slot.
     #[inline]
     #[must_use]
     pub fn first_entry(&self, at: usize) -> usize {
-        self.nodes[at].beside.map_or(at, |beside| at.min(beside))
+        self.nodes[at].second_slot.map_or(at, |second_slot| at.min(second_slot))
     }
 
     /// Whether a face has a node that may touch two planes.
     #[inline]
     #[must_use]
     pub fn reaches_a_corner(&self, face: &ContactFace<D>) -> bool {
-        face.nodes.iter().any(|&at| self.nodes[at].beside.is_some())
+        face.nodes.iter().any(|&at| self.nodes[at].second_slot.is_some())
     }
 
     /// The force that the contact forces at all its obstacles do on a node.
@@ -195,7 +195,7 @@ impl<const D: usize> ContactSurface<D> {
     #[must_use]
     pub fn force_on_node(&self, at: usize, forces: &[[f64; D]]) -> [f64; D] {
         let own = forces[at];
-        self.nodes[at].beside.map_or(own, |beside| std::array::from_fn(|c| own[c] + forces[beside][c]))
+        self.nodes[at].second_slot.map_or(own, |second_slot| std::array::from_fn(|c| own[c] + forces[second_slot][c]))
     }
 
     /// The gap of a node with this displacement against its obstacle (m), eq. \[3\].
@@ -209,8 +209,8 @@ impl<const D: usize> ContactSurface<D> {
     /// The gaps of its nodes (m), with these displacements of all nodes of the mesh.
     #[must_use]
     pub fn gaps(&self, displacement: &[[f64; D]]) -> Vec<f64> {
-        let facing = self.facing(displacement);
-        (0..self.nodes.len()).map(|at| facing.gap(at, displacement)).collect()
+        let configuration = self.configuration(displacement);
+        (0..self.nodes.len()).map(|at| configuration.gap(at, displacement)).collect()
     }
 
     /// The frame at a node with this displacement.
@@ -240,7 +240,7 @@ impl<const D: usize> ContactSurface<D> {
             nodes: self.nodes.iter().map(node).collect(),
             points: self.points.clone(),
             faces: self.faces.iter().map(face).collect(),
-            sliding: self.sliding.clone(),
+            non_matching: self.non_matching.clone(),
         }
     }
 
@@ -262,9 +262,9 @@ impl<const D: usize> ContactSurface<D> {
         self.move_back(obstacle, gap - least);
     }
 
-    /// Adds two surfaces that slide along each other, of which the nodes and faces have been added.
-    pub(crate) fn add_sliding(&mut self, sliding: SlidingSurfaces<D>) {
-        self.sliding.push(sliding);
+    /// Adds a non-matching interface, of which the nodes and faces have been added.
+    pub(crate) fn add_non_matching(&mut self, non_matching: NonMatchingSurfaces<D>) {
+        self.non_matching.push(non_matching);
     }
 
     /// Adds an obstacle with its candidates. The faces have positions in `nodes`.
@@ -276,8 +276,8 @@ impl<const D: usize> ContactSurface<D> {
     ) {
         let start = self.nodes.len();
         for (node, point) in nodes {
-            if let Some(first) = node.beside {
-                self.nodes[first].beside = Some(self.nodes.len());
+            if let Some(first) = node.second_slot {
+                self.nodes[first].second_slot = Some(self.nodes.len());
             }
             self.nodes.push(node);
             self.points.push(point);

@@ -1,7 +1,7 @@
 //! Reactions and touching status along the steps.
 
 use super::Dynamics;
-use crate::contact::{Constraints, Predicted, Prediction, SlidingContact, solve};
+use crate::contact::{Constraints, NonMatchingContact, Predicted, Prediction, solve};
 
 /// Contact at one step.
 #[derive(Clone, Debug)]
@@ -16,8 +16,8 @@ pub(super) struct Contact<const D: usize> {
     nodes: Vec<(usize, f64)>,
     predicted: Vec<Predicted<D>>,
     constraints: Constraints<D>,
-    /// One for each two surfaces that slide along each other.
-    sliding: Vec<SlidingContact>,
+    /// One for each non-matching interface.
+    non_matching: Vec<NonMatchingContact>,
 }
 
 impl<const D: usize> Contact<D> {
@@ -26,7 +26,7 @@ impl<const D: usize> Contact<D> {
         let count = surface.nodes().len();
         let node = |at: usize| surface.nodes()[at].node.index();
         let nodes = (0..count).map(|at| (node(at), dynamics.inverse_mass[node(at)]));
-        let sliding = |index| SlidingContact::new(surface, index, &dynamics.inverse_mass);
+        let non_matching = |index| NonMatchingContact::new(surface, index, &dynamics.inverse_mass);
         Self {
             reaction: vec![[0.0; D]; count],
             touching: vec![false; count],
@@ -34,7 +34,7 @@ impl<const D: usize> Contact<D> {
             nodes: nodes.collect(),
             predicted: Vec::with_capacity(count),
             constraints: Constraints::new(surface, dynamics.problem.mass()),
-            sliding: (0..surface.sliding().len()).map(sliding).collect(),
+            non_matching: (0..surface.non_matching().len()).map(non_matching).collect(),
         }
     }
 
@@ -61,8 +61,8 @@ impl<const D: usize> Contact<D> {
         std::mem::swap(&mut self.touching, &mut self.touching_next);
         self.touching_next.fill(false);
         self.reaction.fill([0.0; D]);
-        for sliding in &mut self.sliding {
-            sliding.react(problem.surface(), &prediction, &mut self.reaction, &mut self.touching_next);
+        for non_matching in &mut self.non_matching {
+            non_matching.react(problem.surface(), &prediction, &mut self.reaction, &mut self.touching_next);
         }
         solve(&self.constraints, steps, problem.contact_tolerance(), |at, reaction| {
             let nodes = problem.surface().nodes();
@@ -73,11 +73,11 @@ impl<const D: usize> Contact<D> {
                 self.touching_next[at] = true;
             };
             act(at, reaction);
-            if let Some(opposite) = nodes[at].opposite {
-                act(opposite, reaction.map(|r| -r));
+            if let Some(partner) = nodes[at].partner {
+                act(partner, reaction.map(|r| -r));
             }
         });
-        self.sliding.iter().for_each(|sliding| sliding.add(problem.surface(), &self.reaction, force));
+        self.non_matching.iter().for_each(|non_matching| non_matching.add(problem.surface(), &self.reaction, force));
     }
 
     /// Touching at t_0: a node on its obstacle, without normal velocity, whose multiplier at t_0 is active; a node of a
@@ -90,8 +90,8 @@ impl<const D: usize> Contact<D> {
                 && gap <= problem.contact_tolerance()
                 && normal.abs() <= problem.speed_tolerance();
         }
-        for sliding in &self.sliding {
-            sliding.settle_master(problem.surface(), &mut self.touching);
+        for non_matching in &self.non_matching {
+            non_matching.settle_master(problem.surface(), &mut self.touching);
         }
         for (touches, (gap, _)) in self.touching.iter_mut().zip(&starts) {
             *touches &= gap.is_finite();

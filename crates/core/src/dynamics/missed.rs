@@ -86,8 +86,8 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
             bodies[contact.obstacle].insert(of_node[contact.node.index()]);
         }
         for (at, contact) in problem.surface().nodes().iter().enumerate() {
-            let slides = problem.surface().sliding_of(at).map(|_| at);
-            let others = problem.opposite_obstacle(contact.obstacle).into_iter().flat_map(|other| &bodies[other]);
+            let slides = problem.surface().non_matching_of(at).map(|_| at);
+            let others = problem.partner_obstacle(contact.obstacle).into_iter().flat_map(|other| &bodies[other]);
             made.solved.extend(others.map(|&body| ((contact.node, body), slides)));
         }
         made
@@ -143,9 +143,9 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
     fn found(&self, displacement: &[[f64; D]]) -> Option<(NodeId, [usize; 2], f64)> {
         let (points, size) = (self.problem.mesh().points_in::<D>(), self.problem.mesh().size());
         let limits: Vec<_> = self.bodies.iter().map(|body| self.limits(displacement, body)).collect();
-        let facing = self.problem.surface().facing(displacement);
+        let configuration = self.problem.surface().configuration(displacement);
         let is_solved = |node: NodeId, body: usize| match self.solved.get(&(node, body)) {
-            Some(Some(at)) => facing.gap(*at, displacement).is_finite(),
+            Some(Some(at)) => configuration.gap(*at, displacement).is_finite(),
             other => other.is_some(),
         };
         for (a, own) in self.bodies.iter().enumerate() {

@@ -3,7 +3,7 @@
 use super::{BarProblem, TriangleProblem, statement};
 use super::{BodyLoad, Conditions, FaceLoad, InputError, MovedPlane, Place, PrescribedComponent, Problem, Statement};
 use crate::border::{Vector, padded, vectors};
-use crate::contact::{AnyFacing, AnyObstacle, ContactFace, ContactNode, Frame, Interface};
+use crate::contact::{AnyContactConfiguration, AnyObstacle, ContactFace, ContactNode, Frame, Interface};
 use crate::ids::{ElementId, FaceId, NodeId};
 use crate::load::Table;
 use crate::material::Elastic;
@@ -270,8 +270,8 @@ impl AnyProblem {
 
     /// The other one of the two obstacles of an interface: [`Problem::opposite_obstacle`].
     #[must_use]
-    pub fn opposite_obstacle(&self, obstacle: usize) -> Option<usize> {
-        on!(self, problem => problem.opposite_obstacle(obstacle))
+    pub fn partner_obstacle(&self, obstacle: usize) -> Option<usize> {
+        on!(self, problem => problem.partner_obstacle(obstacle))
     }
 
     /// The obstacle on whose nodes contact acts: [`Problem::slave_of`].
@@ -328,30 +328,30 @@ impl AnyProblem {
 
     /// Number of interfaces whose nodes do not face each other.
     #[must_use]
-    pub fn sliding_count(&self) -> usize {
-        on!(self, problem => problem.surface().sliding().len())
+    pub fn non_matching_count(&self) -> usize {
+        on!(self, problem => problem.surface().non_matching().len())
     }
 
     /// Of a node of the contact surface, the interface whose nodes do not face each other.
     #[must_use]
-    pub fn sliding_of(&self, at: usize) -> Option<usize> {
-        on!(self, problem => problem.surface().sliding_of(at))
+    pub fn non_matching_of(&self, at: usize) -> Option<usize> {
+        on!(self, problem => problem.surface().non_matching_of(at))
     }
 
     /// The positions in the contact surface of the two sides of an interface whose nodes do not face each other: slave
     /// and master.
     #[must_use]
-    pub fn sides_of_sliding(&self, sliding: usize) -> [Vec<usize>; 2] {
+    pub fn sides_of_non_matching(&self, non_matching: usize) -> [Vec<usize>; 2] {
         on!(self, problem => {
-            let sliding = &problem.surface().sliding()[sliding];
-            [sliding.slave(), sliding.master()].map(|side| (0..side.len()).map(|node| side.position(node)).collect())
+            let sides = &problem.surface().non_matching()[non_matching];
+            [sides.slave(), sides.master()].map(|side| (0..side.len()).map(|node| side.position(node)).collect())
         })
     }
 
     /// Whether a node of the contact surface is on the slave of an interface whose nodes do not face each other.
     #[must_use]
     pub fn is_slave(&self, at: usize) -> bool {
-        on!(self, problem => problem.surface().sliding().iter().any(|sliding| sliding.slave().node_at(at).is_some()))
+        on!(self, problem => problem.surface().non_matching().iter().any(|sides| sides.slave().node_at(at).is_some()))
     }
 
     /// Whether the contact condition of a node is its own: [`crate::contact::ContactSurface::leads`].
@@ -374,10 +374,10 @@ impl AnyProblem {
 
     /// What the nodes of the contact surface face with these displacements (m), in rows.
     #[must_use]
-    pub fn facing(&self, displacement: &[f64]) -> AnyFacing<'_> {
+    pub fn configuration(&self, displacement: &[f64]) -> AnyContactConfiguration<'_> {
         match &self.problem {
-            Typed::D1(problem) => AnyFacing::D1(problem.surface().facing(vectors(displacement))),
-            Typed::D2(problem) => AnyFacing::D2(problem.surface().facing(vectors(displacement))),
+            Typed::D1(problem) => AnyContactConfiguration::D1(problem.surface().configuration(vectors(displacement))),
+            Typed::D2(problem) => AnyContactConfiguration::D2(problem.surface().configuration(vectors(displacement))),
         }
     }
 

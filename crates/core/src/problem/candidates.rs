@@ -30,16 +30,16 @@ pub(super) fn add<const D: usize>(
     }
     let mut nodes: Vec<(ContactNode, [f64; D])> = Vec::new();
     for node in along_the_boundary(mesh, &facing) {
-        let beside = surface.nodes().iter().position(|c| c.node == node);
+        let second_slot = surface.nodes().iter().position(|c| c.node == node);
         let (point, held) = (mesh.points_in::<D>()[node.index()], prescribed(node));
         let frame = obstacle.frame_at(&point);
         let free = (0..D).all(|c| !held[c] || frame.normal()[c].abs() <= ALIGNED);
         let guided = free && held != [false; D];
         let undeformed_gap = plane.gap(&point);
-        if let Some(other) = beside {
+        if let Some(other) = second_slot {
             corner(surface, other, (&obstacle, index), free)?;
         }
-        let contact = ContactNode { node, obstacle: index, undeformed_gap, free, guided, opposite: None, beside };
+        let contact = ContactNode { node, obstacle: index, undeformed_gap, free, guided, partner: None, second_slot };
         nodes.push((contact, point));
     }
     if let Some((first, _)) = nodes.first().filter(|_| nodes.iter().all(|(contact, _)| !contact.free)) {

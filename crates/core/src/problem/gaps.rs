@@ -1,11 +1,11 @@
-//! How two surfaces that slide lie to each other, before the run.
+//! The gaps of a non-matching interface before the run.
 
-use crate::contact::{ContactSurface, Coupling, Side, SlidingSurfaces};
+use crate::contact::{ContactSurface, Coupling, NonMatchingSurfaces, Side};
 
-/// Two surfaces that slide, with the displacements of all nodes of the mesh (m).
+/// A non-matching interface, with the displacements of all nodes of the mesh (m).
 pub(super) struct Gaps<'a, const D: usize> {
     pub(super) surface: &'a ContactSurface<D>,
-    pub(super) sliding: &'a SlidingSurfaces<D>,
+    pub(super) non_matching: &'a NonMatchingSurfaces<D>,
     pub(super) displacement: &'a [[f64; D]],
 }
 
@@ -14,7 +14,7 @@ impl<const D: usize> Gaps<'_, D> {
     /// in the contact surface.
     pub(super) fn least(&self) -> Option<(f64, usize)> {
         let coupling = self.coupling();
-        let (slave, master) = (self.sliding.slave(), self.sliding.master());
+        let (slave, master) = (self.non_matching.slave(), self.non_matching.master());
         // η on an edge, at a place between those of its nodes, and the node that is there.
         let on = |side: &Side, first: usize, [low, high]: [f64; 2], xi: f64| {
             let eta = [first, first + 1].map(|k| self.eta(side, k));
@@ -44,7 +44,7 @@ impl<const D: usize> Gaps<'_, D> {
         if !self.coupling().segments().is_empty() {
             return None;
         }
-        let (slave, master) = (self.sliding.slave(), self.sliding.master());
+        let (slave, master) = (self.non_matching.slave(), self.non_matching.master());
         let nodes = (0..slave.len()).map(|k| (self.eta(slave, k), slave.position(k)));
         let (low, at) = nodes.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let high = (0..master.len()).map(|k| self.eta(master, k)).max_by(f64::total_cmp)?;
@@ -52,11 +52,11 @@ impl<const D: usize> Gaps<'_, D> {
     }
 
     fn coupling(&self) -> Coupling {
-        self.sliding.coupling(self.surface, self.displacement)
+        self.non_matching.coupling(self.surface, self.displacement)
     }
 
     /// η of a node of a side (m).
     fn eta(&self, side: &Side, k: usize) -> f64 {
-        self.sliding.eta(self.surface, side, k, self.displacement)
+        self.non_matching.eta(self.surface, side, k, self.displacement)
     }
 }

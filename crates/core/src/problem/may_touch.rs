@@ -3,7 +3,7 @@
 use super::bodies::Start;
 use super::contacts::{self, Choice, Stated, Surfaces};
 use super::sides::Bodies;
-use super::{Cause, InputError, Place, candidates, pairs, sliding};
+use super::{Cause, InputError, Place, candidates, non_matching, pairs};
 use crate::contact::{ContactSurface, Interface, Obstacle, Plane};
 use crate::ids::{FaceId, NodeId};
 use crate::mesh::Mesh;
@@ -85,7 +85,7 @@ fn add_interface<const D: usize>(
 ) -> Result<Interface, Cause> {
     let mut add = |interface: &Interface| match interface.is_matching() {
         true => pairs::add(surface, bodies, interface),
-        false => sliding::add(surface, bodies, interface, displacement),
+        false => non_matching::add(surface, bodies, interface, displacement),
     };
     let slides = |cause: &Cause| {
         use Cause::{EdgesDiffer, HeldPair, NotMatching, SeveralBodies};

@@ -14,13 +14,13 @@ mod gaps;
 mod joined;
 mod may_touch;
 mod moved_planes;
+mod non_matching;
 mod pairs;
 mod plausibility;
 mod renumber;
 mod rigid_motion;
 mod roles;
 mod sides;
-mod sliding;
 mod start_of_contact;
 mod statement;
 pub(crate) mod symmetry;
@@ -36,7 +36,7 @@ pub use plausibility::{
 pub use rigid_motion::RigidMotion;
 pub use statement::Statement;
 
-use crate::contact::{ContactSurface, Facing, Interface, Obstacle};
+use crate::contact::{ContactConfiguration, ContactSurface, Interface, Obstacle};
 use crate::ids::{ElementId, FaceId, NodeId};
 use crate::load::Table;
 use crate::material::{Elastic, Law};
@@ -276,20 +276,22 @@ impl<const D: usize, const N: usize> Problem<D, N> {
 
     /// Of two surfaces that may touch, each is an obstacle: the other one of the two; none for a plane.
     #[must_use]
-    pub fn opposite_obstacle(&self, obstacle: usize) -> Option<usize> {
+    pub fn partner_obstacle(&self, obstacle: usize) -> Option<usize> {
         let planes = self.planes();
         obstacle.checked_sub(planes).map(|after| planes + (after ^ 1))
     }
 
-    /// Of two surfaces that slide, of which an obstacle is one, that on whose nodes contact acts; else the obstacle.
+    /// Of a non-matching interface, of which an obstacle is one side, the side on whose nodes contact acts; else the
+    /// obstacle.
     #[must_use]
     pub fn slave_of(&self, obstacle: usize) -> usize {
         let first = self.surface.nodes().iter().position(|contact| contact.obstacle == obstacle);
         let is_master = |at: &usize| {
-            let sliding = self.surface.sliding_of(*at).map(|sliding| &self.surface.sliding()[sliding]);
-            sliding.is_some_and(|sliding| sliding.slave().node_at(*at).is_none())
+            let non_matching =
+                self.surface.non_matching_of(*at).map(|non_matching| &self.surface.non_matching()[non_matching]);
+            non_matching.is_some_and(|non_matching| non_matching.slave().node_at(*at).is_none())
         };
-        first.filter(is_master).and_then(|_| self.opposite_obstacle(obstacle)).unwrap_or(obstacle)
+        first.filter(is_master).and_then(|_| self.partner_obstacle(obstacle)).unwrap_or(obstacle)
     }
 
     /// The two surfaces that may touch of which an obstacle is one; none for a plane.
@@ -314,7 +316,7 @@ impl<const D: usize, const N: usize> Problem<D, N> {
         let (nodes, obstacles) = (self.surface.nodes(), 0..self.surface.obstacles().len());
         let of = |obstacle: usize| {
             let contacts = nodes.iter().filter(|contact| contact.obstacle == obstacle);
-            contacts.filter_map(|contact| Some([contact.node, nodes[contact.opposite?].node])).collect::<Vec<_>>()
+            contacts.filter_map(|contact| Some([contact.node, nodes[contact.partner?].node])).collect::<Vec<_>>()
         };
         let leading = obstacles.filter(|obstacle| self.leads_interface(*obstacle));
         leading.map(of).filter(|pairs| !pairs.is_empty()).collect()
@@ -329,31 +331,32 @@ impl<const D: usize, const N: usize> Problem<D, N> {
     /// Gap (m), eq. \[3\], and normal velocity (m/s) of a node of the contact surface at the start.
     #[must_use]
     pub fn start_of_contact(&self, at: usize) -> (f64, f64) {
-        self.start_of(at, &self.surface.facing(&self.initial_displacement))
+        self.start_of(at, &self.surface.configuration(&self.initial_displacement))
     }
 
     /// The same of all its nodes.
     #[must_use]
     pub fn starts_of_contact(&self) -> Vec<(f64, f64)> {
-        let facing = self.surface.facing(&self.initial_displacement);
-        (0..self.surface.nodes().len()).map(|at| self.start_of(at, &facing)).collect()
+        let configuration = self.surface.configuration(&self.initial_displacement);
+        (0..self.surface.nodes().len()).map(|at| self.start_of(at, &configuration)).collect()
     }
 
-    fn start_of(&self, at: usize, facing: &Facing<'_, D>) -> (f64, f64) {
-        let displacement = facing.relative(at, &self.initial_displacement);
-        let velocity = facing.relative(at, &self.initial_velocity);
+    fn start_of(&self, at: usize, configuration: &ContactConfiguration<'_, D>) -> (f64, f64) {
+        let displacement = configuration.relative(at, &self.initial_displacement);
+        let velocity = configuration.relative(at, &self.initial_velocity);
         let normal = self.surface.frame(at, &displacement).split(&velocity).0;
-        (facing.gap(at, &self.initial_displacement), normal)
+        (configuration.gap(at, &self.initial_displacement), normal)
     }
 
     /// The candidate node of an obstacle with the smallest gap at the start, as its position in the surface, and that
     /// gap (m). None without candidates, or if none of them faces anything.
     #[must_use]
     pub fn nearest(&self, obstacle: usize) -> Option<(usize, f64)> {
-        let facing = self.surface.facing(&self.initial_displacement);
+        let configuration = self.surface.configuration(&self.initial_displacement);
         let nodes = self.surface.nodes().iter().enumerate();
         let candidates = nodes.filter(|(_, c)| c.obstacle == obstacle && c.free);
-        let gaps = candidates.map(|(at, _)| (at, self.start_of(at, &facing).0)).filter(|(_, gap)| gap.is_finite());
+        let gaps =
+            candidates.map(|(at, _)| (at, self.start_of(at, &configuration).0)).filter(|(_, gap)| gap.is_finite());
         gaps.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 const MATCHING: f64 = 1e-9;
 /// The two sides of an interface, the common normal from the second one to the first, and the node of the second side
 /// that faces each node of the first one.
-type Facing<const D: usize> = ([Side<D>; 2], [f64; D], Vec<NodeId>);
+type OpposedSides<const D: usize> = ([Side<D>; 2], [f64; D], Vec<NodeId>);
 
 /// Adds the pairs of an interface to the contact surface, as two obstacles: for the first group the surface of the
 /// second one, and the other way round.
@@ -31,10 +31,10 @@ pub(super) fn add<const D: usize>(
             let facing = ordered[1 - k][at];
             let apart: [f64; D] = std::array::from_fn(|c| points[node.index()][c] - points[facing.index()][c]);
             let guided = bodies.guided(&frame, [*node, facing])?;
-            let opposite = Some(start + if k == 0 { ordered[0].len() + at } else { at });
+            let partner = Some(start + if k == 0 { ordered[0].len() + at } else { at });
             let undeformed_gap = dot(&apart, &frame);
             let contact =
-                ContactNode { node: *node, obstacle, undeformed_gap, free: true, guided, opposite, beside: None };
+                ContactNode { node: *node, obstacle, undeformed_gap, free: true, guided, partner, second_slot: None };
             Ok((contact, points[node.index()]))
         };
         let contacts = nodes.iter().enumerate().map(contact).collect::<Result<Vec<_>, Cause>>()?;
@@ -51,7 +51,7 @@ pub(super) fn add<const D: usize>(
 
 impl<const D: usize> Bodies<'_, D> {
     /// Both sides of an interface, which face each other in pairs.
-    fn facing(&self, surface: &ContactSurface<D>, interface: &Interface) -> Result<Facing<D>, Cause> {
+    fn facing(&self, surface: &ContactSurface<D>, interface: &Interface) -> Result<OpposedSides<D>, Cause> {
         let sides = self.sides(interface)?;
         let outward = self.outward(&sides);
         // The surface of either body may be the one that the normal stands on.

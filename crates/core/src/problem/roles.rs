@@ -1,4 +1,4 @@
-//! Which of two surfaces that slide is the slave, and on which one the normal stands.
+//! Which side of a non-matching interface is the slave, and which side has the normal.
 
 use super::alignment::unit;
 use super::distance::nearest;

@@ -59,8 +59,8 @@ impl<const D: usize> Bodies<'_, D> {
         law.wave_modulus() * law.extent()
     }
 
-    /// Both sides of an interface, which are of different bodies with one hypothesis. Of surfaces that slide, one side
-    /// may be of several bodies.
+    /// Both sides of an interface, which are of different bodies with one hypothesis. Of non-matching interfaces, one
+    /// side may be of several bodies.
     pub(super) fn sides(&self, interface: &Interface) -> Result<[Side<D>; 2], Cause> {
         let [first, second] = interface.groups();
         let mut sides = [self.side(first)?, self.side(second)?];

@@ -2,7 +2,7 @@
 
 use super::gaps::Gaps;
 use super::{Cause, InputError, Problem};
-use crate::contact::SlidingSurfaces;
+use crate::contact::NonMatchingSurfaces;
 use crate::ids::ElementId;
 
 /// Bodies that overlap by less than this part of the size of the mesh are not told from those that touch.
@@ -55,11 +55,11 @@ fn check_deepest<const D: usize, const N: usize>(
     let Some(at) = deepest.filter(|&at| starts[at].0 < -tolerance) else { return Ok(()) };
     let contact = &surface.nodes()[at];
     let (obstacle, depth, node) = (contact.obstacle, -starts[at].0, contact.node.index());
-    let cause = match (problem.obstacles()[obstacle].as_plane(), surface.sliding_of(at)) {
+    let cause = match (problem.obstacles()[obstacle].as_plane(), surface.non_matching_of(at)) {
         (Some(plane), _) => Cause::Penetrates { node, depth, clear: plane.point_behind(depth).to_vec() },
         (None, None) => behind(problem, at, depth),
         // That gap is a mean with weights of both signs: of convex surfaces it is less than all gaps.
-        (None, Some(index)) => match gaps(problem, &surface.sliding()[index]).least() {
+        (None, Some(index)) => match gaps(problem, &surface.non_matching()[index]).least() {
             Some((gap, at)) if gap < -tolerance => behind(problem, at, -gap),
             _ => Cause::TooNear { node, depth },
         },
@@ -67,10 +67,10 @@ fn check_deepest<const D: usize, const N: usize>(
     Err(InputError { place: problem.place_of_obstacle(obstacle), cause })
 }
 
-/// Surfaces that slide and do not face each other yet are not behind each other.
+/// Sides of a non-matching interface that do not face each other yet are not behind each other.
 fn check_apart<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<(), InputError> {
-    for sliding in problem.surface().sliding() {
-        if let Some((depth, at)) = gaps(problem, sliding).behind()
+    for non_matching in problem.surface().non_matching() {
+        if let Some((depth, at)) = gaps(problem, non_matching).behind()
             && depth > problem.contact_tolerance()
         {
             let place = problem.place_of_obstacle(problem.surface().nodes()[at].obstacle);
@@ -83,15 +83,15 @@ fn check_apart<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Resul
 /// The group of a node that faces another body, and that of the other surface.
 fn groups<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize) -> Box<[String; 2]> {
     let own = problem.surface().nodes()[at].obstacle;
-    let other = problem.opposite_obstacle(own).unwrap_or(own);
+    let other = problem.partner_obstacle(own).unwrap_or(own);
     Box::new([own, other].map(|obstacle| problem.obstacles()[obstacle].group().unwrap_or_default().to_string()))
 }
 
 fn gaps<'a, const D: usize, const N: usize>(
     problem: &'a Problem<D, N>,
-    sliding: &'a SlidingSurfaces<D>,
+    non_matching: &'a NonMatchingSurfaces<D>,
 ) -> Gaps<'a, D> {
-    Gaps { surface: problem.surface(), sliding, displacement: &problem.initial_displacement }
+    Gaps { surface: problem.surface(), non_matching, displacement: &problem.initial_displacement }
 }
 
 /// Why a node that faces the surface of another body may not be so far (m) behind it.

@@ -78,9 +78,9 @@ fn check(run: &Run<'_, 2, 3>) {
         let (step, next) = (run.history.step(n).unwrap(), run.history.step(n + 1).unwrap());
         let velocity = run.half_velocity(n);
         for at in (0..surface.nodes().len()).filter(|&at| surface.leads(at)) {
-            let opposite = surface.nodes()[at].opposite.unwrap();
+            let partner = surface.nodes()[at].partner.unwrap();
             let force = step.reaction()[at];
-            assert_eq!(force.map(|f| -f), step.reaction()[opposite], "step {n}");
+            assert_eq!(force.map(|f| -f), step.reaction()[partner], "step {n}");
             let gap = surface.gap(at, &surface.against_obstacle(at, next.displacement()));
             assert!(gap >= -1e-12 * run.problem.mesh().size(), "step {n}: {gap}");
             let obstacle = &run.problem.obstacles()[surface.nodes()[at].obstacle];

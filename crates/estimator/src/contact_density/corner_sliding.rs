@@ -3,7 +3,7 @@
 //! Sliding along one plane is motion towards the other there. It is known when problem P_CA is solved at the other.
 
 use super::{Densities, FaceDensity, NarrowHat, face_power};
-use crate::kinematic::{ContactTrack, at_both_planes};
+use crate::kinematic::{ContactMotion, at_both_planes};
 use crate::numbers::Reader;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -49,7 +49,7 @@ impl<const D: usize> CornerSliding<D> {
         &self,
         problem: &Problem<D, N>,
         times: &TimeGrid,
-        tracks: &[ContactTrack],
+        tracks: &[ContactMotion],
     ) -> [f64; 2] {
         let nodes = problem.surface().faces()[self.face].nodes;
         let density = |k: usize| FaceDensity { wide: &self.wide[k], hats: [&self.hats[k][..]; 1] };

@@ -8,7 +8,7 @@ use crate::numbers::Reader;
 pub(crate) struct NarrowHat<const D: usize> {
     /// Its node, by the position in the contact surface.
     pub(crate) node: usize,
-    /// The first entry of its node in the contact surface: those of a node at two planes have one star.
+    /// The first slot of its node in the contact surface: those of a node at two planes have one star.
     pub(crate) star: usize,
     /// Its edge, by the position among the candidate faces.
     pub(crate) face: usize,

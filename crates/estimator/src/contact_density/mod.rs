@@ -4,18 +4,18 @@
 mod corner_sliding;
 mod friction_misfit;
 mod hat;
+mod non_matching;
 mod normal_misfit;
-mod sliding;
 
 use crate::residual::worse;
 pub(crate) use corner_sliding::{CornerSliding, trapezoids};
 pub(crate) use friction_misfit::{FaceDensity, face_power};
 pub(crate) use hat::NarrowHat;
+pub(crate) use non_matching::{NonMatchingDensity, NonMatchingFaces, ResidualStress, SlaveHat};
 pub(crate) use normal_misfit::{FacePressures, NormalMisfit, OffContact};
 use percute_core::contact::ContactFace;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
-pub(crate) use sliding::{BesideStress, SlaveHat, SlidingDensity, SlidingFaces};
 use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
@@ -25,25 +25,25 @@ use std::sync::{Arc, OnceLock};
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Densities<const D: usize> {
     linear: Vec<[[f64; D]; D]>,
-    /// The part that is linear on each face, if hats or surfaces that slide come with it.
+    /// The part that is linear on each face, if hats or non-matching interfaces come with it.
     wide: Option<Vec<[[f64; D]; D]>>,
     hats: Vec<NarrowHat<D>>,
     shares: f64,
-    /// The parts of surfaces that slide.
-    sliding: Option<Arc<Sliding<D>>>,
+    /// The parts of non-matching interfaces.
+    non_matching: Option<Arc<NonMatching<D>>>,
 }
 
-/// The parts of surfaces that slide.
+/// The parts of non-matching interfaces.
 #[derive(Debug)]
-struct Sliding<const D: usize> {
-    densities: Vec<SlidingDensity<D>>,
-    faces: Arc<[SlidingFaces]>,
+struct NonMatching<const D: usize> {
+    densities: Vec<NonMatchingDensity<D>>,
+    faces: Arc<[NonMatchingFaces]>,
     /// Elements in which these have stresses beside that of linear tractions, in order: made at first use, for sampled
     /// instants alone.
-    beside: OnceLock<Vec<(ElementId, BesideStress)>>,
+    residual: OnceLock<Vec<(ElementId, ResidualStress)>>,
 }
 
-impl<const D: usize> PartialEq for Sliding<D> {
+impl<const D: usize> PartialEq for NonMatching<D> {
     fn eq(&self, other: &Self) -> bool {
         self.densities == other.densities
     }
@@ -93,25 +93,25 @@ impl<const D: usize> Densities<D> {
                 (0..D).for_each(|c| linear[hat.face][end][c] += force[c] / faces[hat.face].area);
             }
         }
-        Self { linear, wide, hats, shares: 0.0, sliding: None }
+        Self { linear, wide, hats, shares: 0.0, non_matching: None }
     }
 
-    /// The density with those of all surfaces that slide.
-    pub(crate) fn with_sliding<const N: usize>(
+    /// The density with those of all non-matching interfaces.
+    pub(crate) fn with_non_matching<const N: usize>(
         mut self,
         problem: &Problem<D, N>,
-        faces: &Arc<[SlidingFaces]>,
-        densities: Vec<SlidingDensity<D>>,
+        faces: &Arc<[NonMatchingFaces]>,
+        densities: Vec<NonMatchingDensity<D>>,
     ) -> Self {
         if densities.is_empty() {
             return self;
         }
         self.wide.get_or_insert_with(|| self.linear.clone());
         for (k, (faces, density)) in faces.iter().zip(&densities).enumerate() {
-            density.apply((problem, &problem.surface().sliding()[k]), faces, &mut self.linear);
+            density.apply((problem, &problem.surface().non_matching()[k]), faces, &mut self.linear);
         }
-        let sliding = Sliding { densities, faces: Arc::clone(faces), beside: OnceLock::new() };
-        Self { sliding: Some(Arc::new(sliding)), ..self }
+        let non_matching = NonMatching { densities, faces: Arc::clone(faces), residual: OnceLock::new() };
+        Self { non_matching: Some(Arc::new(non_matching)), ..self }
     }
 
     /// The density with the residual of the shares of its hats: at least 0, their sum 1.
@@ -139,34 +139,34 @@ impl<const D: usize> Densities<D> {
         &self.hats
     }
 
-    /// The parts of surfaces that slide.
-    pub(crate) fn sliding(&self) -> &[SlidingDensity<D>] {
-        self.sliding.as_ref().map_or(&[], |sliding| &sliding.densities)
+    /// The parts of non-matching interfaces.
+    pub(crate) fn non_matching(&self) -> &[NonMatchingDensity<D>] {
+        self.non_matching.as_ref().map_or(&[], |non_matching| &non_matching.densities)
     }
 
-    /// The residuals of surfaces that slide: of Coulomb's cone, and of opposite forces.
-    pub(crate) fn sliding_residuals<const N: usize>(&self, problem: &Problem<D, N>) -> [f64; 2] {
-        let Some(sliding) = &self.sliding else { return [0.0; 2] };
-        let all = sliding.densities.iter().zip(&*sliding.faces).zip(problem.surface().sliding());
-        let one = |((density, faces), surfaces): ((&SlidingDensity<D>, &SlidingFaces), _)| {
+    /// The residuals of non-matching interfaces: of Coulomb's cone, and of opposite forces.
+    pub(crate) fn non_matching_residuals<const N: usize>(&self, problem: &Problem<D, N>) -> [f64; 2] {
+        let Some(non_matching) = &self.non_matching else { return [0.0; 2] };
+        let all = non_matching.densities.iter().zip(&*non_matching.faces).zip(problem.surface().non_matching());
+        let one = |((density, faces), surfaces): ((&NonMatchingDensity<D>, &NonMatchingFaces), _)| {
             density.residuals((problem, surfaces), faces, &self.linear)
         };
         all.map(one).fold([0.0; 2], |a, b| [0, 1].map(|k| worse(a[k], b[k])))
     }
 
     /// The stresses beside that of linear tractions in an element.
-    pub(crate) fn beside<const N: usize>(&self, problem: &Problem<D, N>, element: ElementId) -> BesideStress {
-        let Some(sliding) = &self.sliding else { return BesideStress::NONE };
-        let beside = sliding.beside.get_or_init(|| {
-            let all = sliding.densities.iter().zip(&*sliding.faces).zip(problem.surface().sliding());
-            let mut beside: Vec<_> =
-                all.flat_map(|((density, faces), surfaces)| density.beside((problem, surfaces), faces)).collect();
-            beside.sort_by_key(|(element, _)| *element);
-            beside
+    pub(crate) fn residual<const N: usize>(&self, problem: &Problem<D, N>, element: ElementId) -> ResidualStress {
+        let Some(non_matching) = &self.non_matching else { return ResidualStress::NONE };
+        let residual = non_matching.residual.get_or_init(|| {
+            let all = non_matching.densities.iter().zip(&*non_matching.faces).zip(problem.surface().non_matching());
+            let mut residual: Vec<_> =
+                all.flat_map(|((density, faces), surfaces)| density.residual((problem, surfaces), faces)).collect();
+            residual.sort_by_key(|(element, _)| *element);
+            residual
         });
-        let start = beside.partition_point(|(other, _)| *other < element);
-        let own = beside[start..].iter().take_while(|(other, _)| *other == element);
-        own.fold(BesideStress::NONE, |sum, (_, stress)| sum.plus(stress))
+        let start = residual.partition_point(|(other, _)| *other < element);
+        let own = residual[start..].iter().take_while(|(other, _)| *other == element);
+        own.fold(ResidualStress::NONE, |sum, (_, stress)| sum.plus(stress))
     }
 
     /// The hats of one star.

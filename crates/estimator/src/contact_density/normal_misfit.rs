@@ -9,7 +9,7 @@
 //! where F_DA distributes the impulse over a time in which the node is at rest.
 
 use super::{Densities, NarrowHat};
-use crate::kinematic::ContactTrack;
+use crate::kinematic::ContactMotion;
 use crate::numbers::Reader;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
@@ -117,8 +117,8 @@ impl<const D: usize> NormalForces<D> {
         let mut linear: Vec<_> = linear.collect();
         linear.shrink_to_fit();
         let hats = |end: usize| {
-            // Surfaces that slide have a measure of their own.
-            let hats = densities[end].hats().iter().filter(|hat| problem.surface().sliding_of(hat.node).is_none());
+            // Non-matching interfaces have a measure of their own.
+            let hats = densities[end].hats().iter().filter(|hat| problem.surface().non_matching_of(hat.node).is_none());
             hats.map(move |hat| HatForce { end, hat: *hat, force: normal(hat.face, &hat.resultant) })
         };
         let mut hats: Vec<_> = hats(0).chain(hats(1)).collect();
@@ -262,7 +262,7 @@ impl<const D: usize> FacePressures<D> {
         &self,
         problem: &Problem<D, N>,
         times: &TimeGrid,
-        tracks: &[ContactTrack],
+        tracks: &[ContactMotion],
         weight_of_work: f64,
     ) -> NormalMisfit {
         let face = &problem.surface().faces()[self.face];

@@ -17,7 +17,7 @@ pub(crate) fn common<const D: usize, const N: usize>(
     let surface = problem.surface();
     let contact = &surface.nodes()[at];
     let own = field[contact.node.index()];
-    if contact.opposite.is_none() {
+    if contact.partner.is_none() {
         return own;
     }
     let frame = problem.obstacles()[contact.obstacle].flat_frame();

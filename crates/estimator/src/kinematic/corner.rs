@@ -3,14 +3,14 @@
 //! Problem P_CA is solved for each plane by itself: its conditions involve the normal motion against that plane alone.
 //! The motion of the node is the one with both normal components.
 
-use super::contact_track::ContactTrack;
+use super::contact_motion::ContactMotion;
 use percute_core::contact::{ContactNode, Frame};
 use percute_core::problem::Problem;
 
 /// Both normal motions of a node at two planes at an instant, of which one differs from that of the simulation.
 pub(super) struct Corner<'a, const D: usize> {
     frames: [Frame<D>; 2],
-    tracks: [&'a ContactTrack; 2],
+    tracks: [&'a ContactMotion; 2],
     instant: usize,
 }
 
@@ -19,10 +19,10 @@ impl<'a, const D: usize> Corner<'a, D> {
     pub(super) fn of<const N: usize>(
         problem: &Problem<D, N>,
         contact: &ContactNode,
-        [own, beside]: [&'a ContactTrack; 2],
+        [own, beside]: [&'a ContactMotion; 2],
         instant: usize,
     ) -> Option<Self> {
-        let other = problem.surface().nodes()[contact.beside?];
+        let other = problem.surface().nodes()[contact.second_slot?];
         let frames = [contact.obstacle, other.obstacle].map(|obstacle| problem.obstacles()[obstacle].flat_frame());
         let tracks = [own, beside];
         let made = Self { frames, tracks, instant };
@@ -39,7 +39,7 @@ impl<'a, const D: usize> Corner<'a, D> {
         self.settle(velocity, |track| track.at(self.instant).0);
     }
 
-    fn settle(&self, vector: &mut [f64; D], normal: impl Fn(&ContactTrack) -> f64) {
+    fn settle(&self, vector: &mut [f64; D], normal: impl Fn(&ContactMotion) -> f64) {
         let [first, second] = self.frames.each_ref().map(Frame::normal);
         let cosine: f64 = first.iter().zip(second).map(|(a, b)| a * b).sum();
         let altered = self.tracks.map(|track| track.is_altered(self.instant));
@@ -72,13 +72,13 @@ pub(crate) fn at_both_planes<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     at: usize,
     velocity: &[f64; D],
-    tracks: &[ContactTrack],
+    tracks: &[ContactMotion],
     instant: usize,
 ) -> [f64; D] {
     let contact = &problem.surface().nodes()[at];
     let mut settled = *velocity;
-    if let Some(beside) = contact.beside
-        && let Some(corner) = Corner::of(problem, contact, [&tracks[at], &tracks[beside]], instant)
+    if let Some(second) = contact.second_slot
+        && let Some(corner) = Corner::of(problem, contact, [&tracks[at], &tracks[second]], instant)
     {
         corner.settle_velocity(&mut settled);
     }

@@ -1,30 +1,30 @@
 //! Kinematically admissible fields u_CA, w_CA (§6.1).
 //!
-//! [`FreeMotion`] carries the nodal values \[39\], \[40\], \[43\] of all nodes along the steps;
-//! [`ContactTrack`] replaces the normal component of a node that may touch by the solution of
+//! [`NodalTrajectory`] carries the nodal values \[39\], \[40\], \[43\] of all nodes along the steps;
+//! [`ContactMotion`] replaces the normal component of a node that may touch by the solution of
 //! problem P_CA. Both end in an [`ElementMotion`]. Only this module makes one, so that no raw finite-element field can
 //! be measured.
 //!
 //! Half-step instant k of a run is t_{k/2}: t_n for k = 2n, the middle of a step for odd k.
 
 mod common_motion;
-mod contact_track;
-mod contact_tracks;
+mod contact_motion;
+mod contact_motions;
 mod corner;
-mod free_motion;
+mod nodal_trajectory;
+mod non_matching;
 mod normal_motions;
 mod shape;
-mod sliding;
 mod window;
 
 pub(crate) use common_motion::common;
-pub(crate) use contact_track::{ContactTrack, NormalStep};
-pub(crate) use contact_tracks::ContactTracks;
+pub(crate) use contact_motion::{ContactMotion, NormalStep};
+pub(crate) use contact_motions::ContactMotions;
 use corner::Corner;
 pub(crate) use corner::at_both_planes;
-pub(crate) use free_motion::{FreeMotion, NodalMotion, half_way};
+pub(crate) use nodal_trajectory::{NodalMotion, NodalTrajectory, half_way};
+pub(crate) use non_matching::NonMatchingInstant;
 pub(crate) use normal_motions::NormalMotions;
-pub(crate) use sliding::SlidingInstant;
 
 use crate::field_lanes::gather;
 use crate::lanes::{Lanes, Value, load, store};
@@ -80,7 +80,7 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
     pub(crate) fn set_normal(
         &mut self,
         (problem, i, at): (&Problem<D, N>, usize, usize),
-        tracks: &[ContactTrack],
+        tracks: &[ContactMotion],
         instant: usize,
     ) {
         settle((problem, at), [&mut self.displacement[i], &mut self.velocity[i]], tracks, instant);
@@ -205,23 +205,23 @@ pub(crate) fn gather_common<const D: usize, const N: usize>(
 
 /// Puts the solution of P_CA in the place of the normal components of the motion of a contact node, displacement and
 /// velocity; it is the common motion of two nodes that may touch. A node at two planes gets both normal components, one
-/// of surfaces that slide the change of its own.
+/// of non-matching interfaces the change of its own.
 pub(crate) fn settle<const D: usize, const N: usize>(
     (problem, at): (&Problem<D, N>, usize),
     [displacement, velocity]: [&mut [f64; D]; 2],
-    tracks: &[ContactTrack],
+    tracks: &[ContactMotion],
     instant: usize,
 ) {
     let (contact, track) = (&problem.surface().nodes()[at], &tracks[at]);
-    if let Some(beside) = contact.beside {
-        if let Some(corner) = Corner::of(problem, contact, [track, &tracks[beside]], instant) {
+    if let Some(second) = contact.second_slot {
+        if let Some(corner) = Corner::of(problem, contact, [track, &tracks[second]], instant) {
             corner.settle_displacement(displacement);
             corner.settle_velocity(velocity);
         }
         return;
     }
     let frame: Frame<D> = problem.obstacles()[contact.obstacle].flat_frame();
-    if problem.surface().sliding_of(at).is_some() {
+    if problem.surface().non_matching_of(at).is_some() {
         let (speed, place) = track.at(instant);
         for c in 0..D {
             displacement[c] += place * frame.normal()[c];
@@ -229,7 +229,7 @@ pub(crate) fn settle<const D: usize, const N: usize>(
         }
         return;
     }
-    if contact.opposite.is_some() {
+    if contact.partner.is_some() {
         let part = problem.surface().own_part(at, problem.mass());
         let (speed, gap) = track.at(instant);
         for c in 0..D {

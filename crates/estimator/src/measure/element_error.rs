@@ -1,6 +1,6 @@
 //! The part of an element in η.
 
-use crate::contact_density::BesideStress;
+use crate::contact_density::ResidualStress;
 use crate::lanes::{LANES, Lanes, Value};
 
 /// The part of one element in η and d at one sample (J), contact apart.
@@ -38,8 +38,8 @@ impl ElementError {
     /// Of two stresses whose product is not known, the norm of the sum is at most the sum of the norms. Stresses inside
     /// an element do no work on the mean of the misfit. The reference is that of the sum over a star: the work of its
     /// stress on σ_CA vanishes there.
-    pub(crate) fn beside(self, stress: &BesideStress, work: f64, energies: [f64; 2]) -> Self {
-        let BesideStress { inside, shared, .. } = *stress;
+    pub(crate) fn residual(self, stress: &ResidualStress, work: f64, energies: [f64; 2]) -> Self {
+        let ResidualStress { inside, shared, .. } = *stress;
         let [fluctuation, hats] = energies.map(|energy| energy.max(0.0).sqrt());
         let products = shared * hats + inside * (fluctuation + hats + shared);
         let sharp = self.elastic + work + shared * shared + inside * inside + 2.0 * products;
@@ -100,10 +100,10 @@ mod tests {
             let inside = vector(2..8, sizes[2]);
             let misfit: [f64; 8] = std::array::from_fn(|i| mean[i] + fluctuation[i]);
             let root = |stress: [f64; 8]| energy(&[stress]).sqrt();
-            let stress = BesideStress { inside: root(inside), shared: root(shared), products: [0.0; LOADS] };
+            let stress = ResidualStress { inside: root(inside), shared: root(shared), products: [0.0; LOADS] };
             let work = (0..8).map(|i| misfit[i] * shared[i]).sum();
             let alone = ElementError { elastic: energy(&[misfit, hats]), ..ElementError::filled(0.0) };
-            let found = alone.beside(&stress, work, [energy(&[fluctuation]), energy(&[hats])]).elastic;
+            let found = alone.residual(&stress, work, [energy(&[fluctuation]), energy(&[hats])]).elastic;
             let whole = energy(&[misfit, hats, shared, inside]);
             // Rounding of some operations.
             assert!(found >= whole * (1.0 - 1e-12), "{case}: {found} {whole}");

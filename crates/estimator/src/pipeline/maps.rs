@@ -3,7 +3,7 @@
 
 use crate::blocks::BLOCK;
 use crate::element::Element;
-use crate::kinematic::{ContactTrack, common, settle};
+use crate::kinematic::{ContactMotion, common, settle};
 use crate::map::{AdmissibleFields, ElementMap};
 use crate::measure::{ElementError, ElementMeasure};
 use crate::options::Acceleration;
@@ -100,7 +100,7 @@ impl Maps {
     pub(crate) fn settle<const D: usize, const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
-        tracks: &[ContactTrack],
+        tracks: &[ContactMotion],
         last: usize,
     ) {
         let count = self.made.partition_point(|map| map.step <= last);

@@ -8,13 +8,13 @@ mod fixture;
 mod maps;
 mod near;
 mod near_elements;
+mod non_matching;
 mod prepare;
 mod sampled_interval;
 mod sampled_levels;
 mod sampling;
 mod schedule;
 mod separation;
-mod sliding;
 #[cfg(test)]
 mod tests;
 mod totals;
@@ -98,8 +98,8 @@ impl<'p, const D: usize, const N: usize> Pipeline<'p, D, N> {
             return Err(EstimateError::TooManyThreads { threads });
         }
         options.acceleration(D).check(options.reconstruction)?;
-        let sliding = problem.conditions().interfaces.iter().find(|interface| !interface.is_matching());
-        if let Some(interface) = sliding.filter(|_| options.reconstruction != Reconstruction::Corrected) {
+        let non_matching = problem.conditions().interfaces.iter().find(|interface| !interface.is_matching());
+        if let Some(interface) = non_matching.filter(|_| options.reconstruction != Reconstruction::Corrected) {
             return Err(EstimateError::NotMatching { groups: interface.groups().map(str::to_string) });
         }
         // A pool of its own: a process forked later must not wait for threads it does not have.

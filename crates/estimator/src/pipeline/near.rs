@@ -5,15 +5,15 @@ mod append;
 mod side_by_side;
 
 use super::maps::Contribution;
+use super::non_matching::NonMatchingMisfit;
 use super::sampling::{
     ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, Sampling, trapezoid,
 };
-use super::sliding::SlidingMisfit;
 use super::waiting::{ContactInstant, Waiting};
 use crate::concentrated::HatStress;
-use crate::contact_density::{BesideStress, NarrowHat, NormalMisfit};
+use crate::contact_density::{NarrowHat, NormalMisfit, ResidualStress};
 use crate::element::Element;
-use crate::kinematic::ContactTrack;
+use crate::kinematic::ContactMotion;
 use crate::measure::Balanced;
 use crate::numbers::Reader;
 use crate::reconstruction::ReconstructionMethod;
@@ -28,7 +28,7 @@ const AT_REST: f64 = 1e-3;
 
 /// The part of η that comes from stresses beside σ_DA.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct BesideShare {
+pub(super) struct ResidualShare {
     /// Its integral (J s).
     pub(super) integral: f64,
     /// It at the last sample (J).
@@ -51,7 +51,7 @@ pub(super) struct NearElement<const D: usize, const N: usize> {
     /// The part of friction beside nodes at two planes so far (J).
     corner_friction: f64,
     /// The part of η of stresses beside σ_DA so far.
-    pub(super) beside: BesideShare,
+    pub(super) residual: ResidualShare,
     /// Intervals so far.
     checks: usize,
     /// The fields that balance at the last level, unless the contact force jumps there.
@@ -90,7 +90,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
             start: None,
             normal_work: 0.0,
             corner_friction: 0.0,
-            beside: BesideShare::default(),
+            residual: ResidualShare::default(),
             checks: 0,
             reached: None,
             course: Course::default(),
@@ -109,9 +109,9 @@ pub(super) struct ContactSampling<'a, 'p, const D: usize, const N: usize> {
     /// The largest component of the initial velocity (m/s).
     pub(super) fastest: f64,
     /// Those of the contact nodes, with the motion at hand over the intervals that are sampled.
-    pub(super) tracks: &'a [ContactTrack],
-    /// The normal misfit of surfaces that slide over these.
-    pub(super) sliding: &'a SlidingMisfit,
+    pub(super) tracks: &'a [ContactMotion],
+    /// The normal misfit of non-matching interfaces over these.
+    pub(super) non_matching: &'a NonMatchingMisfit,
 }
 
 impl<const D: usize, const N: usize> NearElement<D, N> {
@@ -150,28 +150,28 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         self.check_contact(context, &waiting.stop.at.velocities, &waiting.touching[1], stop);
         let [from, to] = &waiting.hats;
         let hats = [from, &NarrowHat::mean(from, to), to].map(|hats| self.hat_stress(context, hats));
-        let [before, after] = waiting.beside;
+        let [before, after] = waiting.residual;
         let interval = ElementInterval {
             steps,
             start: waiting.start.as_ref().map(|stress| (stress, &start.velocities)),
             mid: waiting.mid.as_ref().map(|mid| (&mid.stress, &mid.at.velocities)),
             end: (&waiting.stop.stress, &waiting.stop.at.velocities),
             contact: self.contact_part(context, &waiting, (steps, start.friction)),
-            beside: [before, BesideStress::mean(&before, &after), after],
+            residual: [before, ResidualStress::mean(&before, &after), after],
             hats: [&hats[0], &hats[1], &hats[2]],
         };
         let (samples, [begin, middle, end]) = sampler.sample(&interval, &mut self.course, &mut self.kept);
-        let begin = if interval.start.is_some() { begin } else { self.beside.last };
+        let begin = if interval.start.is_some() { begin } else { self.residual.last };
         let [from, to] = steps.map(|n| context.shared.times.instants()[n]);
-        self.beside.integral += trapezoid(to - from, begin, interval.mid.map(|_| middle), end);
-        self.beside.last = end;
+        self.residual.integral += trapezoid(to - from, begin, interval.mid.map(|_| middle), end);
+        self.residual.last = end;
         self.start = Some(waiting.stop.at);
         samples
     }
 
-    /// The surfaces that slide, by their index, to which the element belongs.
-    pub(super) fn sliding(&self, problem: &Problem<D, N>) -> Option<usize> {
-        self.contact.iter().flatten().find_map(|&at| problem.surface().sliding_of(at))
+    /// The non-matching interfaces, by their index, to which the element belongs.
+    pub(super) fn non_matching(&self, problem: &Problem<D, N>) -> Option<usize> {
+        self.contact.iter().flatten().find_map(|&at| problem.surface().non_matching_of(at))
     }
 
     /// The stress of hats in the element.
@@ -190,8 +190,8 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
     ) -> [ContactPart; 3] {
         let mut normal = NormalMisfit::default();
         let (surface, weight) = (context.shared.problem.surface(), context.reconstruction.weight_of_work());
-        for &f in self.faces.iter().filter(|&&f| surface.sliding_of(surface.faces()[f].nodes[0]).is_some()) {
-            normal.add(&context.sliding.over(f, steps, context.shared.times, weight));
+        for &f in self.faces.iter().filter(|&&f| surface.non_matching_of(surface.faces()[f].nodes[0]).is_some()) {
+            normal.add(&context.non_matching.over(f, steps, context.shared.times, weight));
         }
         for pressures in &waiting.pressures {
             normal.add(&context.reconstruction.normal_misfit(pressures, context.tracks));
@@ -251,14 +251,14 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let problem = context.shared.problem;
         let speed = |v: &[f64; D]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         for (i, first) in self.contact.iter().enumerate() {
-            let second = first.and_then(|at| problem.surface().nodes()[at].beside);
+            let second = first.and_then(|at| problem.surface().nodes()[at].second_slot);
             for (k, at) in [*first, second].into_iter().enumerate() {
-                // Those of surfaces that slide are checked where their motion is made.
-                let Some(at) = at.filter(|&at| problem.surface().sliding_of(at).is_none()) else { continue };
+                // Those of non-matching interfaces are checked where their motion is made.
+                let Some(at) = at.filter(|&at| problem.surface().non_matching_of(at).is_none()) else { continue };
                 let contact = &problem.surface().nodes()[at];
                 let (velocity, displacement) = (&velocities.motion.velocity()[i], &velocities.motion.displacement()[i]);
                 // The element does not have the motion of a node of another body.
-                let (normal, gap) = match contact.opposite {
+                let (normal, gap) = match contact.partner {
                     Some(_) => context.tracks[at].at(instant),
                     None => {
                         let frame = problem.obstacles()[contact.obstacle].flat_frame();

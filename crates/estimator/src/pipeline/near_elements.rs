@@ -11,7 +11,7 @@ use super::sampled_interval::SampledInterval;
 use super::sampled_levels::SampledLevels;
 use super::sampling::{ElementSample, Sampling};
 use super::waiting;
-use crate::kinematic::ContactTracks;
+use crate::kinematic::ContactMotions;
 use crate::lanes::LANES;
 use crate::numbers::Reader;
 use crate::scratch_file::{ScratchError, ScratchFile};
@@ -35,7 +35,7 @@ pub(super) fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, sa
     elements * (size_of::<NearElement<D, N>>() + KeptForm::memory())
         + all.min(most)
         + groups
-        + ContactTracks::memory(problem, span(spacing))
+        + ContactMotions::memory(problem, span(spacing))
 }
 
 /// Whether the intervals of a flight over the whole run have no room in memory.
@@ -98,7 +98,7 @@ impl<const D: usize, const N: usize> NearElements<D, N> {
     }
 
     /// The first intervals that wait together, if the motion of all nodes is known at their end.
-    pub(super) fn first_known(&self, tracks: &ContactTracks, intervals: &[SampledInterval]) -> Option<Range<usize>> {
+    pub(super) fn first_known(&self, tracks: &ContactMotions, intervals: &[SampledInterval]) -> Option<Range<usize>> {
         let first = self.backlog.first()?;
         let stop = first.clone().last().map_or(0, |k| 2 * intervals[k].levels[1]);
         tracks.known().is_some_and(|known| stop < known).then_some(first)

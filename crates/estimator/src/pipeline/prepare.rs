@@ -6,13 +6,13 @@ mod supports;
 mod vibration;
 
 use super::near_elements::span;
+use super::non_matching::NonMatchingMisfit;
 use super::schedule::{Decision, Schedule};
-use super::sliding::SlidingMisfit;
 use crate::contact_density::{CornerSliding, OffContact};
 use crate::element::Element;
 use crate::error::EstimateError;
 use crate::estimate::Supplied;
-use crate::kinematic::{ContactTracks, FreeMotion, NodalMotion, NormalStep, half_way};
+use crate::kinematic::{ContactMotions, NodalMotion, NodalTrajectory, NormalStep, half_way};
 use crate::loaded::LoadedFaces;
 use crate::nodal_field::{FieldPool, NodalField};
 use crate::options::Options;
@@ -40,10 +40,10 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
     loaded: LoadedFaces<'p, D, N>,
     reconstruction: Box<dyn ReconstructionMethod<D, N> + 'p>,
     schedule: Schedule,
-    motion: FreeMotion<D>,
+    motion: NodalTrajectory<D>,
     pool: FieldPool<D>,
-    tracks: ContactTracks,
-    sliding: SlidingMisfit,
+    tracks: ContactMotions,
+    non_matching: NonMatchingMisfit,
     supports: SupportCheck,
     /// The step before `current`.
     before: Option<SurfaceStep<D>>,
@@ -80,10 +80,10 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             loaded: LoadedFaces::new(problem),
             reconstruction: reconstruction::new(problem, times, options),
             schedule: Schedule::new(options, problem.mesh().element_count(), times.step_count()),
-            motion: FreeMotion::new(problem, &pool),
+            motion: NodalTrajectory::new(problem, &pool),
             pool,
-            tracks: ContactTracks::new(problem, span(spacing), ScratchFile::default()),
-            sliding: SlidingMisfit::new(problem, span(spacing)),
+            tracks: ContactMotions::new(problem, span(spacing), ScratchFile::default()),
+            non_matching: NonMatchingMisfit::new(problem, span(spacing)),
             supports: SupportCheck::default(),
             before: None,
             current: None,
@@ -140,25 +140,25 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         self.first_contact.unwrap_or(0)
     }
 
-    pub(super) fn tracks(&self) -> &ContactTracks {
+    pub(super) fn tracks(&self) -> &ContactMotions {
         &self.tracks
     }
 
     /// The tracks, for tests.
     #[cfg(test)]
-    pub(super) fn tracks_mut(&mut self) -> &mut ContactTracks {
+    pub(super) fn tracks_mut(&mut self) -> &mut ContactMotions {
         &mut self.tracks
     }
 
     /// Has the normal motion of the candidate nodes at hand from one known instant to another.
     pub(super) fn show(&mut self, instants: [usize; 2]) -> Result<(), ScratchError> {
         self.tracks.show(instants)?;
-        self.sliding.show(self.problem, &mut self.tracks, instants)
+        self.non_matching.show(self.problem, &mut self.tracks, instants)
     }
 
-    /// The normal misfit of surfaces that slide, at the instants at hand.
-    pub(super) fn sliding(&self) -> &SlidingMisfit {
-        &self.sliding
+    /// The normal misfit of non-matching interfaces, at the instants at hand.
+    pub(super) fn non_matching(&self) -> &NonMatchingMisfit {
+        &self.non_matching
     }
 
     /// Refuses a step that does not fit.
@@ -187,12 +187,12 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             }
         }
         let surface = problem.surface();
-        let facing = surface.facing(step.displacement());
+        let configuration = surface.configuration(step.displacement());
         // A node of a master touches where a multiplier acts on it, at any gap of its own.
-        let touches = |at: usize| step.touching[at] && facing.has_condition(at);
+        let touches = |at: usize| step.touching[at] && configuration.has_condition(at);
         for (at, contact) in surface.nodes().iter().enumerate().filter(|&(at, _)| touches(at)) {
-            let (node, gap) = (contact.node.index(), facing.gap(at, step.displacement()));
-            let velocity = facing.relative(at, problem.initial_velocity());
+            let (node, gap) = (contact.node.index(), configuration.gap(at, step.displacement()));
+            let velocity = configuration.relative(at, problem.initial_velocity());
             let speed = problem.obstacles()[contact.obstacle].flat_frame().split(&velocity).0;
             if gap > tolerance || speed.abs() > problem.speed_tolerance() {
                 return Err(EstimateError::StartsTouching { node, gap, speed });
@@ -206,12 +206,12 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         let Some(start) = &self.current else { return Ok(()) };
         let surface = self.problem.surface();
         let displacement = self.problem.initial_displacement();
-        let facing = surface.facing(displacement);
+        let configuration = surface.configuration(displacement);
         for (at, contact) in surface.nodes().iter().enumerate() {
             if step.touching[at] && !start.forces.level.surface.touching[at] && surface.leads(at) {
                 let frame = self.problem.obstacles()[contact.obstacle].flat_frame();
-                let velocity = frame.split(&facing.relative(at, self.problem.initial_velocity())).0;
-                let gap = facing.gap(at, displacement);
+                let velocity = frame.split(&configuration.relative(at, self.problem.initial_velocity())).0;
+                let gap = configuration.gap(at, displacement);
                 let smallest_gap = -0.25 * velocity * self.times.step(0);
                 if gap < smallest_gap {
                     return Err(EstimateError::StartsTooNear { node: contact.node.index(), gap, smallest_gap });
@@ -245,7 +245,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         }
         let BalancedFields { displacement, inertia, contact, densities, split, smoothed } = balanced;
         if let Some(densities) = &densities {
-            self.sliding.push(problem, n, densities)?;
+            self.non_matching.push(problem, n, densities)?;
         }
         let level = TimeLevel {
             index: n,

@@ -2,7 +2,7 @@
 
 use super::maps::{Contribution, Maps};
 use crate::concentrated::HatStress;
-use crate::contact_density::BesideStress;
+use crate::contact_density::ResidualStress;
 use crate::element::Element;
 use crate::increment::{self, Increment};
 use crate::kinematic::{ElementMotion, gather_common};
@@ -158,7 +158,7 @@ pub(super) struct ElementInterval<'i, const D: usize, const N: usize> {
     /// The contact part of η at its beginning, middle and end (J).
     pub(super) contact: [ContactPart; 3],
     /// Stresses beside these, at its beginning, middle and end.
-    pub(super) beside: [BesideStress; 3],
+    pub(super) residual: [ResidualStress; 3],
     /// The stress of hats at its beginning, middle and end.
     pub(super) hats: [&'i [HatStress<'i>]; 3],
 }
@@ -284,18 +284,18 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
     ) -> ([ElementSample; 3], [f64; 3]) {
         let mut changes = [0.0; 3];
         let mut at = |(stress, at): SampledFields<'_, D, N>, k: usize| {
-            let (hats, beside) = (interval.hats[k], &interval.beside[k]);
+            let (hats, residual) = (interval.hats[k], &interval.residual[k]);
             let misfit = stress.loading.as_ref().map(|loading| self.measure.difference(loading, &at.motion));
             let of_misfit = |work: &dyn Fn(&Loading<D, N>) -> f64| misfit.as_ref().map_or(0.0, work);
             let of_hats = of_misfit(&|misfit| hat_energy(misfit, hats));
             let alone = self.measure.error_of((&stress.mean, stress.fluctuation), &at.increment, &at.motion, of_hats);
-            let error = if beside.is_none() {
+            let error = if residual.is_none() {
                 alone
             } else {
                 let extent = self.shared.problem.material(self.id).extent();
                 let hats: f64 = hats.iter().map(|hat| hats.len() as f64 * hat.energy()).sum();
                 let energies = [stress.fluctuation, hats].map(|energy| extent * energy);
-                alone.beside(beside, of_misfit(&|misfit| work(misfit, &beside.products)), energies)
+                alone.residual(residual, of_misfit(&|misfit| work(misfit, &residual.products)), energies)
             };
             changes[k] = error.elastic - alone.elastic;
             ElementSample { error, contact: interval.contact[k] }

@@ -29,20 +29,20 @@ pub(super) fn estimate<const D: usize, const N: usize>(
     worked: Worked<D, N>,
 ) -> Estimate {
     let Worked { mut intervals, near, integrals: mut integral, mut residuals, mut maps } = worked;
-    let mut beside = vec![0.0; problem.surface().sliding().len()];
+    let mut residual = vec![0.0; problem.surface().non_matching().len()];
     // The last step taken in, unless work was stopped before.
     let last = intervals[intervals.len() - 1].levels[1];
     let end = times.instants()[last];
     for element in &near {
         integral[element.element.index()] = element.course.integral;
         residuals.merge(&element.residuals);
-        if let Some(index) = element.sliding(problem) {
-            beside[index] += element.beside.integral;
+        if let Some(index) = element.non_matching(problem) {
+            residual[index] += element.residual.integral;
         }
     }
     let whole = integral.iter().sum::<f64>();
     let mut surfaces = preparation.tracks().surfaces();
-    surfaces.iter_mut().zip(beside).for_each(|(surface, part)| surface.stress = ratio(part, whole));
+    surfaces.iter_mut().zip(residual).for_each(|(surface, part)| surface.stress = ratio(part, whole));
     preparation.tracks().report(&mut residuals);
     residuals.merge(&preparation.residuals);
     preparation.reconstruction().concentration().into_iter().for_each(|stars| stars.add_residuals(&mut residuals));

@@ -1,7 +1,7 @@
 //! Intervals of near elements that wait until the motion of their nodes is known, as numbers.
 
 use super::sampling::{ElementVelocities, SampledStress};
-use crate::contact_density::{BesideStress, CornerSliding, FacePressures, NarrowHat};
+use crate::contact_density::{CornerSliding, FacePressures, NarrowHat, ResidualStress};
 use crate::numbers::Reader;
 
 /// An element at a half-step instant; until contact is solved for, its normal components are those of the simulation.
@@ -26,14 +26,14 @@ pub(super) struct Waiting<const D: usize, const N: usize> {
     pub(super) start: Option<SampledStress<D, N>>,
     pub(super) mid: Option<WaitingSample<D, N>>,
     pub(super) stop: WaitingSample<D, N>,
-    /// Which nodes touch at the beginning and at the end: the plane of their first entry, and a second one.
+    /// Which nodes touch at the beginning and at the end: the plane of their first slot, and a second one.
     pub(super) touching: [[[bool; 2]; N]; 2],
     /// Pressures on its candidate faces, where they act off contact.
     pub(super) pressures: Vec<FacePressures<D>>,
     /// Sliding on its candidate faces beside a node at two planes, step by step.
     pub(super) sliding: Vec<CornerSliding<D>>,
-    /// Stresses beside σ_DA at the beginning and the end, of surfaces that slide.
-    pub(super) beside: [BesideStress; 2],
+    /// Stresses beside σ_DA at the beginning and the end, of non-matching interfaces.
+    pub(super) residual: [ResidualStress; 2],
     /// Narrow hats of its nodes at the beginning and the end, those of a node side by side.
     pub(super) hats: [Vec<NarrowHat<D>>; 2],
 }
@@ -63,18 +63,18 @@ impl<const D: usize, const N: usize> WaitingSample<D, N> {
 
 impl<const D: usize, const N: usize> Waiting<D, N> {
     /// Whether there are stresses beside σ_DA, which need the loading that it balances.
-    pub(super) fn is_loaded(hats: &[Vec<NarrowHat<D>>; 2], beside: &[BesideStress; 2]) -> bool {
-        hats.iter().any(|hats| !hats.is_empty()) || !beside.iter().all(BesideStress::is_none)
+    pub(super) fn is_loaded(hats: &[Vec<NarrowHat<D>>; 2], residual: &[ResidualStress; 2]) -> bool {
+        hats.iter().any(|hats| !hats.is_empty()) || !residual.iter().all(ResidualStress::is_none)
     }
 
     /// Appends it to numbers.
     pub(super) fn append(&self, numbers: &mut Vec<f64>) {
         let touching = self.touching.as_flattened().as_flattened().iter().copied();
-        let beside = !self.beside.iter().all(BesideStress::is_none);
-        let flags = [self.start.is_some(), self.mid.is_some(), beside].into_iter().chain(touching);
+        let residual = !self.residual.iter().all(ResidualStress::is_none);
+        let flags = [self.start.is_some(), self.mid.is_some(), residual].into_iter().chain(touching);
         numbers.push(flags.fold(0, |flags, flag| 2 * flags + usize::from(flag)) as f64);
-        if beside {
-            self.beside.iter().for_each(|beside| beside.append(numbers));
+        if residual {
+            self.residual.iter().for_each(|residual| residual.append(numbers));
         }
         let [from, to] = &self.hats;
         let counts = [self.pressures.len(), self.sliding.len(), from.len(), to.len()];
@@ -91,12 +91,12 @@ impl<const D: usize, const N: usize> Waiting<D, N> {
     pub(super) fn read(numbers: &mut Reader<'_>) -> Self {
         let flags = numbers.count();
         let flag = |k: usize| (flags >> (4 * N + 2 - k)) & 1 == 1;
-        let beside = [(); 2].map(|()| if flag(2) { BesideStress::read(numbers) } else { BesideStress::NONE });
+        let residual = [(); 2].map(|()| if flag(2) { ResidualStress::read(numbers) } else { ResidualStress::NONE });
         let [pressures, sliding, from, to] = [(); 4].map(|()| numbers.count());
         let pressures = (0..pressures).map(|_| FacePressures::read(numbers)).collect();
         let sliding = (0..sliding).map(|_| CornerSliding::read(numbers)).collect();
         let hats = [from, to].map(|count| (0..count).map(|_| NarrowHat::read(numbers)).collect());
-        let loaded = Self::is_loaded(&hats, &beside);
+        let loaded = Self::is_loaded(&hats, &residual);
         Self {
             start: flag(0).then(|| SampledStress::read(numbers, loaded)),
             mid: flag(1).then(|| WaitingSample::read(numbers, loaded)),
@@ -104,7 +104,7 @@ impl<const D: usize, const N: usize> Waiting<D, N> {
             touching: [0, 1].map(|end| std::array::from_fn(|i| [0, 1].map(|k| flag(3 + 2 * (end * N + i) + k)))),
             pressures,
             sliding,
-            beside,
+            residual,
             hats,
         }
     }

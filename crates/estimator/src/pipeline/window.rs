@@ -276,9 +276,11 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
             }
             let shared = Sampling { problem, times, equilibration, choice, maps: &self.maps };
             let (reconstruction, tracks) = (preparation.reconstruction(), preparation.tracks().all());
-            let sliding = preparation.sliding();
-            self.near
-                .sample(&ContactSampling { shared: &shared, reconstruction, fastest, tracks, sliding }, intervals)?;
+            let non_matching = preparation.non_matching();
+            self.near.sample(
+                &ContactSampling { shared: &shared, reconstruction, fastest, tracks, non_matching },
+                intervals,
+            )?;
             self.near.put(&mut self.maps);
         }
         Ok(())

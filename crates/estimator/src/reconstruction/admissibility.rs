@@ -15,7 +15,7 @@ pub(crate) fn check<const D: usize, const N: usize>(
 ) {
     for densities in [&densities.start, &densities.end] {
         residuals.hat_shares = worse(residuals.hat_shares, densities.shares());
-        let [cone, opposite] = densities.sliding_residuals(problem);
+        let [cone, opposite] = densities.non_matching_residuals(problem);
         residuals.cone = worse(residuals.cone, cone);
         residuals.opposite_forces = worse(residuals.opposite_forces, opposite);
         let size = |f: &[f64; D]| f.iter().map(|x| x * x).sum::<f64>().sqrt();

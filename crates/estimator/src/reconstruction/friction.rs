@@ -1,6 +1,6 @@
 //! The friction part of η of densities that are linear over a step.
 
-use crate::contact_density::{Densities, FaceDensity, SlidingDensity, SlidingFaces, face_power, trapezoids};
+use crate::contact_density::{Densities, FaceDensity, NonMatchingDensity, NonMatchingFaces, face_power, trapezoids};
 use crate::direction::along;
 use crate::time_level::{ForcesKnown, MotionKnown};
 use percute_core::contact::Side;
@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 /// On each candidate face (J), up to the middle and the end of the step from `now` to `next`, of this length (s), with
 /// this density at its end: the trapezoidal rule over its three half-step instants. Faces with a node at two planes
-/// wait, see [`CornerSliding`](crate::contact_density::CornerSliding), and those of surfaces that slide have
-/// [`add_sliding`].
+/// wait, see [`CornerSliding`](crate::contact_density::CornerSliding), and those of non-matching interfaces have
+/// [`add_non_matching`].
 pub(super) fn friction<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     length: f64,
@@ -21,7 +21,7 @@ pub(super) fn friction<const D: usize, const N: usize>(
     let surface = problem.surface();
     let mut friction = Vec::with_capacity(surface.faces().len());
     for (f, face) in surface.faces().iter().enumerate() {
-        if surface.reaches_a_corner(face) || surface.sliding_of(face.nodes[0]).is_some() {
+        if surface.reaches_a_corner(face) || surface.non_matching_of(face.nodes[0]).is_some() {
             friction.push([0.0; 2]);
             continue;
         }
@@ -45,9 +45,9 @@ pub(super) fn friction<const D: usize, const N: usize>(
     friction
 }
 
-/// Adds the same of surfaces that slide: half of each piece on each of its faces.
-pub(super) fn add_sliding<const D: usize, const N: usize>(
-    (problem, faces): (&Problem<D, N>, &[SlidingFaces]),
+/// Adds the same of non-matching interfaces: half of each piece on each of its faces.
+pub(super) fn add_non_matching<const D: usize, const N: usize>(
+    (problem, faces): (&Problem<D, N>, &[NonMatchingFaces]),
     length: f64,
     now: &ForcesKnown<D>,
     next: &MotionKnown<D>,
@@ -55,19 +55,21 @@ pub(super) fn add_sliding<const D: usize, const N: usize>(
     friction: &mut [[f64; 2]],
 ) {
     let surface = problem.surface();
-    let all = surface.sliding().iter().zip(faces).zip(now.density.sliding().iter().zip(density.sliding()));
-    for ((sliding, faces), (start, end)) in all {
-        if sliding.law().friction() == 0.0 || (start.is_zero() && end.is_zero()) {
+    let all =
+        surface.non_matching().iter().zip(faces).zip(now.density.non_matching().iter().zip(density.non_matching()));
+    for ((non_matching, faces), (start, end)) in all {
+        if non_matching.law().friction() == 0.0 || (start.is_zero() && end.is_zero()) {
             continue;
         }
         let tangential = |field: &[[f64; D]], side: &Side| -> Vec<f64> {
             let node = |k: usize| surface.nodes()[side.position(k)].node.index();
-            (0..side.len()).map(|k| along(&field[node(k)], sliding.tangent())).collect()
+            (0..side.len()).map(|k| along(&field[node(k)], non_matching.tangent())).collect()
         };
-        let both = |field: &[[f64; D]]| [sliding.slave(), sliding.master()].map(|side| tangential(field, side));
+        let both =
+            |field: &[[f64; D]]| [non_matching.slave(), non_matching.master()].map(|side| tangential(field, side));
         let [from, to] = [now.now.motion.velocity(), next.now.velocity()].map(both);
-        let mut add = |density: &SlidingDensity<D>, slip: &[Vec<f64>; 2], parts: [f64; 2]| {
-            density.friction_power(sliding, slip, |piece, power| {
+        let mut add = |density: &NonMatchingDensity<D>, slip: &[Vec<f64>; 2], parts: [f64; 2]| {
+            density.friction_power(non_matching, slip, |piece, power| {
                 for face in faces.of(piece) {
                     (0..2).for_each(|k| friction[face][k] += 0.5 * parts[k] * power);
                 }
@@ -82,8 +84,8 @@ pub(super) fn add_sliding<const D: usize, const N: usize>(
             let place = both(next.now.displacement());
             let quarter = 0.25 * length;
             let at_middle = |k: usize, node: usize| place[k][node] - quarter * (slip[k][node] + to[k][node]);
-            let shifts = sliding.shifts(|node| at_middle(0, node), |node| at_middle(1, node));
-            let mean = SlidingDensity::mean(start, end, &Arc::new(sliding.coupling_at(&shifts)));
+            let shifts = non_matching.shifts(|node| at_middle(0, node), |node| at_middle(1, node));
+            let mean = NonMatchingDensity::mean(start, end, &Arc::new(non_matching.coupling_at(&shifts)));
             add(&mean, &slip, [half, all]);
         }
     }

@@ -15,7 +15,7 @@ use crate::contact_density::{Densities, FacePressures, LevelDensities, NormalMis
 use crate::difference::Difference;
 use crate::element::Element;
 use crate::error::EstimateError;
-use crate::kinematic::ContactTrack;
+use crate::kinematic::ContactMotion;
 use crate::nodal_field::{FieldPool, NodalField};
 use crate::options::{Acceleration, Options, Reconstruction};
 use crate::time_level::{ForcesKnown, Inertia, MotionKnown, SplitFields, SurfaceStep};
@@ -128,7 +128,7 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
     }
 
     /// The part of the contact law that such densities miss, for the motion in the tracks.
-    fn normal_misfit(&self, _pressures: &FacePressures<D>, _tracks: &[ContactTrack]) -> NormalMisfit {
+    fn normal_misfit(&self, _pressures: &FacePressures<D>, _tracks: &[ContactMotion]) -> NormalMisfit {
         NormalMisfit::default()
     }
 

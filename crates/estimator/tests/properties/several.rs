@@ -1,4 +1,4 @@
-//! A block on two blocks: a surface that slides along those of two bodies.
+//! A block on two blocks: a non-matching interface with two bodies.
 
 use crate::properties::bodies::{aluminium, steps};
 use crate::properties::estimating::{assert_admissible, estimate, history};

@@ -2,7 +2,7 @@
 
 use super::elsewhere::Elsewhere;
 use super::rows::FIELDS;
-use super::stored_part::StoredSteps;
+use super::stored_part::ThinnedSteps;
 use super::sums::{check_rows, compare, of_flags, of_vectors};
 use crate::checksum::Checksum;
 use crate::error::{FileCause, FileError};
@@ -60,7 +60,7 @@ pub(super) struct Contents {
     pub(super) supplied: [bool; 2],
     pub(super) supplied_contact: [bool; 2],
     pub(super) stored: [bool; 2],
-    pub(super) kept: Option<StoredSteps>,
+    pub(super) kept: Option<ThinnedSteps>,
     pub(super) lacks_reactions: bool,
     /// Whether each field at each instant has a checksum.
     pub(super) checksums: bool,

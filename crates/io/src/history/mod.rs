@@ -25,7 +25,7 @@ pub use plan::Plan;
 pub use recover::{Recovered, recover};
 pub use resume::Unended;
 pub use source::{HistorySource, StoredSteps};
-pub use stored_part::{StoredPart, StoredSteps};
+pub use stored_part::{StoredPart, ThinnedSteps};
 pub use writer::Writer;
 
 /// Path of the displacements in a file.

@@ -30,7 +30,7 @@ impl HistoryFile {
     /// All planned instants of the run (s), those that a thinned history does not keep included.
     #[must_use]
     pub fn run_times(&self) -> &TimeGrid {
-        self.stored_steps().map_or(self.times(), |kept| &kept.times)
+        self.thinned_steps().map_or(self.times(), |kept| &kept.times)
     }
 
     /// Whether the file holds all that its run was to give.
@@ -43,16 +43,16 @@ impl HistoryFile {
     #[must_use]
     pub fn keeps(&self) -> Option<StoredPart> {
         let [velocity, acceleration] = self.stored();
-        let whole = self.stored_steps().is_none() && !self.lacks_reactions();
+        let whole = self.thinned_steps().is_none() && !self.lacks_reactions();
         let all = || (0..self.times().instants().len()).collect();
-        let steps = || self.stored_steps().map_or_else(all, |kept| kept.steps.clone());
+        let steps = || self.thinned_steps().map_or_else(all, |kept| kept.steps.clone());
         let reaction = !self.lacks_reactions();
         (!whole || velocity || acceleration).then(|| StoredPart { steps: steps(), velocity, acceleration, reaction })
     }
 
     /// Number of instants in a file with all steps of the run until this one.
     fn rows_until(&self, step: usize) -> usize {
-        self.stored_steps().map_or(step + 1, |kept| kept.steps.partition_point(|kept| *kept <= step))
+        self.thinned_steps().map_or(step + 1, |kept| kept.steps.partition_point(|kept| *kept <= step))
     }
 
     /// Lets the run of this problem go on, after it was killed or stopped. Other writers are refused from then on;

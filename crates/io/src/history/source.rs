@@ -117,7 +117,7 @@ impl HistorySource {
         first: usize,
     ) -> Result<Option<Vec<f64>>, FileCause> {
         // Motion by the scheme is made again from all steps; a thinned history has no other.
-        let there = if self.file.stored_steps().is_some() { self.file.stored() } else { self.file.supplied() };
+        let there = if self.file.thinned_steps().is_some() { self.file.stored() } else { self.file.supplied() };
         if !there[which] {
             return Ok(None);
         }

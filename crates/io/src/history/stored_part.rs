@@ -27,7 +27,7 @@ impl StoredPart {
 
 /// The steps of a thinned history in its run.
 #[derive(Clone, Debug)]
-pub struct StoredSteps {
+pub struct ThinnedSteps {
     /// The number of each instant in the run.
     pub steps: Vec<usize>,
     /// All planned instants of the run (s).
@@ -35,7 +35,7 @@ pub struct StoredSteps {
 }
 
 /// Reads them; `instants` are those of the file.
-pub(super) fn read(ours: &Part<'_>, instants: &[f64]) -> Result<Option<StoredSteps>, FileCause> {
+pub(super) fn read(ours: &Part<'_>, instants: &[f64]) -> Result<Option<ThinnedSteps>, FileCause> {
     let Some(steps) = ours.optional("steps")? else { return Ok(None) };
     steps.expect(&[instants.len()], "the number of each instant in the run")?;
     let run = ours.data("run_times")?;
@@ -50,5 +50,5 @@ pub(super) fn read(ours: &Part<'_>, instants: &[f64]) -> Result<Option<StoredSte
         );
         return Err(FileCause::Value { name: steps.name, detail });
     }
-    Ok(Some(StoredSteps { steps: numbers, times }))
+    Ok(Some(ThinnedSteps { steps: numbers, times }))
 }

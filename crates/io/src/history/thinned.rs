@@ -1,7 +1,7 @@
 //! Histories that lack steps or fields of their run.
 
 use super::file::HistoryFile;
-use super::stored_part::StoredSteps;
+use super::stored_part::ThinnedSteps;
 use crate::error::{FileCause, FileError};
 
 impl HistoryFile {
@@ -13,7 +13,7 @@ impl HistoryFile {
 
     /// The steps of a thinned history in its run; none if the file has all.
     #[must_use]
-    pub fn stored_steps(&self) -> Option<&StoredSteps> {
+    pub fn thinned_steps(&self) -> Option<&ThinnedSteps> {
         self.contents.kept.as_ref()
     }
 
@@ -28,7 +28,7 @@ impl HistoryFile {
     /// # Errors
     /// A thinned history.
     pub fn expect_all(&self) -> Result<(), FileError> {
-        let Some(kept) = self.stored_steps() else { return Ok(()) };
+        let Some(kept) = self.thinned_steps() else { return Ok(()) };
         let (held, of) = (self.count(), kept.times.instants().len());
         let reactions = if self.lacks_reactions() { " and no reactions" } else { "" };
         Err(FileCause::Thinned { held, of, reactions }.at(self.path()))

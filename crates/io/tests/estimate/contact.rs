@@ -63,7 +63,7 @@ fn contact_results_are_the_same_wherever_they_come_from() {
     let Some(back) = contact(&error).unwrap() else { panic!("no contact") };
     assert_eq!(back, beside);
     without_steps(&problem, &times, &memory, &beside);
-    // Nodes of surfaces that slide may face nothing, and have figures that one body does not have.
+    // Nodes of non-matching interfaces may face nothing, and have figures that one body does not have.
     let mut apart =
         ContactResults { slip: 0.1, penetration: 0.2, at_surface_end: true, inclination: 0.3, ..beside.clone() };
     apart.steps.as_mut().unwrap().gap[3] = f64::INFINITY;

@@ -61,11 +61,11 @@ impl<'s> Completed<'s> {
     /// Looks at a history once, to see whether its last contact forces are known.
     ///
     /// # Errors
-    /// A node that may touch two planes; missing forces between surfaces that slide along each other; steps that cannot
+    /// A node that may touch two planes; missing forces on non-matching interfaces; steps that cannot
     /// be read; forces on two nodes of different bodies that are not opposite; fewer than three instants of which the
     /// last is not known.
     pub fn new(problem: &'s AnyProblem, source: &'s dyn StepSource, lacks: Lacks) -> Result<Self, SinkError> {
-        if let Some(contact) = problem.contact_nodes().iter().find(|contact| contact.beside.is_some()) {
+        if let Some(contact) = problem.contact_nodes().iter().find(|contact| contact.second_slot.is_some()) {
             let told = format!(
                 "histories of other programs are read for nodes at one plane, and node {} may touch two; name for each \
                  plane a `group` so that no node lies in two, or simulate with percute",
@@ -82,7 +82,7 @@ impl<'s> Completed<'s> {
         let needed = made.needed_at_the_end()?;
         if lacks.reaction {
             match made.derivation.listen(source)? {
-                [_, Some(sliding)] => return Err(forces_missing(problem, sliding).into()),
+                [_, Some(non_matching)] => return Err(forces_missing(problem, non_matching).into()),
                 [Some(_), None] => {}
                 [None, None] => {
                     // Nothing touches: the history is complete.
@@ -166,9 +166,9 @@ impl<'s> Completed<'s> {
     }
 }
 
-/// What to do about the forces of surfaces that slide, if they are missing.
+/// What to do about the forces of non-matching interfaces, if they are missing.
 fn forces_missing(problem: &AnyProblem, heard: Heard) -> String {
-    let groups = problem.sliding_of(heard.at).map(|sliding| groups(problem, sliding).join(" and "));
+    let groups = problem.non_matching_of(heard.at).map(|non_matching| groups(problem, non_matching).join(" and "));
     format!(
         "`reaction` is missing: the contact forces between {}, which slide or whose nodes do not face each other, are \
          not derived, and some act from {} s on; give the force on each node of both (N) at each step of the solver, \

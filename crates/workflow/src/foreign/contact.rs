@@ -46,7 +46,7 @@ pub(super) struct Contact<'p> {
     planes: Vec<PlaneSums>,
     /// The forces of the instant before (N), and the gaps at its end (m).
     before: Option<(Vec<Vector>, Vec<f64>)>,
-    /// Of each two surfaces that slide.
+    /// Of each non-matching interface.
     interface_balance: Vec<InterfaceBalance>,
     /// Nodes of the surface on which a force acts at some instant.
     pub(super) forced: Vec<bool>,
@@ -71,7 +71,7 @@ impl<'p> Contact<'p> {
             nearness: Nearness::new(problem),
             planes: vec![PlaneSums::new(problem.contact_nodes().len()); problem.obstacle_count()],
             before: None,
-            interface_balance: vec![InterfaceBalance::default(); problem.sliding_count()],
+            interface_balance: vec![InterfaceBalance::default(); problem.non_matching_count()],
             forced: vec![false; problem.contact_nodes().len()],
             largest: [0.0; 4],
             pressed: [0.0; 3],
@@ -100,8 +100,8 @@ impl<'p> Contact<'p> {
         let faint = |at: usize, mass: f64| (FAINT * speed / h * mass).max(rounding * problem.moved_mass(at));
         let (rows, before, d) = (conditions.forces(now.step().reaction), self.before.take(), problem.dimension());
         let forces = vectors_of(&rows, d);
-        for (sliding, balance) in self.interface_balance.iter_mut().enumerate() {
-            balance.take(&problem.sides_of_sliding(sliding), &now.reaction, &forces);
+        for (non_matching, balance) in self.interface_balance.iter_mut().enumerate() {
+            balance.take(&problem.sides_of_non_matching(non_matching), &now.reaction, &forces);
         }
         let forward = motion.map(|motion| rows_of(&motion.forward, d));
         let mut gaps = vec![f64::INFINITY; forces.len()];
@@ -236,16 +236,16 @@ impl<'p> Contact<'p> {
         pressed.map(|(at, [product, square])| (at, product / square))
     }
 
-    /// Whether a force acts on surfaces that slide.
+    /// Whether a force acts on non-matching interfaces.
     pub(super) fn slides(&self) -> bool {
-        (0..self.forced.len()).any(|at| self.forced[at] && self.problem.sliding_of(at).is_some())
+        (0..self.forced.len()).any(|at| self.forced[at] && self.problem.non_matching_of(at).is_some())
     }
 
-    /// What is wrong with forces on surfaces that slide.
+    /// What is wrong with forces on non-matching interfaces.
     pub(super) fn unbalanced_interface(&self) -> String {
         let all = self.interface_balance.iter().enumerate();
         let worst = all.max_by(|(_, a), (_, b)| a.share().total_cmp(&b.share()));
-        worst.map_or(String::new(), |(sliding, balance)| balance.cause(self.problem, sliding))
+        worst.map_or(String::new(), |(non_matching, balance)| balance.cause(self.problem, non_matching))
     }
 
     /// Enters the figures.

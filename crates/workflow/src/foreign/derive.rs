@@ -55,7 +55,7 @@ impl<'p> Derivation<'p> {
     }
 
     /// Looks at a history without contact forces: measures the noise of its accelerations inside the body. The first
-    /// contact forces at planes or between pairs of nodes, and the first between surfaces that slide.
+    /// contact forces at planes or between pairs of nodes, and the first on non-matching interfaces.
     pub(super) fn listen(&mut self, source: &dyn StepSource) -> Result<[Option<Heard>; 2], SinkError> {
         let (mut inside, mut loudest) = (0.0_f64, 0.0_f64);
         windows(source, self.balance.problem().dimension(), &mut |window| {
@@ -73,7 +73,7 @@ impl<'p> Derivation<'p> {
         windows(source, self.balance.problem().dimension(), &mut |window| {
             let forces = self.reactions(window).into_iter().flatten();
             for (at, _) in forces.enumerate().filter(|(_, force)| *force != [0.0; 3]) {
-                let slides = self.problem().sliding_of(at).is_some();
+                let slides = self.problem().non_matching_of(at).is_some();
                 heard[usize::from(slides)].get_or_insert(Heard { at, time: window.now.time });
             }
             Ok(())

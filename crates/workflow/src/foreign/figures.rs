@@ -25,8 +25,8 @@ pub struct Consistency {
     pub initial_velocity: f64,
     /// Largest tension, or tangential force beyond Coulomb's limit, over the largest normal force.
     pub cone: f64,
-    /// Largest difference between the sum of the contact forces on either of two surfaces that slide and that of the
-    /// multipliers, over the largest sum of their sizes; none without such surfaces.
+    /// Largest difference between the sum of the contact forces on either side of a non-matching interface and that of
+    /// the multipliers, over the largest sum of their sizes; none without such surfaces.
     pub interface_balance: Option<f64>,
     /// Misfit of Coulomb's law at nodes that slide, ∑(μR_n|w_t| + R_t·w_t)Δt over ∑μR_n|w_t|Δt, w_t of the step after
     /// t_n; none if no node slides with friction.

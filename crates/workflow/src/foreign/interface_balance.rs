@@ -1,10 +1,10 @@
-//! The forces on two surfaces that slide are those of the same multipliers.
+//! The forces on a non-matching interface are those of the same multipliers.
 
 use super::balance::norm;
 use percute_core::border::Vector;
 use percute_core::problem::AnyProblem;
 
-/// Sums of forces on two surfaces that slide, against those of their multipliers: the largest of all instants.
+/// Sums of forces on a non-matching interface, against those of their multipliers: the largest of all instants.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct InterfaceBalance {
     /// The force on the slave beyond that of the multipliers (N): nodes that face nothing have none.
@@ -37,8 +37,8 @@ impl InterfaceBalance {
     }
 
     /// What is wrong with the forces on these surfaces.
-    pub(super) fn cause(&self, problem: &AnyProblem, sliding: usize) -> String {
-        let [slave, master] = groups(problem, sliding);
+    pub(super) fn cause(&self, problem: &AnyProblem, non_matching: usize) -> String {
+        let [slave, master] = groups(problem, non_matching);
         if self.lost >= self.one_sided {
             return format!(
                 "contact forces act on nodes of {slave} that do not face {master}: is the order of the rows that of \
@@ -53,8 +53,8 @@ impl InterfaceBalance {
 }
 
 /// The names of slave and master, for messages.
-pub(super) fn groups(problem: &AnyProblem, sliding: usize) -> [String; 2] {
-    problem.sides_of_sliding(sliding).map(|side| {
+pub(super) fn groups(problem: &AnyProblem, non_matching: usize) -> [String; 2] {
+    problem.sides_of_non_matching(non_matching).map(|side| {
         let obstacle = problem.obstacle(problem.contact_nodes()[side[0]].obstacle);
         format!("\"{}\"", obstacle.group().unwrap_or_default())
     })
@@ -76,7 +76,7 @@ mod tests {
         let upper = translated(&Mesh::rectangle(0.04, 0.025, 10, 2).unwrap(), [0.02, 0.026]).unwrap();
         let mesh = Mesh::joined(&[("lower", &lower), ("upper", &upper)]).unwrap();
         let material = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
-        let interface = Interface::sliding(2, "lower.top", "upper.bottom", 0.2).unwrap();
+        let interface = Interface::non_matching(2, "lower.top", "upper.bottom", 0.2).unwrap();
         TriangleProblem::builder(mesh).material(material).interface(interface).build().unwrap()
     }
 
@@ -85,26 +85,26 @@ mod tests {
     fn measured(change: impl Fn(&mut [f64; 2], bool, bool)) -> (f64, String) {
         let problem = problem();
         let surface = problem.surface();
-        let (sliding, still) = (&surface.sliding()[0], vec![[0.0; 2]; problem.mesh().node_count()]);
-        let (coupling, facing) = (sliding.coupling(surface, &still), surface.facing(&still));
+        let (non_matching, still) = (&surface.non_matching()[0], vec![[0.0; 2]; problem.mesh().node_count()]);
+        let (coupling, configuration) = (non_matching.coupling(surface, &still), surface.configuration(&still));
         let mut reaction = vec![[0.0; 2]; surface.nodes().len()];
         for k in (0..coupling.len()).filter(|&k| coupling.is_active(k)) {
             for (at, part) in coupling.slave_row(k).into_iter().enumerate().filter(|(_, part)| *part != 0.0) {
-                reaction[sliding.slave().position(k + at - 1)][1] += 3.0 * part;
+                reaction[non_matching.slave().position(k + at - 1)][1] += 3.0 * part;
             }
             let (first, row) = coupling.master_row(k);
             row.iter()
                 .enumerate()
-                .for_each(|(at, part)| reaction[sliding.master().position(first + at)][1] -= 3.0 * part);
+                .for_each(|(at, part)| reaction[non_matching.master().position(first + at)][1] -= 3.0 * part);
         }
         for (at, force) in reaction.iter_mut().enumerate() {
-            change(force, facing.has_condition(at), sliding.slave().node_at(at).is_some());
+            change(force, configuration.has_condition(at), non_matching.slave().node_at(at).is_some());
         }
         let mut balance = InterfaceBalance::default();
-        let forces = facing.forces(&reaction);
+        let forces = configuration.forces(&reaction);
         let [reaction, forces] = [&reaction, &forces].map(|all| vectors_of(all.as_flattened(), 2));
         let any = AnyProblem::from(problem.clone());
-        balance.take(&any.sides_of_sliding(0), &reaction, &forces);
+        balance.take(&any.sides_of_non_matching(0), &reaction, &forces);
         (balance.share(), balance.cause(&any, 0))
     }
 

@@ -11,14 +11,14 @@ const OPPOSITE: f64 = 1e-2;
 /// bits.
 pub(super) fn make_opposite(problem: &AnyProblem, reaction: &mut [Vector]) {
     for (at, contact) in problem.contact_nodes().iter().enumerate() {
-        let Some(opposite) = contact.opposite.filter(|opposite| at < *opposite) else { continue };
-        let (own, other) = (reaction[at], reaction[opposite]);
+        let Some(partner) = contact.partner.filter(|partner| at < *partner) else { continue };
+        let (own, other) = (reaction[at], reaction[partner]);
         if (0..3).all(|c| own[c] == -other[c]) {
             continue;
         }
         let force: Vector = std::array::from_fn(|c| 0.5 * (own[c] - other[c]));
         reaction[at] = force;
-        reaction[opposite] = force.map(|x| -x);
+        reaction[partner] = force.map(|x| -x);
     }
 }
 
@@ -27,9 +27,9 @@ pub(super) fn not_opposite(problem: &AnyProblem, reaction: &[Vector]) -> Option<
     let most = reaction.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
     let nodes = problem.contact_nodes();
     nodes.iter().enumerate().find_map(|(at, contact)| {
-        let opposite = contact.opposite.filter(|opposite| at < *opposite)?;
-        let (own, other) = (&reaction[at], &reaction[opposite]);
+        let partner = contact.partner.filter(|partner| at < *partner)?;
+        let (own, other) = (&reaction[at], &reaction[partner]);
         let differ = (0..3).any(|c| (own[c] + other[c]).abs() > OPPOSITE * most);
-        differ.then(|| [at, opposite].map(|row| nodes[row].node.index()))
+        differ.then(|| [at, partner].map(|row| nodes[row].node.index()))
     })
 }

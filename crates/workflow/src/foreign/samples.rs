@@ -45,7 +45,7 @@ impl Samples {
 }
 
 /// What samples without velocities or accelerations show, and the way out; a body that `touches` nothing may fly in
-/// long steps. Where surfaces that slide have contact forces, velocities and accelerations are not enough.
+/// long steps. Where non-matching interfaces have contact forces, velocities and accelerations are not enough.
 pub(super) fn lacking(
     source: &dyn StepSource,
     found: &Consistency,

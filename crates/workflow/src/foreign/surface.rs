@@ -133,7 +133,7 @@ impl Part {
         ]
     }
 
-    /// The forces on one of two surfaces that slide.
+    /// The forces on one side of a non-matching interface.
     fn on(group: &str) -> Self {
         let give = "give the force on each node of both surfaces, as it acts on that node";
         let forces = format!("the contact forces on {group}");
@@ -159,7 +159,7 @@ impl Part {
     }
 }
 
-/// The forces on each of two surfaces that slide, with their sums: given, needed, and their product.
+/// The forces on each side of a non-matching interface, with their sums: given, needed, and their product.
 fn sides(problem: &AnyProblem, needed: &Needed) -> Vec<(Part, [f64; 3])> {
     let of_side = |(group, side): (&String, &Vec<usize>)| {
         let sums = side.iter().fold([0.0; 3], |[given, wanted, both], &row| {
@@ -168,11 +168,11 @@ fn sides(problem: &AnyProblem, needed: &Needed) -> Vec<(Part, [f64; 3])> {
         });
         (Part::on(group), sums)
     };
-    let of_both = |sliding: usize| {
-        let (groups, sides) = (groups(problem, sliding), problem.sides_of_sliding(sliding));
+    let of_both = |non_matching: usize| {
+        let (groups, sides) = (groups(problem, non_matching), problem.sides_of_non_matching(non_matching));
         [(&groups[0], &sides[0]), (&groups[1], &sides[1])].map(of_side)
     };
-    (0..problem.sliding_count()).flat_map(of_both).collect()
+    (0..problem.non_matching_count()).flat_map(of_both).collect()
 }
 
 fn needed(suspect: &Suspect<'_>) -> Result<Needed, SinkError> {

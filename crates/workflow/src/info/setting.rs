@@ -58,7 +58,7 @@ pub(super) fn planes(problem: &AnyProblem) -> Vec<PlaneInfo> {
             approach_speed: speeds.fold(f64::NEG_INFINITY, f64::max),
         }
     };
-    // The two sides of a pair have the same gaps; of surfaces that slide, those of the slave count.
+    // The two sides of a pair have the same gaps; of non-matching interfaces, those of the slave count.
     (0..problem.obstacle_count()).filter(|&obstacle| problem.leads_interface(obstacle)).map(told).collect()
 }
 

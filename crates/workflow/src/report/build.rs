@@ -9,8 +9,8 @@ use super::varying_steps::varying_steps;
 use super::verdict::NarrowContact;
 use super::warnings::{Facts, Warning, few_samples, reported};
 use super::{
-    ADMISSIBLE, ContactReport, FORMAT, Findings, Impacts, LargestResidual, ObstacleSummary, ProblemSummary, Rebound,
-    Report, SlidingReport, SourceReport, Subject, Verdict, Versions, WorstElement, meaning, verdict,
+    ADMISSIBLE, ContactReport, FORMAT, Findings, Impacts, LargestResidual, NonMatchingReport, ObstacleSummary,
+    ProblemSummary, Rebound, Report, SourceReport, Subject, Verdict, Versions, WorstElement, meaning, verdict,
 };
 use crate::foreign::Checked;
 use percute_core::contact::AnyObstacle;
@@ -72,7 +72,7 @@ impl Report {
             contact: ContactReport::new(contact),
             rebound,
             impacts: Impacts::new(problem_of, contact, Some(deformation)),
-            sliding: SlidingReport::all(problem_of, contact, &estimate.surfaces),
+            non_matching: NonMatchingReport::all(problem_of, contact, &estimate.surfaces),
             deformation: deformation.clone(),
             over_time: Columns::new(estimate.over_time.clone(), PARTS),
             by_element: estimate.by_element.clone(),

@@ -9,10 +9,10 @@ mod found;
 mod impacts;
 mod linearity;
 mod meaning;
+mod non_matching;
 mod poor;
 mod rebound;
 mod simulated;
-mod sliding;
 mod sources;
 pub(crate) mod summary;
 mod symptoms;
@@ -25,10 +25,10 @@ pub use columns::{Columns, ENERGIES, EnergiesOverTime, Named, PARTS, SOURCES};
 pub use contact::{ContactNodes, ContactReport, ContactResultants, NearestNode, PeakForce};
 pub use impacts::{BodyMotion, Impacts, InterfaceRebound};
 pub use meaning::meaning;
+pub use non_matching::NonMatchingReport;
 pub use poor::PoorElement;
 pub use rebound::{Rebound, rebound_to_json};
 pub use simulated::simulated;
-pub use sliding::SlidingReport;
 pub use sources::SourceReport;
 pub use summary::summary;
 pub use symptoms::drifted;
@@ -129,7 +129,7 @@ pub struct Report {
     pub contact: Option<ContactReport>,
     pub rebound: Option<Rebound>,
     pub impacts: Option<Impacts>,
-    pub sliding: Vec<SlidingReport>,
+    pub non_matching: Vec<NonMatchingReport>,
     pub deformation: Deformation,
     pub over_time: Columns<Sample, 6>,
     pub by_element: Vec<f64>,
@@ -229,11 +229,11 @@ impl Report {
     /// # Errors
     /// As [`Report::to_json`].
     pub fn verdict_to_json(&self) -> Result<String, std::io::Error> {
-        let Self { verdict, rebound, impacts, sliding, deformation, warnings, .. } = self;
+        let Self { verdict, rebound, impacts, non_matching, deformation, warnings, .. } = self;
         let contact = self.contact.as_ref();
         let (nearest, peak) = (contact.and_then(|c| c.nearest), contact.and_then(|c| c.averaged_peak));
         let document = serde_json::json!({
-            "verdict": verdict, "rebound": rebound, "impacts": impacts, "sliding": sliding,
+            "verdict": verdict, "rebound": rebound, "impacts": impacts, "non_matching": non_matching,
             "problem": { "per_metre": self.problem.per_metre },
             "contact": { "nearest": nearest, "averaged_peak": peak },
             "deformation": deformation, "warnings": warnings,

@@ -22,8 +22,8 @@ const NEAR_CEILING: f64 = 0.6;
 pub(crate) const IMPULSE_RATIO: [f64; 2] = [0.9, 1.1];
 /// Pairs of nodes that slip by more edges leave the range of the method.
 pub(crate) const SLIP: f64 = 0.1;
-/// Nodes of surfaces that slide that are deeper in the other body, over their edge, are outside of the evidence: there,
-/// up to 200 m/s, corners and curves are at most 0.021 of it inside.
+/// Nodes of non-matching interfaces that are deeper in the other body, over their edge, are outside of the evidence:
+/// there, up to 200 m/s, corners and curves are at most 0.021 of it inside.
 pub(crate) const PENETRATION: f64 = 0.05;
 /// Surfaces that touch and lean together by more than this (degrees) face each other along another direction than their
 /// normal. Between chevrons of aluminium of 5, 15 and 30°, without friction, the motion differs by 2, 9 and 24 % from

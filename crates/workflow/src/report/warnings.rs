@@ -53,7 +53,7 @@ pub(super) struct Facts<'a> {
     pub(super) narrow: Option<NarrowContact>,
     /// The farthest that pairs of nodes slip, over their shortest edge.
     pub(super) slip: f64,
-    /// The deepest that a node of surfaces that slide was inside the other body, over its shortest edge.
+    /// The deepest that a node of non-matching interfaces was inside the other body, over its shortest edge.
     pub(super) penetration: f64,
     /// The largest angle of surfaces in contact to their common normal (degrees).
     pub(super) inclination: f64,

@@ -160,7 +160,7 @@ impl Coupling {
     /// Whether a multiplier acts and does not just set in: its condition is to hold.
     #[must_use]
     pub fn binds(&self, node: usize) -> bool {
-        self.is_active(node) && self.onsets.iter().all(|onset| onset.late() != node)
+        self.is_active(node) && self.onsets.iter().all(|onset| onset.uncovered() != node)
     }
 
     /// How far the condition of a node gives way under these multipliers (N/m), in m²: its weighted gap times w_k is

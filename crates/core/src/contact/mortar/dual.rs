@@ -17,15 +17,16 @@ pub enum DualShape {
 }
 
 /// A part of an edge from an end on. ψ* and χ* are those of an edge that is this part alone: the conditions of ψ* are
-/// those at its ends. Of the late multiplier, that of the node that is not covered, ψ = sψ* and χ = sχ*; of the other
-/// one ψ = 1 − sψ* and χ = 1 − sχ*. Without a late multiplier, s = 0, the part would be [`DualShape::One`].
+/// those at its ends. Of the multiplier of the node that is not covered, ψ = sψ* and χ = sχ*; of the other
+/// one ψ = 1 − sψ* and χ = 1 − sχ*. Without the multiplier of the uncovered node, s = 0, the part would be
+/// [`DualShape::One`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndPart {
     /// The second hat of the edge at both ends of the part.
     ends: [f64; 2],
-    /// Which of the nodes of the edge has the late multiplier.
-    late: usize,
-    /// s: how far the late multiplier has set in, up to 1.
+    /// Which of the nodes of the edge is not covered.
+    uncovered: usize,
+    /// s: how far the multiplier of the uncovered node has set in, up to 1.
     onset: f64,
 }
 
@@ -115,8 +116,12 @@ impl Moments {
         let from = [ends[0] == 0.0, ends[1] == 1.0];
         if joined && (from[0] || from[1]) {
             let onset = onset(covered / length, (from[0] && corners[0]) || (from[1] && corners[1]));
-            let late = usize::from(from[0]);
-            return if onset > 0.0 { DualShape::Part(EndPart { ends, late, onset }) } else { DualShape::One(1 - late) };
+            let uncovered = usize::from(from[0]);
+            return if onset > 0.0 {
+                DualShape::Part(EndPart { ends, uncovered, onset })
+            } else {
+                DualShape::One(1 - uncovered)
+            };
         }
         // All of an edge in two halves must not hang on rounding.
         if covered < 0.5 * length * (1.0 - 1e-12) {
@@ -158,9 +163,9 @@ fn is_joined(segments: &[Segment]) -> bool {
 }
 
 impl EndPart {
-    /// Which of the nodes of the edge has the late multiplier, and how far it has set in.
-    pub(super) fn late(&self) -> (usize, f64) {
-        (self.late, self.onset)
+    /// Which of the nodes of the edge is not covered, and how far it has set in.
+    pub(super) fn uncovered(&self) -> (usize, f64) {
+        (self.uncovered, self.onset)
     }
 
     /// D = ∫ψ_kφ_i over the part of this length, of which `hats` has ∫φ_i.
@@ -169,17 +174,17 @@ impl EndPart {
         let at_ends = self.ends.map(|second| [1.0 - second, second].map(|hat| 0.5 * length * self.onset * hat));
         let before = hats.map(|hat| (1.0 - self.onset) * hat);
         let mut rows = at_ends;
-        (0..2).for_each(|i| rows[1 - self.late][i] += before[i]);
+        (0..2).for_each(|i| rows[1 - self.uncovered][i] += before[i]);
         rows
     }
 
-    /// sψ* or sχ* of the late multiplier, from ψ* or χ* of both where the second hat of the part has a value; of the
-    /// other one 1 less that.
+    /// sψ* or sχ* of the multiplier of the uncovered node, from ψ* or χ* of both where the second hat of the part has a
+    /// value; of the other one 1 less that.
     fn of_both(&self, second: f64, shape: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
         let here = (second - self.ends[0]) / (self.ends[1] - self.ends[0]);
-        let late = self.onset * shape(here)[self.late];
-        let mut both = [1.0 - late; 2];
-        both[self.late] = late;
+        let value = self.onset * shape(here)[self.uncovered];
+        let mut both = [1.0 - value; 2];
+        both[self.uncovered] = value;
         both
     }
 }

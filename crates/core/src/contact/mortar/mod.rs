@@ -1,4 +1,4 @@
-//! Surfaces of two bodies that slide along each other: dual mortar multipliers on the nodes of one of them, the slave.
+//! Non-matching interfaces of two bodies: dual mortar multipliers on the nodes of one of them, the slave.
 //!
 //! Places on both surfaces have a coordinate ξ along one constant tangent t. It moves with the body as a whole, so that
 //! lengths in ξ stay those of the undeformed mesh. The [`Coupling`] at an instant has the matrices D and M of the
@@ -20,9 +20,9 @@
 //! the other surface covers has a dual basis of its own.
 
 mod band;
+mod configuration;
 mod coupling;
 mod dual;
-mod facing;
 mod friction;
 mod gram;
 mod narrow;
@@ -38,12 +38,12 @@ mod surfaces;
 #[cfg(test)]
 mod tests;
 
+pub use configuration::ContactConfiguration;
 pub use coupling::Coupling;
 pub(super) use coupling::LEAST_PART;
 pub use dual::DualShape;
-pub use facing::Facing;
 pub use partition::Segment;
 pub use side::{CORNER, Part, Side};
-pub(crate) use step::SlidingContact;
-pub use surfaces::SlidingSurfaces;
+pub(crate) use step::NonMatchingContact;
+pub use surfaces::NonMatchingSurfaces;
 pub(crate) use surfaces::tangent;

@@ -15,7 +15,7 @@ pub(super) struct Onset {
     /// The first node of the edge.
     first: usize,
     /// The node whose multiplier sets in.
-    late: usize,
+    uncovered: usize,
     /// How far they give way (m³/N).
     compliance: f64,
 }
@@ -29,21 +29,21 @@ impl Onset {
         master: &Side,
         segments: &[Segment],
     ) -> Option<Self> {
-        let ((late, onset), first) = (part.late(), slave.edges()[edge]);
+        let ((uncovered, onset), first) = (part.uncovered(), slave.edges()[edge]);
         // The edge of the master that ends here.
-        let other = if late == 1 { segments.last() } else { segments.first() };
+        let other = if uncovered == 1 { segments.last() } else { segments.first() };
         let soft = slave.compliance(edge) + master.compliance(other?.master);
         let [start, end] = slave.ends(first);
         // It ends with the square: with a linear end, the depth that is left would be pushed out in the last step.
         let rest = 1.0 - onset;
         let compliance = SOFTNESS * onset * rest * rest * 0.5 * covered * (end - start) * soft;
-        (onset < 1.0).then_some(Self { first, late: first + late, compliance })
+        (onset < 1.0).then_some(Self { first, uncovered: first + uncovered, compliance })
     }
 
     /// The node whose multiplier sets in.
     #[inline]
-    pub(super) fn late(&self) -> usize {
-        self.late
+    pub(super) fn uncovered(&self) -> usize {
+        self.uncovered
     }
 
     /// The first node of the edge, and how far its conditions give way (m³/N).

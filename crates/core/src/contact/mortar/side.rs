@@ -1,4 +1,4 @@
-//! One of two surfaces that slide along each other.
+//! One side of a non-matching interface.
 
 use std::ops::Range;
 

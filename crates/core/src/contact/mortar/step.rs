@@ -1,4 +1,4 @@
-//! Two surfaces that slide along each other at one step.
+//! A non-matching interface at one step.
 
 use super::band::Band;
 use super::coupling::Coupling;
@@ -7,7 +7,7 @@ use super::gram::gram;
 use super::normal::NormalProblem;
 use super::partition::{larger, smaller};
 use super::side::Side;
-use super::surfaces::SlidingSurfaces;
+use super::surfaces::NonMatchingSurfaces;
 use crate::contact::frame::dot;
 use crate::contact::prediction::{Predicted, Prediction};
 use crate::contact::surface::ContactSurface;
@@ -16,11 +16,11 @@ use crate::contact::surface::ContactSurface;
 /// negative: ∫|ψ| is at most 4.6 ∫ψ.
 const FAR: f64 = 4.0;
 
-/// The contact of two surfaces that slide, solved anew at each step in the same memory. It depends on the prediction of
-/// the step alone.
+/// The contact of a non-matching interface, solved anew at each step in the same memory. It depends on the prediction
+/// of the step alone.
 #[derive(Clone, Debug)]
-pub(crate) struct SlidingContact {
-    /// Among [`ContactSurface::sliding`].
+pub(crate) struct NonMatchingContact {
+    /// Among [`ContactSurface::non_matching`].
     index: usize,
     shifts: Vec<f64>,
     coupling: Coupling,
@@ -61,10 +61,10 @@ struct State {
 
 impl State {
     fn new<const D: usize>(surface: &ContactSurface<D>, side: &Side, inverse_mass: &[f64]) -> Self {
-        let entries = || (0..side.len()).map(|node| &surface.nodes()[side.position(node)]);
-        let nodes: Vec<usize> = entries().map(|contact| contact.node.index()).collect();
+        let slots = || (0..side.len()).map(|node| &surface.nodes()[side.position(node)]);
+        let nodes: Vec<usize> = slots().map(|contact| contact.node.index()).collect();
         let normal: Vec<f64> = nodes.iter().map(|&node| inverse_mass[node]).collect();
-        let guided: Vec<bool> = entries().map(|contact| contact.guided).collect();
+        let guided: Vec<bool> = slots().map(|contact| contact.guided).collect();
         let tangential = normal.iter().zip(&guided).map(|(inverse, guided)| if *guided { 0.0 } else { *inverse });
         Self {
             nodes,
@@ -104,11 +104,11 @@ impl State {
     }
 }
 
-impl SlidingContact {
+impl NonMatchingContact {
     /// Makes room for the surfaces of an index, with 1/m of all nodes (1/kg).
     pub(crate) fn new<const D: usize>(surface: &ContactSurface<D>, index: usize, inverse_mass: &[f64]) -> Self {
-        let sliding = &surface.sliding()[index];
-        let sides = [sliding.slave(), sliding.master()].map(|side| State::new(surface, side, inverse_mass));
+        let non_matching = &surface.non_matching()[index];
+        let sides = [non_matching.slave(), non_matching.master()].map(|side| State::new(surface, side, inverse_mass));
         let guided = sides.iter().any(|side| side.guided.contains(&true));
         Self {
             index,
@@ -136,16 +136,17 @@ impl SlidingContact {
         reaction: &mut [[f64; D]],
         touching: &mut [bool],
     ) {
-        let sliding = &surface.sliding()[self.index];
-        let (sides, axes) = ([sliding.slave(), sliding.master()], [sliding.frame().normal(), sliding.tangent()]);
+        let non_matching = &surface.non_matching()[self.index];
+        let (sides, axes) =
+            ([non_matching.slave(), non_matching.master()], [non_matching.frame().normal(), non_matching.tangent()]);
         for (state, side) in self.sides.iter_mut().zip(sides) {
             state.predict(side, axes, prediction);
         }
-        self.touches = self.is_touched(sliding, prediction);
+        self.touches = self.is_touched(non_matching, prediction);
         if !self.touches {
             return;
         }
-        self.solve(sliding, prediction.steps);
+        self.solve(non_matching, prediction.steps);
         self.add_up(touching, sides);
         for (state, side) in self.sides.iter().zip(sides) {
             state.act(axes, &mut reaction[side.positions()]);
@@ -153,14 +154,18 @@ impl SlidingContact {
     }
 
     /// Computes the coupling and b. Whether any weighted gap is negative.
-    fn is_touched<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>, prediction: &Prediction<'_, D>) -> bool {
+    fn is_touched<const D: usize>(
+        &mut self,
+        non_matching: &NonMatchingSurfaces<D>,
+        prediction: &Prediction<'_, D>,
+    ) -> bool {
         let Self { shifts, coupling, right, sides: [slave, master], .. } = self;
         let ([low, _], [bottom, top]) = (slave.range, master.range);
-        sliding.find_shifts(shifts, |node| slave.along[node], |node| master.along[node]);
+        non_matching.find_shifts(shifts, |node| slave.along[node], |node| master.along[node]);
         if shifts.iter().any(|shift| !shift.is_finite()) || low - top > FAR * (top - bottom) {
             return false;
         }
-        sliding.update(coupling, shifts);
+        non_matching.update(coupling, shifts);
         let ([dt, h], mut touches) = (prediction.steps, false);
         let over = [1.0 / (dt * h), 1.0 / h];
         right.clear();
@@ -173,10 +178,10 @@ impl SlidingContact {
     }
 
     /// Solves for the multipliers of a step of Δt (s) with h (s).
-    fn solve<const D: usize>(&mut self, sliding: &SlidingSurfaces<D>, [dt, h]: [f64; 2]) {
+    fn solve<const D: usize>(&mut self, non_matching: &NonMatchingSurfaces<D>, [dt, h]: [f64; 2]) {
         let Self { coupling, sides: [slave, master], normal, friction, right, softened, .. } = self;
         let inverse = |which: usize| [&slave.inverse_mass[which][..], &master.inverse_mass[which][..]];
-        let rough = sliding.law().friction() > 0.0;
+        let rough = non_matching.law().friction() > 0.0;
         gram(&mut self.normal_matrix, coupling, inverse(0), &mut self.window);
         let soft = coupling.sets_in();
         if soft {
@@ -189,7 +194,7 @@ impl SlidingContact {
             friction.clear(coupling.len());
             return;
         }
-        let limit = |(k, force): (usize, &f64)| if slave.guided[k] { 0.0 } else { sliding.law().limit(*force) };
+        let limit = |(k, force): (usize, &f64)| if slave.guided[k] { 0.0 } else { non_matching.law().limit(*force) };
         self.limit.clear();
         self.limit.extend(normal.force().iter().enumerate().map(limit));
         let matrix = match &mut self.tangential_matrix {
@@ -243,8 +248,8 @@ impl SlidingContact {
         if !self.touches {
             return;
         }
-        let sliding = &surface.sliding()[self.index];
-        for (state, side) in self.sides.iter().zip([sliding.slave(), sliding.master()]) {
+        let non_matching = &surface.non_matching()[self.index];
+        for (state, side) in self.sides.iter().zip([non_matching.slave(), non_matching.master()]) {
             for (&node, reaction) in state.nodes.iter().zip(&reaction[side.positions()]) {
                 (0..D).for_each(|c| force[node][c] += reaction[c]);
             }
@@ -253,6 +258,6 @@ impl SlidingContact {
 
     /// The master touches where a node of the slave that touches acts on it.
     pub(crate) fn settle_master<const D: usize>(&self, surface: &ContactSurface<D>, touching: &mut [bool]) {
-        surface.sliding()[self.index].settle_master(&self.coupling, touching);
+        surface.non_matching()[self.index].settle_master(&self.coupling, touching);
     }
 }

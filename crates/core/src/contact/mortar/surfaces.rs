@@ -1,4 +1,4 @@
-//! Two surfaces that slide along each other.
+//! A non-matching interface.
 
 use super::coupling::Coupling;
 use super::side::Side;
@@ -6,10 +6,10 @@ use crate::contact::coulomb::Coulomb;
 use crate::contact::frame::{Frame, dot};
 use crate::contact::surface::ContactSurface;
 
-/// What of two surfaces that slide along each other does not change: the slave, whose nodes have the multipliers, the
+/// The constant data of a non-matching interface: the slave, whose nodes have the multipliers, the
 /// master, and the constant frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SlidingSurfaces<const D: usize> {
+pub struct NonMatchingSurfaces<const D: usize> {
     sides: [Side; 2],
     frame: Frame<D>,
     tangent: [f64; D],
@@ -22,7 +22,7 @@ pub(crate) fn tangent<const D: usize>(normal: &[f64; D]) -> [f64; D] {
     std::array::from_fn(|c| if c == 0 { normal[D - 1] } else { -normal[D - 1 - c] })
 }
 
-impl<const D: usize> SlidingSurfaces<D> {
+impl<const D: usize> NonMatchingSurfaces<D> {
     /// From slave and master, which is of one body, with the unit normal from the master to the slave. Nodes nearer
     /// than `tolerance` (m) along the interface are at one place.
     pub(crate) fn new(sides: [Side; 2], normal: [f64; D], law: Coulomb, tolerance: f64) -> Self {

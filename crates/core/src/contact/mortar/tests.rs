@@ -172,9 +172,9 @@ fn an_edge_may_be_covered_in_part() {
     let slave = side(&[-1.0, 0.0, 1.0, 2.0]);
     let on_edge = |edge: usize, from: f64, to: f64| coupling(&slave, &side(&[from, to]), 0.0).shape(edge);
     let parts = [(1, 0.6, 3.0, 0, 0.44), (1, 0.05, 3.0, 0, 1.0), (1, -2.0, 0.45, 1, 0.52), (0, -2.0, -0.9, 1, 1.0)];
-    for (edge, from, to, late, onset) in parts {
+    for (edge, from, to, uncovered, onset) in parts {
         let DualShape::Part(part) = on_edge(edge, from, to) else { panic!("{from} {to}") };
-        assert!(part.late().0 == late && (part.late().1 - onset).abs() < 1e-14, "{from} {to}: {part:?}");
+        assert!(part.uncovered().0 == uncovered && (part.uncovered().1 - onset).abs() < 1e-14, "{from} {to}: {part:?}");
     }
     assert_eq!(on_edge(1, -2.0, 0.12), DualShape::One(0));
     assert_eq!(on_edge(1, 0.9, 3.0), DualShape::One(1));
@@ -207,20 +207,25 @@ fn soft(xi: &[f64]) -> Side {
 fn a_part_of_an_edge_has_the_gaps_at_its_ends() {
     let slave = soft(&[-1.0, 0.0, 1.0, 2.0]);
     for (covered, onset) in [(0.75 - 1e-9, 1.0), (0.9, 1.0), (0.125 + 1e-6, 1.6e-6), (0.3, 0.28), (0.7, 0.92)] {
-        for (late, [from, to]) in [(2, [-2.0, covered]), (1, [1.0 - covered, 3.0])] {
+        for (uncovered, [from, to]) in [(2, [-2.0, covered]), (1, [1.0 - covered, 3.0])] {
             let coupling = coupling(&slave, &soft(&[from, to]), 0.0);
             let gap = |xi: f64| 0.2 + 0.7 * xi;
             let of = |k: usize| coupling.difference(k, |k| gap(slave.xi()[k]), |_| 0.0) / coupling.weight(k);
-            let (own, node) = (3 - late, gap(slave.xi()[3 - late]));
-            let end = gap(if late == 2 { covered } else { 1.0 - covered });
-            // Half of the whole edge beside it, and of the part all that the late multiplier has not taken.
+            let (own, node) = (3 - uncovered, gap(slave.xi()[3 - uncovered]));
+            let end = gap(if uncovered == 2 { covered } else { 1.0 - covered });
+            // Half of the whole edge beside it, and of the part all that the multiplier of the uncovered node has not
+            // taken.
             let before = (1.0 - onset) * covered;
             let sum = 0.5 * node + 0.5 * onset * covered * node + before * 0.5 * (node + end);
             let expected = sum / (0.5 + 0.5 * onset * covered + before);
-            assert!((of(late) - end).abs() < 1e-12 && (of(own) - expected).abs() < 1e-12, "{covered}: {}", of(own));
+            assert!(
+                (of(uncovered) - end).abs() < 1e-12 && (of(own) - expected).abs() < 1e-12,
+                "{covered}: {}",
+                of(own)
+            );
             // 1e-6 beyond the begin of the onset is known to 1e-16; its end is 1e-6 early.
-            assert!((coupling.weight(late) - 0.5 * onset * covered).abs() < 1e-9 * onset);
-            assert_eq!([coupling.binds(late), coupling.binds(own)], [onset == 1.0, true]);
+            assert!((coupling.weight(uncovered) - 0.5 * onset * covered).abs() < 1e-9 * onset);
+            assert_eq!([coupling.binds(uncovered), coupling.binds(own)], [onset == 1.0, true]);
         }
     }
 }
@@ -243,9 +248,9 @@ fn conditions_give_way_while_a_multiplier_sets_in() {
         let rest = 1.0 - onset;
         let expected = |soft: f64| 4.0 * onset * rest * rest * 0.5 * covered * (0.1 + soft) * 2.0;
         let to_end = (give([-2.0, 0.1, covered]), expected(0.7));
-        for (found, late) in [to_end, (give([1.0 - covered, 0.9, 3.0]), expected(0.3))] {
+        for (found, uncovered) in [to_end, (give([1.0 - covered, 0.9, 3.0]), expected(0.3))] {
             assert!(found[0] == 0.0 && found[3] == 0.0 && found[1] == -found[2], "{covered}: {found:?}");
-            assert!((found[2] - late).abs() < 1e-12, "{covered}: {found:?} {late}");
+            assert!((found[2] - uncovered).abs() < 1e-12, "{covered}: {found:?} {uncovered}");
         }
     }
 }

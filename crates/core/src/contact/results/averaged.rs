@@ -22,8 +22,8 @@ pub fn stopping_times<const D: usize, const N: usize>(problem: &Problem<D, N>) -
     }
     let time = |at: usize| {
         let mass = surface.moved_mass(at, problem.mass());
-        match surface.nodes()[at].opposite {
-            Some(opposite) => mass * (1.0 / impedance[at] + 1.0 / impedance[opposite]),
+        match surface.nodes()[at].partner {
+            Some(partner) => mass * (1.0 / impedance[at] + 1.0 / impedance[partner]),
             None => mass / impedance[at],
         }
     };

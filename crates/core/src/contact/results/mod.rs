@@ -40,8 +40,8 @@ pub struct ContactResults {
     /// The farthest that two nodes of different bodies in contact were moved along their interface, over the length of
     /// their shortest edge; 0 without such nodes.
     pub slip: f64,
-    /// The deepest that a node of two surfaces that slide was inside the other body at its own place, along the normal,
-    /// over the length of its shortest edge: its gap is a mean. 0 without such nodes.
+    /// The deepest that a node of a non-matching interface was inside the other body at its own place, along the
+    /// normal, over the length of its shortest edge: its gap is a mean. 0 without such nodes.
     pub penetration: f64,
     /// Whether a node of a slave that has touched is at the end of its master: it faces nothing, or is a corner that
     /// faces so little of its edge that its gap is a mean, or that is beyond the end by less than 1e-3 of its edge.

@@ -8,7 +8,7 @@ use crate::border::padded;
 use crate::contact::coulomb::{Coulomb, Status, dissipation};
 use crate::contact::frame::{Frame, dot};
 use crate::contact::leaning::Leaning;
-use crate::contact::mortar::{Facing, LEAST_PART, SlidingSurfaces};
+use crate::contact::mortar::{ContactConfiguration, LEAST_PART, NonMatchingSurfaces};
 use crate::history::{SinkError, State, StateSink, Step, StepCheck, StepSource};
 use crate::on_problem;
 use crate::problem::{Problem, ProblemRef};
@@ -92,7 +92,7 @@ struct Recorder<'p, const D: usize, const N: usize> {
     laws: Vec<TangentialLaw>,
     now: Vec<NodeState<D>>,
     /// What the nodes face at the instant that is recorded.
-    facing: Facing<'p, D>,
+    configuration: ContactConfiguration<'p, D>,
     /// The shortest edge of each node that may touch another body (m); infinite at rigid obstacles, and on a bar.
     shortest: Vec<f64>,
     leaning: Leaning<'p, D>,
@@ -130,16 +130,16 @@ impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
             nodes,
         };
         let (laws, now) = (TangentialLaw::of_surface(problem), vec![start; results.nodes.len()]);
-        let facing = problem.surface().facing(problem.initial_displacement());
+        let configuration = problem.surface().configuration(problem.initial_displacement());
         let (shortest, gaps, averages) = (shortest_edges(problem), Gaps::default(), Averages::new(problem));
         let leaning = Leaning::new(problem.surface(), problem.mesh(), problem.on_lines_of_symmetry());
-        Self { problem, times, laws, now, facing, shortest, leaning, gaps, averages, results }
+        Self { problem, times, laws, now, configuration, shortest, leaning, gaps, averages, results }
     }
 
     /// The normal force of each obstacle (N) up to which its nodes are free.
     fn least_forces(&self, step: &Step<'_>) -> Vec<f64> {
         let (surface, mut least) = (self.problem.surface(), vec![0.0_f64; self.results.obstacles.len()]);
-        for at in surface.sliding().iter().flat_map(SlidingSurfaces::positions) {
+        for at in surface.non_matching().iter().flat_map(NonMatchingSurfaces::positions) {
             let (obstacle, frame) = (self.results.nodes[at].obstacle, surface.frame(at, &[0.0; D]));
             least[obstacle] = least[obstacle].max(LEAST_PART * frame.split(&step.reaction()[at]).0);
         }
@@ -149,14 +149,14 @@ impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
     /// Records the gaps, as long as nothing touches.
     fn gap_left(&mut self, step: &Step<'_>) {
         let touches = step.touching.contains(&true) || step.reaction.iter().any(|force| *force != 0.0);
-        let gaps = (0..self.now.len()).map(|at| self.facing.gap(at, step.displacement()));
+        let gaps = (0..self.now.len()).map(|at| self.configuration.gap(at, step.displacement()));
         self.gaps.advance(step.time, touches, gaps);
     }
 
     /// The inclination of surfaces where forces act (rad), so far.
     fn inclination(&self) -> f64 {
         let acts = |at: usize| self.now[at].status != Status::Free;
-        self.leaning.largest(self.results.inclination, acts, |sliding| self.facing.shifts(sliding))
+        self.leaning.largest(self.results.inclination, acts, |non_matching| self.configuration.shifts(non_matching))
     }
 
     /// Records one node, which is free up to this normal force (N); returns its share of the resultants.
@@ -164,23 +164,23 @@ impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
         let ContactPoint { node, area, point, .. } = self.results.nodes[at];
         let (displacement, force) = (step.displacement::<D>()[node.index()], step.reaction::<D>()[at]);
         let surface = self.problem.surface();
-        let relative = self.facing.relative(at, step.displacement());
+        let relative = self.configuration.relative(at, step.displacement());
         let frame = surface.frame(at, &relative);
         let normal_force = frame.split(&force).0;
         let status = if normal_force <= least { Status::Free } else { self.laws[at].status(&frame, &force) };
-        let is_of_pair = surface.nodes()[at].opposite.is_some();
+        let is_of_pair = surface.nodes()[at].partner.is_some();
         if status != Status::Free && is_of_pair {
             let (_, aside) = frame.split(&relative);
             let slip = dot(&aside, &aside).sqrt() / self.shortest[at];
             self.results.slip = self.results.slip.max(slip);
         }
-        let penetration = self.facing.depth(at, step.displacement()) / self.shortest[at];
+        let penetration = self.configuration.depth(at, step.displacement()) / self.shortest[at];
         self.results.penetration = self.results.penetration.max(penetration);
         let summary = &mut self.results.summary[at];
         summary.at(step.time, step.touching[at], normal_force, area);
         let mut sliding = [0.0; D];
         let before = std::mem::replace(&mut self.now[at], NodeState { relative, force, status });
-        self.results.at_surface_end |= summary.first_touch.is_some() && self.facing.is_at_end(at);
+        self.results.at_surface_end |= summary.first_touch.is_some() && self.configuration.is_at_end(at);
         if step.index > 0 {
             let dt = self.times.step(step.index - 1);
             let path = std::array::from_fn(|c| relative[c] - before.relative[c]);
@@ -198,7 +198,7 @@ impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
                 steps.sliding_velocity[D * row..D * (row + 1)].copy_from_slice(&slides(before.status));
             }
             steps.force.extend(force);
-            steps.gap.push(self.facing.gap(at, step.displacement()));
+            steps.gap.push(self.configuration.gap(at, step.displacement()));
             steps.sliding_velocity.extend(slides(status));
             steps.status.push(status);
             steps.friction_energy.push(friction_energy);
@@ -233,7 +233,7 @@ impl<const D: usize, const N: usize> Record for Recorder<'_, D, N> {
     fn record(&mut self, step: &Step<'_>) {
         let mut sums = vec![Sum::new(); self.results.obstacles.len()];
         let mut total = Sum::new();
-        self.facing.update(step.displacement());
+        self.configuration.update(step.displacement());
         self.gap_left(step);
         let least = self.least_forces(step);
         let length = self.times.velocity_step(step.index);
@@ -277,7 +277,7 @@ fn shortest_edges<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Ve
     let (surface, mut shortest) = (problem.surface(), vec![f64::INFINITY; problem.surface().nodes().len()]);
     for face in surface.faces().iter().filter(|_| D > 1) {
         let (_, length) = problem.mesh().normal_in::<D>(face.face);
-        let is_of_body = |at: usize| surface.nodes()[at].opposite.is_some() || surface.sliding_of(at).is_some();
+        let is_of_body = |at: usize| surface.nodes()[at].partner.is_some() || surface.non_matching_of(at).is_some();
         for &at in face.nodes.iter().filter(|&&at| is_of_body(at)) {
             shortest[at] = shortest[at].min(length);
         }

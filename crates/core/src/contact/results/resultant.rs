@@ -61,7 +61,7 @@ impl Sum {
         let sum = &mut self.resultant;
         sum.friction_energy += share.friction_energy;
         (0..3).for_each(|c| sum.force[c] += share.force[c]);
-        // Nodes beside the contact of surfaces that slide are pulled: forces of their multipliers have both signs.
+        // Nodes beside the contact of non-matching interfaces are pulled: forces of their multipliers have both signs.
         sum.normal_force += share.normal_force;
         (0..3).for_each(|c| self.moment[c] += share.normal_force * share.place[c]);
         if share.status == Status::Free {

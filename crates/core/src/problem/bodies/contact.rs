@@ -49,7 +49,7 @@ impl Contact {
         [first, second]: [&str; 2],
         matching: bool,
     ) -> Result<Interface, ObstacleError> {
-        let make = if matching { Interface::matching } else { Interface::sliding };
+        let make = if matching { Interface::matching } else { Interface::non_matching };
         make(dimension, first, second, self.friction)
     }
 

@@ -6,20 +6,20 @@
 
 mod approach;
 mod contact;
-mod facing;
 mod outline;
 #[cfg(test)]
 mod tests;
+mod view;
 
 pub use contact::{Between, Contact};
 
 use super::Cause;
 use crate::ids::{FaceId, NodeId};
 use approach::{Approach, ROUNDING, approach, dot};
-use facing::{Facing, View};
 use outline::{Edge, Outline, Vector};
 pub(super) use outline::{Start, outlines};
 use std::collections::{BTreeMap, BTreeSet};
+use view::{FacingEdges, View};
 
 /// Surfaces reach beyond what faces the other body at first by this part of the smaller one of the two, and by twice
 /// the way that bodies slide while they touch.
@@ -73,7 +73,7 @@ struct Candidates<'w> {
     meets: Option<f64>,
     slide: f64,
     across: Option<usize>,
-    sides: [Facing; 2],
+    sides: [FacingEdges; 2],
 }
 
 /// The surfaces of all wanted pairs; none for a pair that is not named and does not see each other. `held` says which

@@ -181,8 +181,8 @@ fn a_block_on_two_blocks_has_one_interface() {
     let expected = |problem: &Problem<2, 3>| {
         let interfaces: Vec<_> = problem.conditions().interfaces.iter().map(|interface| interface.groups()).collect();
         assert_eq!(interfaces, [["a facing b", "b facing a"], ["a and b towards c", "c.bottom"]]);
-        let sliding = &problem.surface().sliding()[0];
-        assert_eq!((sliding.slave().parts().len(), sliding.master().len()), (2, 5));
+        let non_matching = &problem.surface().non_matching()[0];
+        assert_eq!((non_matching.slave().parts().len(), non_matching.master().len()), (2, 5));
     };
     // Far away, too; the sides of the lower ones see each other, but for the edges at their corners.
     for gap in [1e-4, 0.01] {

@@ -26,7 +26,7 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
     let in_contact: BTreeSet<FaceId> = surface.faces().iter().map(|face| face.face).collect();
     for index in 0..problem.obstacles().len() {
         let place = problem.place_of_obstacle(index);
-        let Some(opposite) = problem.opposite_obstacle(index).filter(|_| place.key != "groups") else { continue };
+        let Some(partner) = problem.partner_obstacle(index).filter(|_| place.key != "groups") else { continue };
         let normal = *problem.obstacles()[index].flat_frame().normal();
         let along = tangent(&normal);
         let range = |face: FaceId| {
@@ -36,7 +36,7 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
                 .fold(NOTHING, |[low, high], xi| [low.min(xi), high.max(xi)])
         };
         let of = |obstacle: usize| surface.faces().iter().filter(move |face| face.obstacle == obstacle);
-        let other = of(opposite)
+        let other = of(partner)
             .map(|face| range(face.face))
             .fold(NOTHING, |[low, high], [from, to]| [low.min(from), high.max(to)]);
         let own: BTreeSet<NodeId> = of(index).flat_map(|face| mesh.face_nodes::<D>(face.face)).collect();
@@ -50,7 +50,7 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
             let common = high.min(other[1]) - low.max(other[0]) > ROUNDING * (high - low);
             if let Some(node) = nodes.iter().find(|node| is_across(node)).filter(|_| beside && faces && common) {
                 let edge = nodes.map(|node| node.index().to_string()).join(", ");
-                let surface = problem.obstacles()[opposite].group().unwrap_or_default();
+                let surface = problem.obstacles()[partner].group().unwrap_or_default();
                 let message = format!(
                     "the edge of nodes {edge} is left out of the contact with \"{surface}\", because a support holds \
                      node {} across it: the other body may enter there; support the body away from the contact or, \

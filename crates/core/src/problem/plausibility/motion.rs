@@ -197,23 +197,23 @@ fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Tim
         let (at, gap) = problem.nearest(obstacle)?;
         let node = problem.surface().nodes()[at].node.index();
         let normal = *problem.obstacles()[obstacle].flat_frame().normal();
-        let opposite = problem.opposite_obstacle(obstacle);
+        let partner = problem.partner_obstacle(obstacle);
         // Of several bodies on one side, the nearest is not the first to touch.
-        if opposite.is_some_and(|opposite| several(obstacle) || several(opposite)) {
+        if partner.is_some_and(|partner| several(obstacle) || several(partner)) {
             return None;
         }
-        let (own, other) = (&flights[bodies.of_node[node]], opposite.and_then(flight));
+        let (own, other) = (&flights[bodies.of_node[node]], partner.and_then(flight));
         let towards =
             |of: fn(&Flight<D>) -> &[f64; D]| other.map_or(0.0, |o| dot(of(o), &normal)) - dot(of(own), &normal);
         let (speed, push) = (towards(|flight| &flight.velocity), towards(|flight| &flight.acceleration));
         // A gap within rounding is closed.
         let gap = if gap <= problem.contact_tolerance() { 0.0 } else { gap };
-        let what = if opposite.is_some() { "other body" } else { "plane" };
+        let what = if partner.is_some() { "other body" } else { "plane" };
         Some(Approach { obstacle, what, gap, speed, time: closing_time(gap, speed, push) })
     };
     let leading = (0..problem.obstacles().len()).filter(|&obstacle| problem.leads_interface(obstacle));
     let (interfaces, planes): (Vec<usize>, Vec<usize>) =
-        leading.partition(|&obstacle| problem.opposite_obstacle(obstacle).is_some());
+        leading.partition(|&obstacle| problem.partner_obstacle(obstacle).is_some());
     let mut approaches = interfaces.into_iter().map(approach).collect::<Option<Vec<_>>>()?;
     approaches.extend(planes.into_iter().filter_map(approach));
     let first = approaches.into_iter().min_by(|a, b| a.time.total_cmp(&b.time))?;

@@ -58,8 +58,8 @@ fn half_of_a_symmetric_model_moves_as_the_whole() {
     }
 }
 
-/// Both sides of a surface that slides touch with twice the area of those of the half. Nodes with the rounding of sums
-/// of both signs do not count.
+/// Both halves of a non-matching interface touch with twice the area of those of the half. Nodes with the rounding of
+/// sums of both signs do not count.
 #[test]
 fn half_of_a_symmetric_model_has_half_of_the_area() {
     for (angle, speed, cells) in [(5.0, 20.0, [5, 7]), (40.0, 2.0, [6, 7]), (40.0, 20.0, [6, 7])] {
@@ -93,7 +93,7 @@ fn nodes_in_contact_touch() {
     let problem = TriangleProblem::builder(mesh)
         .material(aluminium())
         .initial_velocity(velocity)
-        .interface(Interface::sliding(2, "block.bottom", "plate.top", 0.2).unwrap())
+        .interface(Interface::non_matching(2, "block.bottom", "plate.top", 0.2).unwrap())
         .build()
         .unwrap();
     let times = steps(&problem, 8e-6);

@@ -45,7 +45,7 @@ fn a_mirror_image_has_the_mirrored_solution() {
 #[test]
 fn the_order_of_the_groups_does_not_matter() {
     let blocks = Blocks::oblique();
-    let exchanged = Interface::sliding(2, "lower.top", "upper.bottom", blocks.friction).unwrap();
+    let exchanged = Interface::non_matching(2, "lower.top", "upper.bottom", blocks.friction).unwrap();
     let (first, second) = (blocks.problem(), blocks.bodies(blocks.mesh(), |v| v).interface(exchanged).build().unwrap());
     let times = steps(&first, END);
     let (first, second) = (run(&first, &times), run(&second, &times));
@@ -85,7 +85,7 @@ fn numbers_do_not_matter() {
 fn roles_may_be_exchanged() {
     let run_of = |widths: [f64; 2]| {
         let problem = Blocks { widths, ..Blocks::oblique() }.problem();
-        let fine_is_slave = problem.surface().sliding()[0].slave().len() == 21;
+        let fine_is_slave = problem.surface().non_matching()[0].slave().len() == 21;
         let run = run(&problem, &steps(&problem, END));
         (run.momentum(run.last() - 1), run.simulation.balance, fine_is_slave, problem.mass()[..180].iter().sum::<f64>())
     };

@@ -2,7 +2,7 @@
 
 use super::setup::{Blocks, steel, steps};
 use crate::solution::run::{Run, run, swinging_steps};
-use percute_core::contact::{Coupling, SlidingSurfaces};
+use percute_core::contact::{Coupling, NonMatchingSurfaces};
 use percute_core::dynamics::critical_time_step;
 use percute_core::material::Elastic;
 
@@ -29,7 +29,7 @@ fn predicted(run: &Run<'_, 2, 3>, n: usize) -> Vec<[f64; 2]> {
 /// The weighted value of a multiplier, of a nodal field on the slave less that on the master, along a direction.
 fn weighted(
     run: &Run<'_, 2, 3>,
-    (sliding, coupling): (&SlidingSurfaces<2>, &Coupling),
+    (non_matching, coupling): (&NonMatchingSurfaces<2>, &Coupling),
     k: usize,
     field: &[[f64; 2]],
     direction: &[f64; 2],
@@ -39,8 +39,8 @@ fn weighted(
         let value = field[nodes[at].node.index()];
         value[0] * direction[0] + value[1] * direction[1]
     };
-    let values = |node| along(sliding.slave().position(node));
-    coupling.difference(k, values, |node| along(sliding.master().position(node))) / coupling.weight(k)
+    let values = |node| along(non_matching.slave().position(node));
+    coupling.difference(k, values, |node| along(non_matching.master().position(node))) / coupling.weight(k)
 }
 
 /// Momentum, the law of contact for each multiplier, and the balance of energy with equal steps.
@@ -66,8 +66,8 @@ pub(super) fn check_steps(run: &Run<'_, 2, 3>) -> Seen {
 pub(super) fn check_law(run: &Run<'_, 2, 3>) -> Seen {
     let mut seen = Seen::default();
     for n in 0..run.last() {
-        for sliding in run.problem.surface().sliding() {
-            check_multipliers(run, n, sliding, &mut seen);
+        for non_matching in run.problem.surface().non_matching() {
+            check_multipliers(run, n, non_matching, &mut seen);
         }
     }
     seen
@@ -79,39 +79,39 @@ fn fastest(run: &Run<'_, 2, 3>) -> f64 {
 }
 
 /// The law of contact in the step from t_n.
-fn check_multipliers(run: &Run<'_, 2, 3>, n: usize, sliding: &SlidingSurfaces<2>, seen: &mut Seen) {
+fn check_multipliers(run: &Run<'_, 2, 3>, n: usize, non_matching: &NonMatchingSurfaces<2>, seen: &mut Seen) {
     let surface = run.problem.surface();
     let (step, next) = (run.history.step(n).unwrap(), run.history.step(n + 1).unwrap());
-    let coupling = sliding.coupling(surface, &predicted(run, n));
-    let multipliers = sliding.multipliers(&coupling, step.reaction());
+    let coupling = non_matching.coupling(surface, &predicted(run, n));
+    let multipliers = non_matching.multipliers(&coupling, step.reaction());
     let velocity = run.half_velocity(n);
     let points = run.problem.mesh().points_in::<2>();
     let places: Vec<[f64; 2]> =
         points.iter().zip(next.displacement::<2>()).map(|(x, u)| [x[0] + u[0], x[1] + u[1]]).collect();
-    check_couple(run, (sliding, &coupling), step.reaction());
+    check_couple(run, (non_matching, &coupling), step.reaction());
     let largest = multipliers.iter().flatten().fold(0.0_f64, |most, force| most.max(force.abs()));
     for k in 0..coupling.len() {
-        let (normal, along) = sliding.frame().split(&multipliers[k]);
-        let touches = next.touching[sliding.slave().position(k)];
+        let (normal, along) = non_matching.frame().split(&multipliers[k]);
+        let touches = next.touching[non_matching.slave().position(k)];
         if !coupling.is_active(k) {
             assert!(!touches);
             continue;
         }
-        let of = (sliding, &coupling);
+        let of = (non_matching, &coupling);
         // Where a multiplier sets in, gaps give way.
-        let give = coupling.give(k, |k| sliding.frame().split(&multipliers[k]).0) / coupling.weight(k);
-        let gap = weighted(run, of, k, &places, sliding.frame().normal()) + give;
+        let give = coupling.give(k, |k| non_matching.frame().split(&multipliers[k]).0) / coupling.weight(k);
+        let gap = weighted(run, of, k, &places, non_matching.frame().normal()) + give;
         assert!(gap >= -1e-12 * run.problem.mesh().size(), "step {n}, {k}: {gap}");
         // Multipliers come from the forces: rounding of the largest.
         let rounding = 1e-9 * largest;
         assert!(normal >= -rounding && touches == (normal > rounding), "step {n}, {k}: {normal} {touches}");
-        let limit = sliding.law().limit(normal);
-        let tangential = along[0] * sliding.tangent()[0] + along[1] * sliding.tangent()[1];
+        let limit = non_matching.law().limit(normal);
+        let tangential = along[0] * non_matching.tangent()[0] + along[1] * non_matching.tangent()[1];
         assert!(tangential.abs() <= limit + rounding, "step {n}, {k}");
         if touches {
             seen.reactions += 1;
             assert!(gap.abs() <= 1e-12 * run.problem.mesh().size(), "step {n}, {k}: {gap}");
-            let slip = weighted(run, of, k, &velocity, sliding.tangent());
+            let slip = weighted(run, of, k, &velocity, non_matching.tangent());
             // The tangential problem is solved to 1e-13 of the largest multiplier; speeds are differences of u.
             if slip.abs() > 1e-6 * fastest(run) {
                 seen.slips += 1;
@@ -125,13 +125,17 @@ fn check_multipliers(run: &Run<'_, 2, 3>, n: usize, sliding: &SlidingSurfaces<2>
 }
 
 /// Normal forces on both sides have no resultant, and no couple at their places ξ in the step.
-fn check_couple(run: &Run<'_, 2, 3>, (sliding, coupling): (&SlidingSurfaces<2>, &Coupling), reaction: &[[f64; 2]]) {
+fn check_couple(
+    run: &Run<'_, 2, 3>,
+    (non_matching, coupling): (&NonMatchingSurfaces<2>, &Coupling),
+    reaction: &[[f64; 2]],
+) {
     let (mut force, mut couple, mut scale) = (0.0, 0.0, 0.0);
-    for (which, side) in [sliding.slave(), sliding.master()].into_iter().enumerate() {
+    for (which, side) in [non_matching.slave(), non_matching.master()].into_iter().enumerate() {
         for (node, xi) in side.xi().iter().enumerate() {
             let xi = if which == 0 { xi + coupling.shifts()[side.part_of(node)] } else { *xi };
             let [x, y] = reaction[side.position(node)];
-            let normal = sliding.frame().normal();
+            let normal = non_matching.frame().normal();
             let press = x * normal[0] + y * normal[1];
             force += press;
             couple += press * xi;
@@ -243,8 +247,8 @@ fn end_inside_an_edge() -> Blocks {
 #[test]
 fn nodes_stick_where_a_multiplier_sets_in() {
     let problem = end_inside_an_edge().problem();
-    let sliding = &problem.surface().sliding()[0];
-    let coupling = sliding.coupling_at(&[0.0]);
+    let non_matching = &problem.surface().non_matching()[0];
+    let coupling = non_matching.coupling_at(&[0.0]);
     assert!((0..coupling.len()).any(|k| coupling.is_active(k) && !coupling.binds(k)));
     let seen = checked(end_inside_an_edge(), 14e-6);
     assert!(seen.reactions > 100 && seen.sticks > 50, "{seen:?}");

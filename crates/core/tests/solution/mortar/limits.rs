@@ -28,7 +28,7 @@ fn matching_surfaces_are_pairs() {
     };
     let groups = ["upper.bottom", "lower.bottom"];
     let pairs = problem(Interface::matching(2, groups[0], groups[1], 0.2).unwrap());
-    let mortar = problem(Interface::sliding(2, groups[0], groups[1], 0.2).unwrap());
+    let mortar = problem(Interface::non_matching(2, groups[0], groups[1], 0.2).unwrap());
     let times = steps(&pairs, 25e-6);
     let (expected, found) = (run(&pairs, &times), run(&mortar, &times));
     // Rows by their nodes: the order along the surface is another one.
@@ -89,14 +89,14 @@ fn a_heavy_stiff_master_is_a_rigid_plane() {
 fn bars_are_pairs() {
     let bar = |start: f64| Mesh::uniform_bar(0.3, 10).unwrap().mapped(|p| [p[0] + start]).unwrap();
     let mesh = Mesh::joined(&[("left", &bar(-0.3)), ("right", &bar(1e-4))]).unwrap();
-    let interface = Interface::sliding(1, "left.end", "right.start", 0.0).unwrap();
+    let interface = Interface::non_matching(1, "left.end", "right.start", 0.0).unwrap();
     assert!(interface.is_matching());
     let problem = BarProblem::builder(mesh)
         .material(Elastic::bar(70e9, 2700.0, 1e-4).unwrap())
         .interface(interface)
         .build()
         .unwrap();
-    assert!(problem.surface().sliding().is_empty() && problem.surface().nodes()[0].opposite == Some(1));
+    assert!(problem.surface().non_matching().is_empty() && problem.surface().nodes()[0].partner == Some(1));
 }
 
 /// Contact results of both sides: opposite resultants, gaps of what faces something.

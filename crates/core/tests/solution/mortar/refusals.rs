@@ -19,7 +19,7 @@ fn cause(problem: Result<TriangleProblem, InputError>) -> Option<Cause> {
 fn wrong_groups_are_refused() {
     let blocks = Blocks::oblique();
     let refusal = |first: &str, second: &str| {
-        let interface = Interface::sliding(2, first, second, 0.2).unwrap();
+        let interface = Interface::non_matching(2, first, second, 0.2).unwrap();
         cause(blocks.bodies(blocks.mesh(), |v| v).interface(interface).build())
     };
     assert_eq!(refusal("upper.bottom", "lower.top"), None);
@@ -27,8 +27,8 @@ fn wrong_groups_are_refused() {
     assert!(matches!(refusal("upper.bottom", "lower.bottom"), Some(Cause::TurnedAway { .. })));
     assert!(matches!(refusal("upper.bottom", "lower.left"), Some(Cause::TurnedAway { .. })));
     assert!(matches!(refusal("upper.bottom", "anvil.top"), Some(Cause::UnknownGroup { .. })));
-    assert!(Interface::sliding(2, "a", "b", -0.1).is_err());
-    assert!(Interface::sliding(1, "a", "b", 0.1).is_err());
+    assert!(Interface::non_matching(2, "a", "b", -0.1).is_err());
+    assert!(Interface::non_matching(1, "a", "b", 0.1).is_err());
 }
 
 /// Two bodies of 20 mm that face each other along a surface of this height above its level, with supports across x;
@@ -40,7 +40,7 @@ fn facing(height: impl Fn(f64) -> [f64; 2], leans: f64, supports: &[&str]) -> Re
 
 /// The same with the places of the points of each body in the undeformed blocks, the upper one first.
 fn placed(place: impl Fn(usize, [f64; 2]) -> [f64; 2], supports: &[&str]) -> Result<TriangleProblem, InputError> {
-    let builder = joined(place).interface(Interface::sliding(2, "upper.bottom", "lower.top", 0.2).unwrap());
+    let builder = joined(place).interface(Interface::non_matching(2, "upper.bottom", "lower.top", 0.2).unwrap());
     let support = |group: &str| Support { group: group.into(), components: [true, false, false], velocity: None };
     supports.iter().fold(builder, |builder, group| builder.support(support(group))).build()
 }
@@ -89,8 +89,8 @@ fn slopes_of_a_cell_count_at_their_own_line() {
     assert_eq!(cause(facing(|x| [upper(x), lower(x)], 0.0, &lines)), None);
 }
 
-/// Two chevrons lean together by the smaller angle, as surfaces that slide and as pairs; a chevron on a level surface
-/// does not, nor do two that open. Edges of which one node touches do not count, and corners do.
+/// Two chevrons lean together by the smaller angle, as non-matching interfaces and as pairs; a chevron on a level
+/// surface does not, nor do two that open. Edges of which one node touches do not count, and corners do.
 #[test]
 fn chevrons_lean_together() {
     let slope = |problem: &TriangleProblem, ends: bool| {
@@ -124,9 +124,10 @@ fn chevrons_lean_together() {
 #[test]
 fn surfaces_lean_together_where_they_are() {
     let problem = facing(|x| [0.3 * ((x + 0.005) % 0.01 - 0.005).abs(); 2], 0.0, &[]).unwrap();
-    let (surface, sliding) = (problem.surface(), &problem.surface().sliding()[0]);
+    let (surface, non_matching) = (problem.surface(), &problem.surface().non_matching()[0]);
     let is_upper = |at: usize| surface.nodes()[at].node.index() < 25;
-    let left = if is_upper(sliding.slave().position(0)) { -sliding.tangent()[0] } else { sliding.tangent()[0] };
+    let left =
+        if is_upper(non_matching.slave().position(0)) { -non_matching.tangent()[0] } else { non_matching.tangent()[0] };
     let leaning = Leaning::new(surface, problem.mesh(), vec![true; surface.nodes().len()]);
     let acts = |at: usize| {
         let from = if is_upper(at) { 0.0099 } else { -0.0001 };
@@ -240,7 +241,7 @@ fn edges_above_each_other_are_refused() {
     let groups = FaceGroups::from([("up".to_string(), vec![[2, 3], [6, 7]]), ("down".to_string(), vec![[8, 9]])]);
     let mesh = Mesh::new(points, &cells, &groups, &ElementGroups::new()).unwrap();
     assert_eq!(mesh.parts(), 2);
-    let interface = Interface::sliding(2, "up", "down", 0.0).unwrap();
+    let interface = Interface::non_matching(2, "up", "down", 0.0).unwrap();
     let problem = TriangleProblem::builder(mesh).material(aluminium()).interface(interface).build();
     assert!(matches!(cause(problem), Some(Cause::Covered { .. })));
 }

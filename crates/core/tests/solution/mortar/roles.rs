@@ -27,8 +27,8 @@ fn slave(blocks: [Block; 2], degrees: f64) -> String {
         .contact(Contact::new(2, Between::All, 0.2, None).unwrap())
         .build()
         .unwrap();
-    let sliding = &problem.surface().sliding()[0];
-    let node = problem.surface().nodes()[sliding.slave().position(0)].node.index();
+    let non_matching = &problem.surface().non_matching()[0];
+    let node = problem.surface().nodes()[non_matching.slave().position(0)].node.index();
     blocks[usize::from(node >= meshes[0].node_count())].0.to_string()
 }
 

@@ -70,7 +70,7 @@ impl Blocks {
     }
 
     pub(crate) fn interface(&self) -> Interface {
-        Interface::sliding(2, "upper.bottom", "lower.top", self.friction).unwrap()
+        Interface::non_matching(2, "upper.bottom", "lower.top", self.friction).unwrap()
     }
 
     pub(crate) fn problem(&self) -> TriangleProblem {

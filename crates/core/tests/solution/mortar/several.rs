@@ -1,4 +1,4 @@
-//! A block on two blocks: one surface that slides along those of two bodies.
+//! A block on two blocks: a non-matching interface with two bodies.
 
 use super::law::{check_energy, check_steps};
 use super::setup::{GAP, HEIGHT, steel, steps};
@@ -86,7 +86,7 @@ fn the_law_of_contact_momentum_and_energy_hold() {
     ];
     for (k, case) in cases.iter().enumerate() {
         let problem = case.problem(false);
-        assert_eq!(problem.surface().sliding()[0].slave().parts().len(), 2);
+        assert_eq!(problem.surface().non_matching()[0].slave().parts().len(), 2);
         let run = run(&problem, &steps(&problem, 14e-6));
         let seen = check_steps(&run);
         check_energy(&run);

@@ -23,7 +23,7 @@ fn stack(velocities: [[f64; 2]; 3], plane: Option<Obstacle<2>>) -> TriangleProbl
     let bodies: Vec<(&str, &Mesh)> = names.into_iter().zip(&blocks).collect();
     let velocity = (0..3).flat_map(|k| vec![velocities[k]; blocks[k].node_count()]).collect();
     let between = |below: &str, above: &str| {
-        Interface::sliding(2, format!("{above}.bottom"), format!("{below}.top"), 0.2).unwrap()
+        Interface::non_matching(2, format!("{above}.bottom"), format!("{below}.top"), 0.2).unwrap()
     };
     let mut builder = TriangleProblem::builder(Mesh::joined(&bodies).unwrap())
         .material_of("lower", aluminium())
@@ -41,14 +41,15 @@ fn stack(velocities: [[f64; 2]; 3], plane: Option<Obstacle<2>>) -> TriangleProbl
 #[test]
 fn two_interfaces_keep_momentum_and_energy() {
     let problem = stack([[4.0, 20.0], [0.0, 0.0], [-4.0, -20.0]], None);
-    let slaves: Vec<usize> = problem.surface().sliding().iter().map(|sliding| sliding.slave().len()).collect();
+    let slaves: Vec<usize> =
+        problem.surface().non_matching().iter().map(|non_matching| non_matching.slave().len()).collect();
     assert_eq!(slaves, [CELLS[1][0] + 1, CELLS[2][0] + 1]);
     let run = run(&problem, &steps(&problem, 20e-6));
     let seen = check_steps(&run);
     check_energy(&run);
     assert!(seen.reactions > 1000 && seen.slips > 100, "{seen:?}");
-    for sliding in problem.surface().sliding() {
-        let pressed = |n: usize| run.history.step(n).unwrap().touching[sliding.slave().position(3)];
+    for non_matching in problem.surface().non_matching() {
+        let pressed = |n: usize| run.history.step(n).unwrap().touching[non_matching.slave().position(3)];
         assert!((0..run.last()).any(pressed));
     }
 }

@@ -29,7 +29,7 @@ fn check(problem: &TriangleProblem, all: bool) {
     let count = problem.surface().nodes().len();
     assert_eq!(touching(0), if all { count } else { 0 });
     assert!((0..=run.last()).any(|n| touching(n) >= count / 2));
-    if !problem.surface().sliding().is_empty() {
+    if !problem.surface().non_matching().is_empty() {
         assert!(seen.reactions > 500, "{seen:?}");
     }
 }
@@ -100,7 +100,7 @@ fn touching_bodies_need_contact_where_they_touch() {
     let alone = cause(blocks.bodies(blocks.mesh(), |v| v));
     let Some(Cause::TouchUnstated { elements: [first, second] }) = alone else { panic!("{alone:?}") };
     assert!(first < 2 * 14 * 11 && second >= 2 * 14 * 11);
-    let elsewhere = Interface::sliding(2, "upper.top", "lower.bottom", 0.2).unwrap();
+    let elsewhere = Interface::non_matching(2, "upper.top", "lower.bottom", 0.2).unwrap();
     let other = cause(blocks.bodies(blocks.mesh(), |v| v).interface(elsewhere));
     assert!(matches!(other, Some(Cause::TouchUnstated { .. } | Cause::Overlaps { .. })), "{other:?}");
     // Towards each other: the force would have no bound.

@@ -123,10 +123,10 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         let forces = to.forces();
         let friction = |k: usize| self.faces.iter().map(|&f| forces.friction[f][k]).sum::<f64>();
         let surface = sampler.problem().surface();
-        let entries = |at: Option<usize>| [at, at.and_then(|at| surface.nodes()[at].beside)];
+        let slots = |at: Option<usize>| [at, at.and_then(|at| surface.nodes()[at].second_slot)];
         let touches = |level: &EquilibratedLevel<'_, D>, at: usize| level.forces().level.surface.touching[at];
         let touching = [&from, &to]
-            .map(|level| self.contact.map(|at| entries(at).map(|at| at.is_some_and(|at| touches(level, at)))));
+            .map(|level| self.contact.map(|at| slots(at).map(|at| at.is_some_and(|at| touches(level, at)))));
         let faces = self.faces.iter().filter(|&&f| forces.off_contact.iter().any(|step| step.act_on(f)));
         let pressures = faces.map(|&f| FacePressures::gather(f, from.index(), &forces.off_contact));
         let pressures = pressures.filter(|pressures| !pressures.is_zero()).collect();
@@ -136,8 +136,8 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             self.contact.iter().flatten().flat_map(|&at| level.forces().density.hats_of(at)).copied().collect()
         });
         let problem = sampler.problem();
-        let beside = [&from, &to].map(|level| level.forces().density.beside(problem, self.element));
-        let loaded = Waiting::<D, N>::is_loaded(&hats, &beside);
+        let residual = [&from, &to].map(|level| level.forces().density.residual(problem, self.element));
+        let loaded = Waiting::<D, N>::is_loaded(&hats, &residual);
         let single = forces.mid_velocity.is_some() && to.index() == from.index() + 1;
         let mid = single.then(|| WaitingSample {
             at: ContactInstant {
@@ -154,7 +154,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             touching,
             pressures,
             sliding,
-            beside,
+            residual,
             hats,
         }
     }

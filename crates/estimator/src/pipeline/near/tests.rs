@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::increment::Increment;
-use crate::kinematic::FreeMotion;
+use crate::kinematic::NodalTrajectory;
 use crate::nodal_field::FieldPool;
 use crate::options::{Acceleration, Options};
 use crate::pipeline::fixture::{SHOWS, impact};
@@ -16,7 +16,7 @@ use percute_core::history::Step;
 
 /// Runs one element at contact through a single step at whose end its nodes touch, with the normal
 /// motion in `track` for all of them.
-fn checked(track: &ContactTrack) -> Residuals {
+fn checked(track: &ContactMotion) -> Residuals {
     let (problem, times) = impact();
     let equilibration = Equilibration::new(&problem);
     let tracks = vec![track.clone(); problem.surface().nodes().len()];
@@ -28,9 +28,9 @@ fn checked(track: &ContactTrack) -> Residuals {
         maps: &Maps::new(Request::default(), &problem).unwrap(),
     };
     let reconstruction = reconstruction::new(&problem, &times, &Options::default());
-    let (fastest, sliding) = (1.0, &SlidingMisfit::new(&problem, 1));
+    let (fastest, non_matching) = (1.0, &NonMatchingMisfit::new(&problem, 1));
     let context =
-        ContactSampling { shared: &shared, reconstruction: &*reconstruction, fastest, tracks: &tracks, sliding };
+        ContactSampling { shared: &shared, reconstruction: &*reconstruction, fastest, tracks: &tracks, non_matching };
     let mut near = near_elements(&problem).remove(0);
     let sampler = ElementSampler::new(&shared, near.element);
     let surface = problem.surface().nodes().len();
@@ -45,7 +45,8 @@ fn checked(track: &ContactTrack) -> Residuals {
     };
     let mut evaluation = Evaluation::new(&problem, &times);
     let pool = FieldPool::new(problem.mesh().node_count());
-    let (_, motion) = FreeMotion::new(&problem, &pool).advance(&problem, &times, &evaluation.advance(&step).unwrap());
+    let (_, motion) =
+        NodalTrajectory::new(&problem, &pool).advance(&problem, &times, &evaluation.advance(&step).unwrap());
     let velocities = Velocities { motion, increment: Increment::zero(&pool), skew_increment: None };
     let mut stop = near.at(&sampler, &velocities, 0.0);
     near.settle(&context, &mut stop, 2);
@@ -55,10 +56,10 @@ fn checked(track: &ContactTrack) -> Residuals {
 }
 
 /// A track with this normal velocity (m/s) and gap (m) at the end of the first step.
-fn track(velocity: f64, gap: f64) -> ContactTrack {
+fn track(velocity: f64, gap: f64) -> ContactMotion {
     // The undeformed gap of the fixture's flat bottom.
     let (problem, _) = impact();
-    ContactTrack::altered(problem.surface().nodes()[0].undeformed_gap, 2, [velocity, gap])
+    ContactMotion::altered(problem.surface().nodes()[0].undeformed_gap, 2, [velocity, gap])
 }
 
 #[test]

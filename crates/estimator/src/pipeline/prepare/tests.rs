@@ -36,7 +36,7 @@ fn wrong_initial_conditions_show() {
     };
     for (other, shows) in [(&problem, false), (&faster, true), (&moved, true)] {
         let mut preparation = Preparation::new(&problem, &times, &Options::default());
-        preparation.motion = FreeMotion::new(other, &FieldPool::new(other.mesh().node_count()));
+        preparation.motion = NodalTrajectory::new(other, &FieldPool::new(other.mesh().node_count()));
         let mut evaluation = Evaluation::new(&problem, &times);
         preparation.push(&evaluation.advance(&step).unwrap()).unwrap();
         let found = preparation.residuals;

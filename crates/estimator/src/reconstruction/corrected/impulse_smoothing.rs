@@ -54,9 +54,9 @@ impl<const D: usize> ImpulseSmoothing<D> {
         self.time[at]
     }
 
-    /// The forces (N) of step n, of which reactions and total accelerations are given, and what those of surfaces that
-    /// slide stop. All their impulse is kept, but for the rest after the last step. Nothing depends on the length of
-    /// later steps.
+    /// The forces (N) of step n, of which reactions and total accelerations are given, and the nodes that forces of
+    /// non-matching interfaces stop. All their impulse is kept, but for the rest after the last step. Nothing depends
+    /// on the length of later steps.
     pub(super) fn advance<const N: usize>(
         &mut self,
         problem: &Problem<D, N>,
@@ -80,13 +80,13 @@ impl<const D: usize> ImpulseSmoothing<D> {
                 let stopped = slides.map_or_else(
                     || {
                         let mut towards = acceleration(contact.node.index());
-                        if let Some(opposite) = contact.opposite {
-                            let other = acceleration(surface.nodes()[opposite].node.index());
+                        if let Some(partner) = contact.partner {
+                            let other = acceleration(surface.nodes()[partner].node.index());
                             (0..D).for_each(|c| towards[c] -= other[c]);
                         }
                         let mut part = frame.split(&towards).0;
-                        if let Some(beside) = contact.beside {
-                            part = stopped_in_corner(problem, [k, beside], reaction, part, &towards);
+                        if let Some(second) = contact.second_slot {
+                            part = stopped_in_corner(problem, [k, second], reaction, part, &towards);
                         }
                         surface.moved_mass(k, problem.mass()) * part
                     },
@@ -117,13 +117,13 @@ impl<const D: usize> ImpulseSmoothing<D> {
 /// both act. `across` is the acceleration along this normal.
 fn stopped_in_corner<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
-    entries: [usize; 2],
+    slots: [usize; 2],
     reaction: &[[f64; D]],
     across: f64,
     acceleration: &[f64; D],
 ) -> f64 {
-    let frames = entries.map(|at| problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame());
-    if frames[1].split(&reaction[entries[1]]).0 <= 0.0 {
+    let frames = slots.map(|at| problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame());
+    if frames[1].split(&reaction[slots[1]]).0 <= 0.0 {
         return across;
     }
     let cosine = frames[0].split(frames[1].normal()).0;

@@ -1,12 +1,12 @@
 //! The full reaction as a density on all candidate faces of its node, balanced by an auxiliary solution with less
 //! dispersion, with tractions of least energy.
 
+mod auxiliary;
 mod concentration;
 mod impulse_smoothing;
 mod moment_correction;
-mod motions;
-mod sliding;
-mod sliding_motion;
+mod non_matching;
+mod non_matching_motion;
 mod split;
 mod traction_minimisation;
 
@@ -17,7 +17,7 @@ use crate::contact_density::{Densities, FacePressures, LevelDensities, NormalMis
 use crate::difference::Difference;
 use crate::element::Element;
 use crate::error::EstimateError;
-use crate::kinematic::ContactTrack;
+use crate::kinematic::ContactMotion;
 use crate::nodal_field::FieldPool;
 use crate::options::{Ablation, Acceleration, Options};
 use crate::pool::Pool;
@@ -25,19 +25,19 @@ use crate::residual::worse;
 use crate::smoothing::{SmoothedStrains, Smoothing};
 use crate::time_level::{ForcesKnown, Inertia, MotionKnown, SplitFields, SurfaceStep};
 use crate::traction::{EquilibratedLevels, Equilibration, Then};
+use auxiliary::{AuxiliaryLevel, AuxiliarySolutions, Shares, SimulatedLevel, SplitLevel};
 pub(crate) use concentration::Concentration;
-use concentration::{Faced, Known, OwnForces};
+use concentration::{AuxiliaryForces, Faced, Known};
 use impulse_smoothing::{ImpulseSmoothing, Stopped};
 use moment_correction::MomentCorrection;
-use motions::{AuxiliaryLevel, Motions, Shares, SimulatedLevel, SplitLevel};
+use non_matching::NonMatchingForces;
+use non_matching_motion::NonMatchingMotion;
 use percute_core::contact::{ContactNode, Coupling};
 use percute_core::dynamics::Dynamics;
 use percute_core::history::{State, Step};
 use percute_core::problem::Problem;
 use percute_core::simplex::Shape;
 use percute_core::time::TimeGrid;
-use sliding::SlidingForces;
-use sliding_motion::SlidingMotion;
 use split::skew_acceleration;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -51,11 +51,11 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     /// Tributary area (m²) of each node of the contact surface.
     tributary: Vec<f64>,
     concentration: Option<Concentration<D>>,
-    own_forces: OwnForces<D>,
+    auxiliary_forces: AuxiliaryForces<D>,
     moment_correction: Option<MomentCorrection<D>>,
     impulse_smoothing: Option<ImpulseSmoothing<D>>,
-    sliding: SlidingForces<'p, D, N>,
-    motions: Option<Motions<'p, D, N>>,
+    non_matching: NonMatchingForces<'p, D, N>,
+    auxiliary: Option<AuxiliarySolutions<'p, D, N>>,
     /// ΣF²k and ΣF² over the nodes at the last level (N²).
     halvings: [f64; 2],
     smoothing: Arc<Smoothing>,
@@ -82,17 +82,17 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         let keeps = |part: Ablation| options.ablation != part;
         let shares = if keeps(Ablation::Correction) { Shares::ALL } else { Shares::NONE };
         let smoothing = Arc::new(Smoothing::new(problem));
-        let motions = || Motions::new(problem, times, Arc::clone(&smoothing), shares);
+        let auxiliary = || AuxiliarySolutions::new(problem, times, Arc::clone(&smoothing), shares);
         Self {
             problem,
             times,
             tributary: problem.surface().tributary_areas(),
             concentration: concentrates(problem, options).then(|| Concentration::new(problem)),
-            own_forces: OwnForces::new(problem),
+            auxiliary_forces: AuxiliaryForces::new(problem),
             moment_correction: keeps(Ablation::Moment).then(|| MomentCorrection::new(problem)),
             impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
-            sliding: SlidingForces::new(problem),
-            motions: keeps(Ablation::AuxiliarySolution).then(motions),
+            non_matching: NonMatchingForces::new(problem),
+            auxiliary: keeps(Ablation::AuxiliarySolution).then(auxiliary),
             smoothing,
             strains: Pool::new(),
             halvings: [0.0; 2],
@@ -113,42 +113,42 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         let of_stars = || Concentration::new(problem).memory(problem);
         let concentration = concentrates(problem, options).then(of_stars).unwrap_or(0);
         TractionMinimisation::memory(mesh.shape(), mesh.element_count())
-            .saturating_add(Motions::<D, N>::memory(mesh.node_count(), mesh.element_count()))
+            .saturating_add(AuxiliarySolutions::<D, N>::memory(mesh.node_count(), mesh.element_count()))
             .saturating_add(concentration)
     }
 
     /// Replaces the forces (N) at nodes that touch alone, from the foreseen motions of all contact nodes in the step n.
     fn replace_own(
         &mut self,
-        (n, motions): (usize, &mut Motions<'p, D, N>),
+        (n, auxiliary): (usize, &mut AuxiliarySolutions<'p, D, N>),
         stopped: &[Option<Stopped>],
         around: &Around<'_>,
         [contact, arresting]: [&mut [[f64; D]]; 2],
     ) {
         let (problem, surface, length) = (self.problem, self.problem.surface(), self.times.step(n));
         let Some(concentration) = &self.concentration else { return };
-        let foreseen = motions.foresee(n);
+        let foreseen = auxiliary.foresee(n);
         let time = |at: usize| {
             let own = || self.impulse_smoothing.as_ref().map_or(length, |smoothing| smoothing.time(at));
             stopped.get(at).copied().flatten().map_or_else(own, |stopped| stopped.time)
         };
         let steps = |at: usize| length / time(at);
         let mut known = Known { problem, concentration, gap: around.gap, steps: &steps, contact, arresting };
-        self.own_forces.replace(
+        self.auxiliary_forces.replace(
             &mut known,
             |at| foreseen.free_gap(at),
             |at, forces| foreseen.approach(at, concentration.far_nodes(at), forces),
         );
-        for (sliding, coupling) in surface.sliding().iter().zip(around.couplings) {
+        for (non_matching, coupling) in surface.non_matching().iter().zip(around.couplings) {
             let mut nodes = Vec::new();
-            for at in sliding.positions().filter(|&at| surface.nodes()[at].free) {
+            for at in non_matching.positions().filter(|&at| surface.nodes()[at].free) {
                 match around.faced[at] {
                     Some(faced) => nodes.push((at, faced)),
-                    None => self.own_forces.release(at),
+                    None => self.auxiliary_forces.release(at),
                 }
             }
-            let mut motion = SlidingMotion::new((sliding, coupling), foreseen.free(), known.contact);
-            self.own_forces.replace_in_turn(nodes, &mut known, |at, forces| motion.approach(at, forces));
+            let mut motion = NonMatchingMotion::new((non_matching, coupling), foreseen.free(), known.contact);
+            self.auxiliary_forces.replace_in_turn(nodes, &mut known, |at, forces| motion.approach(at, forces));
         }
     }
 
@@ -178,10 +178,10 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
 
     fn around<'a>(&self, gap: &'a [f64], couplings: &'a [Arc<Coupling>]) -> Around<'a> {
         let surface = self.problem.surface();
-        let stands = |at: usize| surface.sliding_of(at).is_none().then_some(Faced::WHOLE);
+        let stands = |at: usize| surface.non_matching_of(at).is_none().then_some(Faced::WHOLE);
         let mut faced: Vec<_> = (0..surface.nodes().len()).map(stands).collect();
         if let Some(concentration) = &self.concentration {
-            self.sliding.add_faced(concentration, couplings, &mut faced);
+            self.non_matching.add_faced(concentration, couplings, &mut faced);
         }
         Around { gap, couplings, faced, own: Vec::new() }
     }
@@ -191,8 +191,8 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         LevelDensities { acting: self.at(acting, around), sudden: self.at(sudden, around) }
     }
 
-    /// The densities of a level: those that were kept, or those of its forces and reactions without surfaces that
-    /// slide.
+    /// The densities of a level: those that were kept, or those of its forces and reactions without non-matching
+    /// interfaces.
     fn kept<'a>(&self, step: &'a SurfaceStep<D>) -> Cow<'a, LevelDensities<D>> {
         let made = || Cow::Owned(self.level([&step.force, &step.reaction], &self.around(&step.gap, &[])));
         step.densities.as_ref().map_or_else(made, Cow::Borrowed)
@@ -213,7 +213,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         let mut shapes: Vec<Option<TractionShape>> = Vec::with_capacity(nodes.len());
         for (at, force) in reaction.iter().enumerate() {
             // The traction on the other one of two nodes that touch is the same, reversed.
-            let facing = nodes[at].opposite.filter(|_| !surface.leads(at));
+            let facing = nodes[at].partner.filter(|_| !surface.leads(at));
             shapes.push(concentration.and_then(|concentration| match facing {
                 Some(first) => Some(concentration.facing(problem, [first, at], shapes[first].as_ref()?)),
                 None => {
@@ -227,15 +227,15 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             let centroid =
                 |at: usize| shaped(at).map(|(concentration, shape)| concentration.centroid(problem, at, shape));
             correction.apply(&mut reaction, &centroid);
-            self.sliding.correct_moments(around.couplings, &centroid, &mut reaction);
+            self.non_matching.correct_moments(around.couplings, &centroid, &mut reaction);
             for (at, contact) in nodes.iter().enumerate() {
-                if let Some(first) = contact.opposite.filter(|&first| first < at) {
+                if let Some(first) = contact.partner.filter(|&first| first < at) {
                     reaction[at] = reaction[first].map(|f| -f);
                 }
             }
         }
         let density = |f: usize, k: usize| match shaped(k) {
-            _ if surface.sliding_of(k).is_some() => [0.0; D],
+            _ if surface.non_matching_of(k).is_some() => [0.0; D],
             Some((concentration, shape)) => concentration.wide(k, f, shape, &reaction[k]),
             None => reaction[k].map(|r| r / self.tributary[k]),
         };
@@ -248,8 +248,8 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             }
         }
         let made = Densities::with_hats(problem, |f, face| face.nodes.map(|k| density(f, k)), hats);
-        let sliding = self.sliding.densities(&shaped, around.couplings, &reaction);
-        made.with_shares(shares).with_sliding(problem, self.sliding.faces(), sliding)
+        let non_matching = self.non_matching.densities(&shaped, around.couplings, &reaction);
+        made.with_shares(shares).with_non_matching(problem, self.non_matching.faces(), non_matching)
     }
 }
 
@@ -257,18 +257,18 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
 struct Around<'a> {
     /// Gaps of the simulation (m).
     gap: &'a [f64],
-    /// Those of surfaces that slide.
+    /// Those of non-matching interfaces.
     couplings: &'a [Arc<Coupling>],
     /// What each node faces, if its traction may be hats.
     faced: Vec<Option<Faced>>,
-    /// The shapes of the tractions of own forces, where they are known.
+    /// The shapes of the tractions of auxiliary contact forces, where they are known.
     own: Vec<Option<TractionShape>>,
 }
 
 impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_, D, N> {
     fn prepare(&mut self, elements: &[Element<D, N>]) {
-        if let Some(motions) = &mut self.motions {
-            motions.prepare(elements);
+        if let Some(auxiliary) = &mut self.auxiliary {
+            auxiliary.prepare(elements);
         }
         if self.minimises {
             self.minimisation = TractionMinimisation::new(self.problem, elements);
@@ -276,8 +276,8 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     }
 
     fn check(&self, step: &Step<'_>) -> Result<(), EstimateError> {
-        match &self.motions {
-            Some(motions) if motions.is_unstable() => Err(EstimateError::AuxiliarySolution {
+        match &self.auxiliary {
+            Some(auxiliary) if auxiliary.is_unstable() => Err(EstimateError::AuxiliarySolution {
                 step: step.index,
                 time: step.time,
                 longest_step: self.times.longest_step(),
@@ -295,24 +295,27 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     ) -> BalancedFields<D> {
         let (state, step, problem) = (simulated.state, simulated.state.step(), self.problem);
         let surface = problem.surface();
-        let couplings: Vec<Arc<Coupling>> =
-            surface.sliding().iter().map(|sliding| Arc::new(sliding.coupling(surface, step.displacement()))).collect();
-        let mut arresting = self.sliding.of(self.times, state);
+        let couplings: Vec<Arc<Coupling>> = surface
+            .non_matching()
+            .iter()
+            .map(|non_matching| Arc::new(non_matching.coupling(surface, step.displacement())))
+            .collect();
+        let mut arresting = self.non_matching.of(self.times, state);
         let acceleration = |node| state.acceleration_of(node);
-        let stopped = self.sliding.stopped(&couplings, acceleration);
+        let stopped = self.non_matching.stopped(&couplings, acceleration);
         let mut contact = match &mut self.impulse_smoothing {
             Some(smoothing) => smoothing.advance(problem, self.times, step.index, &arresting, acceleration, &stopped),
             None => arresting.clone(),
         };
-        [&mut arresting, &mut contact].into_iter().for_each(|forces| self.sliding.gather(&couplings, forces));
+        [&mut arresting, &mut contact].into_iter().for_each(|forces| self.non_matching.gather(&couplings, forces));
         let gap = surface.gaps(step.displacement());
         let mut around = self.around(&gap, &couplings);
-        let Some(mut motions) = self.motions.take() else {
+        let Some(mut auxiliary) = self.auxiliary.take() else {
             return self.balance_simulation(dynamics, state, [contact, arresting], &around, pool);
         };
-        motions.begin(dynamics, step.index);
-        self.replace_own((step.index, &mut motions), &stopped, &around, [&mut contact, &mut arresting]);
-        around.own = self.own_forces.shapes();
+        auxiliary.begin(dynamics, step.index);
+        self.replace_own((step.index, &mut auxiliary), &stopped, &around, [&mut contact, &mut arresting]);
+        around.own = self.auxiliary_forces.shapes();
         let densities = self.level([&contact, &arresting], &around);
         self.halvings = halvings(&contact, &densities.acting);
         let pull = driving_forces(problem, &densities.acting);
@@ -323,16 +326,16 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let level = AuxiliaryLevel { displacement: &mut displacement, acceleration: &mut acceleration, split: fields };
         let (velocity, strain, reaction) = (simulated.velocity, state.strain(), step.reaction());
         let simulated = SimulatedLevel { velocity, strain, reaction };
-        motions.advance(dynamics, step.index, &simulated, &pull, level);
-        let smoothed = motions.smooths();
-        self.motions = Some(motions);
+        auxiliary.advance(dynamics, step.index, &simulated, &pull, level);
+        let smoothed = auxiliary.smooths();
+        self.auxiliary = Some(auxiliary);
         let (inertia, densities) = (Inertia::Acceleration(acceleration), Some(densities));
         BalancedFields { displacement, inertia, contact, densities, split, smoothed }
     }
 
     fn differ(&mut self, simulated: [&[[f64; D]]; 2]) {
-        if let Some(motions) = &mut self.motions {
-            motions.differ(simulated, self.halvings);
+        if let Some(auxiliary) = &mut self.auxiliary {
+            auxiliary.differ(simulated, self.halvings);
         }
     }
 
@@ -356,8 +359,8 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         density: &Densities<D>,
     ) -> Vec<[f64; 2]> {
         let mut friction = friction::friction(problem, length, now, next, density);
-        let of = (problem, &**self.sliding.faces());
-        friction::add_sliding(of, length, now, next, density, &mut friction);
+        let of = (problem, &**self.non_matching.faces());
+        friction::add_non_matching(of, length, now, next, density, &mut friction);
         friction
     }
 
@@ -366,18 +369,18 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     }
 
     fn isolated_contact_nodes(&self) -> usize {
-        self.own_forces.count()
+        self.auxiliary_forces.count()
     }
 
     fn auxiliary_contact_energy(&self) -> f64 {
-        self.motions.as_ref().map_or(0.0, Motions::contact_energy)
+        self.auxiliary.as_ref().map_or(0.0, AuxiliarySolutions::contact_energy)
     }
 
     fn differences(&self) -> Option<&[Difference]> {
-        self.motions.as_ref().map(Motions::differences)
+        self.auxiliary.as_ref().map(AuxiliarySolutions::differences)
     }
 
-    fn normal_misfit(&self, pressures: &FacePressures<D>, tracks: &[ContactTrack]) -> NormalMisfit {
+    fn normal_misfit(&self, pressures: &FacePressures<D>, tracks: &[ContactMotion]) -> NormalMisfit {
         pressures.misfit(self.problem, self.times, tracks, self.normal_work)
     }
 

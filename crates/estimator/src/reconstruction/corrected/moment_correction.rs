@@ -55,7 +55,7 @@ impl<const D: usize> MomentCorrection<D> {
         let (part, surface) = (problem.mesh().part_of_nodes(), problem.surface());
         let centroids = centroids(problem);
         let mut groups: Vec<((NodeId, usize), Group<D>)> = Vec::new();
-        let flat = |at: usize| surface.leads(at) && surface.sliding_of(at).is_none();
+        let flat = |at: usize| surface.leads(at) && surface.non_matching_of(at).is_none();
         let leading = surface.nodes().iter().zip(&centroids).enumerate().filter(|(at, _)| flat(*at));
         for (at, (contact, centroid)) in leading {
             let key = (part[contact.node.index()], contact.obstacle);

@@ -56,15 +56,15 @@ pub(in crate::report) struct Facts {
     pub(super) corner: Option<f64>,
     /// Whether bodies may touch each other.
     pub(super) bodies: bool,
-    /// Whether they have surfaces that slide along each other.
+    /// Whether they have non-matching interfaces.
     pub(super) slides: bool,
     /// The farthest that nodes of two bodies in contact were moved along their interface, over their shortest edge.
     pub(super) slip: f64,
-    /// The deepest that a node of surfaces that slide was inside the other body, over its shortest edge.
+    /// The deepest that a node of non-matching interfaces was inside the other body, over its shortest edge.
     pub(super) penetration: f64,
-    /// Whether a node of surfaces that slide that has touched was at the end of the other surface, or beyond it.
+    /// Whether a node of non-matching interfaces that has touched was at the end of the other surface, or beyond it.
     pub(super) at_surface_end: bool,
-    /// The largest angle by which two surfaces that slide lean together from their common normal (degrees).
+    /// The largest angle of non-matching surfaces to their common normal (degrees).
     pub(super) inclination: f64,
     pub(super) supported: bool,
     /// Part of the squared mean error in elements with a node that touches.
@@ -155,7 +155,7 @@ impl Facts {
             largest_friction: problem.obstacles().map(|o| o.law().friction()).fold(0.0, f64::max),
             corner: corner(problem, results),
             bodies,
-            slides: problem.sliding_count() > 0,
+            slides: problem.non_matching_count() > 0,
             slip: results.slip,
             penetration: results.penetration,
             at_surface_end: results.at_surface_end,
@@ -240,7 +240,7 @@ fn corner(problem: &AnyProblem, results: &ContactResults) -> Option<f64> {
     for (contact, first) in nodes.iter().zip(first_contacts(results)) {
         touched[contact.obstacle] |= first.is_some();
     }
-    let planes = nodes.iter().filter_map(|contact| Some([contact.obstacle, nodes[contact.beside?].obstacle]));
+    let planes = nodes.iter().filter_map(|contact| Some([contact.obstacle, nodes[contact.second_slot?].obstacle]));
     let opening = |planes: [usize; 2]| {
         let [one, two] = planes.map(|obstacle| problem.obstacle(obstacle).frame());
         (-one.split(two.normal()).0).clamp(-1.0, 1.0).acos().to_degrees()
@@ -251,7 +251,7 @@ fn corner(problem: &AnyProblem, results: &ContactResults) -> Option<f64> {
 /// The largest speed at which two bodies approach each other at the start, at the nodes of their contact (m/s).
 fn approach(problem: &AnyProblem) -> Option<f64> {
     let (nodes, starts) = (problem.contact_nodes(), problem.starts_of_contact());
-    let of_bodies = |at: &usize| nodes[*at].opposite.is_some() || problem.sliding_of(*at).is_some();
+    let of_bodies = |at: &usize| nodes[*at].partner.is_some() || problem.non_matching_of(*at).is_some();
     (0..starts.len()).filter(of_bodies).map(|at| -starts[at].1).reduce(f64::max)
 }
 

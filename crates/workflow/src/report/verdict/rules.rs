@@ -28,7 +28,7 @@ pub(super) const LONG: f64 = 5.0;
 /// 1.25.
 const SHORT: (f64, f64, usize) = (1.1, 0.45, 8);
 
-/// The most elements of surfaces that slide in contact for an index above 1.6, studies/struck.py.
+/// The most elements of non-matching interfaces in contact for an index above 1.6, studies/struck.py.
 const FEW: usize = 2;
 
 /// Corners of two planes that open by less (degrees) have an index of their own.
@@ -118,9 +118,9 @@ pub(super) const RULES: [Rule; 28] = [
         situation: "corners, curves and parts of an edge on non-matching interfaces",
         reason: None,
     },
-    // crates/estimator/tests/sliding_blocks.rs has 1.08 to 1.37 for surfaces that slide, two_blocks.rs 1.07 to 1.15 for
-    // blocks of metals. studies/two_bodies.py has 0.86 to 1.66 for soft and skewed bodies, with
-    // edges beside inclined sides, at 0.4 m/s as well.
+    // crates/estimator/tests/sliding_blocks.rs has 1.08 to 1.37 for non-matching interfaces, two_blocks.rs 1.07 to 1.15
+    // for blocks of metals. studies/two_bodies.py has 0.86 to 1.66 for soft and skewed bodies, with edges beside
+    // inclined sides, at 0.4 m/s as well.
     Rule {
         applies: |f| f.bodies && f.dimension == 2,
         range: [0.83, 1.8],

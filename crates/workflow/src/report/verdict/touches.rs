@@ -126,7 +126,7 @@ impl<'a> Surface<'a> {
         (touches, ends)
     }
 
-    /// Whether contact begins along an edge of this zone: of two surfaces that slide, along edges of both.
+    /// Whether contact begins along an edge of this zone: of a non-matching interface, along edges of both.
     fn is_along(&self, zone: &[bool], start: &[usize]) -> bool {
         let (slaves, masters) = self.sides(start);
         let along = |nodes: &[usize]| nodes.iter().any(|&at| zone[at]);
@@ -193,9 +193,9 @@ impl<'a> Surface<'a> {
         PI - angles.sum::<f64>() * if self.on_line[at] { 2.0 } else { 1.0 }
     }
 
-    /// Of nodes on surfaces that slide, the one that strikes the other surface, and whether it is of the master: there
-    /// it is not farther than the mean gap of the slave, and the outline turns more. Nodes far from contact share the
-    /// force, too.
+    /// Of nodes on non-matching interfaces, the one that strikes the other surface, and whether it is of the master:
+    /// there it is not farther than the mean gap of the slave, and the outline turns more. Nodes far from contact share
+    /// the force, too.
     fn striking(&self, nodes: &[usize]) -> Option<(usize, bool)> {
         let (slaves, masters) = self.sides(nodes);
         let least = |nodes: Vec<usize>| nodes.into_iter().min_by(|&a, &b| self.gap[a].total_cmp(&self.gap[b]));
@@ -207,10 +207,10 @@ impl<'a> Surface<'a> {
         Some(least(masters).filter(strikes).map_or((slave, false), |at| (at, true)))
     }
 
-    /// The nodes among these of slaves, and those of masters, of surfaces that slide.
+    /// The nodes among these of slaves, and those of masters, of non-matching interfaces.
     fn sides(&self, nodes: &[usize]) -> (Vec<usize>, Vec<usize>) {
-        let sliding = nodes.iter().copied().filter(|&at| self.problem.sliding_of(at).is_some());
-        sliding.partition(|&at| self.problem.is_slave(at))
+        let non_matching = nodes.iter().copied().filter(|&at| self.problem.non_matching_of(at).is_some());
+        non_matching.partition(|&at| self.problem.is_slave(at))
     }
 
     /// The parts of the surface that touch, each joined by edges.

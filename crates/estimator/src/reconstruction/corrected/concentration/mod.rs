@@ -4,19 +4,19 @@
 //! the gap under it is linear in the force, while the square of the true error is quadratic: at low speed, the estimate
 //! of a corner or a curve would be many times too large.
 
+mod auxiliary_forces;
 mod bracket;
 mod faced;
-mod own_contact;
-mod own_forces;
+mod isolated_contact;
 mod star;
 
 use crate::concentrated::{HATS, HatStress, LoadedStar, ShapeCosts, StarResiduals, StarStress, TractionShape, place};
 use crate::contact_density::NarrowHat;
 use crate::residual::{Residuals, worse};
 use crate::stress::StressResiduals;
+pub(super) use auxiliary_forces::{AuxiliaryForces, Known};
 use faced::NodeCosts;
 pub(super) use faced::{Faced, Reach};
-pub(super) use own_forces::{Known, OwnForces};
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::problem::Problem;
@@ -54,7 +54,7 @@ impl<const D: usize> Concentration<D> {
 
     /// The shape of the traction of one node under a force (N). None where its tributary density is best: where no edge
     /// leaves the plane, where a hat as wide as a part that is faced is best, or where rounding spoils the stress of
-    /// hats. An own force has its own shape.
+    /// hats. An auxiliary contact force has its own shape.
     pub(super) fn shape<const N: usize>(
         &self,
         problem: &Problem<D, N>,
@@ -84,10 +84,10 @@ impl<const D: usize> Concentration<D> {
     pub(super) fn facing<const N: usize>(
         &self,
         problem: &Problem<D, N>,
-        [at, opposite]: [usize; 2],
+        [at, partner]: [usize; 2],
         shape: &TractionShape,
     ) -> TractionShape {
-        shape.reordered(self.facing_edges(problem, opposite, at))
+        shape.reordered(self.facing_edges(problem, partner, at))
     }
 
     /// What a node faces on the edges to other nodes, of which these parts face it; its compliance makes that of the
@@ -121,7 +121,7 @@ impl<const D: usize> Concentration<D> {
             return None;
         }
         let (mut stars, mut compliance) = (Vec::with_capacity(2), 0.0);
-        for node in [Some(at), nodes[at].opposite].into_iter().flatten() {
+        for node in [Some(at), nodes[at].partner].into_iter().flatten() {
             let (other, stress) = (&self.nodes[node], self.stress(problem, node));
             if !stress.residuals.balanced() {
                 return None;
@@ -148,7 +148,7 @@ impl<const D: usize> Concentration<D> {
     fn facing_edges<const N: usize>(&self, problem: &Problem<D, N>, at: usize, other: usize) -> [usize; 2] {
         let nodes = problem.surface().nodes();
         std::array::from_fn(|edge| {
-            let far = self.nodes[at].edges.get(edge).and_then(|edge| nodes[edge.far].opposite);
+            let far = self.nodes[at].edges.get(edge).and_then(|edge| nodes[edge.far].partner);
             self.nodes[other].edges.iter().position(|edge| Some(edge.far) == far).unwrap_or(edge)
         })
     }

@@ -22,7 +22,7 @@ pub(super) struct NodeStar {
     pub(super) sides: Vec<usize>,
     /// The position of each edge among them.
     pub(super) places: Vec<usize>,
-    /// The first entry of the node in the contact surface.
+    /// The first slot of the node in the contact surface.
     pub(super) first: usize,
     /// Tributary shares of the edges.
     pub(super) tributary: Vec<f64>,
@@ -66,7 +66,7 @@ impl NodeStar {
             }
         }
         let sides = |at: usize| {
-            let beside = surface.nodes()[at].beside;
+            let beside = surface.nodes()[at].second_slot;
             let both = [Some(at), beside].into_iter().flatten().flat_map(|at| &edges[at]);
             let mut sides: Vec<usize> = both.map(|edge| edge.side).collect();
             sides.sort_unstable();

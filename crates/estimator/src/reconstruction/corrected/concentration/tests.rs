@@ -1,10 +1,10 @@
-//! Shapes of the tractions of a block on its corner, and the own force of a node that touches alone.
+//! Shapes of the tractions of a block on its corner, and the auxiliary contact force of a node that touches alone.
 
-use super::own_forces::{Known, OwnForces};
+use super::auxiliary_forces::{AuxiliaryForces, Known};
 use super::star::CandidateEdge;
 use super::*;
 use crate::contact_density::{Densities, nodal_forces};
-use crate::reconstruction::corrected::motions::{Approach, Mobility};
+use crate::reconstruction::corrected::auxiliary::{Approach, Mobility};
 use crate::reconstruction::{StepDensities, SurfaceSteps, check};
 use crate::time_level::SurfaceStep;
 use percute_core::contact::Obstacle;
@@ -147,12 +147,12 @@ fn onto(gap: f64) -> Approach<2> {
     Approach { gap_now: 0.0, gap, along: [[0.0; 2]; 2], mobility: Mobility::of_mass(1e-12), far: [None; 2] }
 }
 
-/// The force of a node after a step of `OwnForces` of τ, from the reaction of the simulation and the motion of the
-/// node.
-fn own_force(
+/// The force of a node after a step of `AuxiliaryForces` of τ, from the reaction of the simulation and the motion of
+/// the node.
+fn auxiliary_force(
     problem: &TriangleProblem,
     concentration: &Concentration<2>,
-    own: &mut OwnForces<2>,
+    own: &mut AuxiliaryForces<2>,
     step: ([f64; 2], Approach<2>),
 ) -> [f64; 2] {
     after(problem, concentration, own, 1.0, step)
@@ -162,7 +162,7 @@ fn own_force(
 fn replace(
     problem: &TriangleProblem,
     concentration: &Concentration<2>,
-    own: &mut OwnForces<2>,
+    own: &mut AuxiliaryForces<2>,
     (gap, steps): (&[f64], f64),
     approach: impl Fn(usize) -> Approach<2>,
     [contact, arresting]: [&mut [[f64; 2]]; 2],
@@ -175,7 +175,7 @@ fn replace(
 fn after(
     problem: &TriangleProblem,
     concentration: &Concentration<2>,
-    own: &mut OwnForces<2>,
+    own: &mut AuxiliaryForces<2>,
     steps: f64,
     (reaction, approach): ([f64; 2], Approach<2>),
 ) -> [f64; 2] {
@@ -192,18 +192,18 @@ fn after(
     contact[at]
 }
 
-/// Under its own force a node comes to its plane, with the compliance of its traction, however large the reaction of
-/// the simulation is, and also where there is none. Off the plane it has no force.
+/// Under its auxiliary contact force a node comes to its plane, with the compliance of its traction, however large the
+/// reaction of the simulation is, and also where there is none. Off the plane it has no force.
 #[test]
 fn own_forces_close_the_gap() {
     let problem = tilted();
     let concentration = Concentration::new(&problem);
     let ((at, force), gap) = (corner(&problem), gaps(&problem));
     let normal = *problem.obstacles()[0].flat_frame().normal();
-    let apply = |own: &mut OwnForces<2>, reaction: [f64; 2], gap: f64| {
-        own_force(&problem, &concentration, own, (reaction, onto(gap)))
+    let apply = |own: &mut AuxiliaryForces<2>, reaction: [f64; 2], gap: f64| {
+        auxiliary_force(&problem, &concentration, own, (reaction, onto(gap)))
     };
-    let mut own = OwnForces::new(&problem);
+    let mut own = AuxiliaryForces::new(&problem);
     let found = apply(&mut own, force, -6e-5);
     let size = found[0] * normal[0] + found[1] * normal[1];
     let (gaps, largest) = (concentration.gaps(at, &Faced::WHOLE, &gap).unwrap(), 6e7);
@@ -214,9 +214,9 @@ fn own_forces_close_the_gap() {
     assert!(remaining(size - 2e-12 * largest) < 0.0 && remaining(size + 2e-12 * largest) > 0.0);
     assert_eq!(apply(&mut own.clone(), force, 1e-9), [0.0; 2]);
     for reaction in [[0.0; 2], force.map(|f| 1e-3 * f), force.map(|f| 3.0 * f)] {
-        assert_eq!(apply(&mut OwnForces::new(&problem), reaction, -6e-5), found);
+        assert_eq!(apply(&mut AuxiliaryForces::new(&problem), reaction, -6e-5), found);
     }
-    // Under this reaction the node would not be alone; it keeps its own force.
+    // Under this reaction the node would not be alone; it keeps its auxiliary contact force.
     let large = force.map(|f| 1e5 * f);
     assert!(
         concentration
@@ -236,10 +236,10 @@ fn own_forces_stick_and_slide() {
     let (_, force) = corner(&problem);
     let frame = problem.obstacles()[0].flat_frame();
     let tangent = [-frame.normal()[1], frame.normal()[0]];
-    let mut own = OwnForces::new(&problem);
+    let mut own = AuxiliaryForces::new(&problem);
     let mut apply = |slides: f64| {
         let along = [[0.0; 2], tangent.map(|t| slides * t)];
-        let found = own_force(&problem, &concentration, &mut own, (force, Approach { along, ..onto(-6e-5) }));
+        let found = auxiliary_force(&problem, &concentration, &mut own, (force, Approach { along, ..onto(-6e-5) }));
         (found[0] * tangent[0] + found[1] * tangent[1]) / frame.split(&found).0
     };
     let held = apply(0.0);
@@ -258,14 +258,14 @@ fn a_released_node_begins_anew() {
     let (at, force) = corner(&problem);
     let frame = problem.obstacles()[0].flat_frame();
     let slid = [[0.0; 2], [-frame.normal()[1], frame.normal()[0]].map(|t| 1e-3 * t)];
-    let apply = |own: &mut OwnForces<2>, along| {
-        own_force(&problem, &concentration, own, (force, Approach { along, ..onto(-6e-5) }))
+    let apply = |own: &mut AuxiliaryForces<2>, along| {
+        auxiliary_force(&problem, &concentration, own, (force, Approach { along, ..onto(-6e-5) }))
     };
-    let mut own = OwnForces::new(&problem);
+    let mut own = AuxiliaryForces::new(&problem);
     apply(&mut own, slid);
     let mut released = own.clone();
     released.release(at);
-    let fresh = apply(&mut OwnForces::new(&problem), [[0.0; 2]; 2]);
+    let fresh = apply(&mut AuxiliaryForces::new(&problem), [[0.0; 2]; 2]);
     assert_eq!(apply(&mut released, [[0.0; 2]; 2]), fresh);
     assert_ne!(apply(&mut own, [[0.0; 2]; 2]), fresh);
 }
@@ -281,8 +281,8 @@ fn a_depth_is_not_taken_back_at_once() {
     let (depth, gap, steps) = (5e-5, -6e-5, 0.1);
     let behind = Approach { gap_now: -depth, ..onto(gap) };
     let on_its_plane =
-        |gap: f64| own_force(&problem, &concentration, &mut OwnForces::new(&problem), (force, onto(gap)));
-    let mut own = OwnForces::new(&problem);
+        |gap: f64| auxiliary_force(&problem, &concentration, &mut AuxiliaryForces::new(&problem), (force, onto(gap)));
+    let mut own = AuxiliaryForces::new(&problem);
     for n in 1..4 {
         let found = after(&problem, &concentration, &mut own, steps, (force, behind));
         let expected = on_its_plane(gap + depth * (1.0 - steps * steps).powi(n));
@@ -291,7 +291,7 @@ fn a_depth_is_not_taken_back_at_once() {
         assert!(found.iter().zip(&expected).all(close), "{n}: {found:?} {expected:?}");
     }
     for long in [1.0, 3.0] {
-        let found = after(&problem, &concentration, &mut OwnForces::new(&problem), long, (force, behind));
+        let found = after(&problem, &concentration, &mut AuxiliaryForces::new(&problem), long, (force, behind));
         assert_eq!(found, on_its_plane(gap));
     }
 }
@@ -308,7 +308,14 @@ fn a_flat_zone_has_no_own_force() {
     contact[at] = force;
     let mut arresting = contact.clone();
     let of = |k: usize| onto(if k == at { -6e-5 } else { 1.0 });
-    replace(&problem, &concentration, &mut OwnForces::new(&problem), (&gap, 1.0), of, [&mut contact, &mut arresting]);
+    replace(
+        &problem,
+        &concentration,
+        &mut AuxiliaryForces::new(&problem),
+        (&gap, 1.0),
+        of,
+        [&mut contact, &mut arresting],
+    );
     assert_eq!([contact[at], arresting[at]], [force; 2]);
 }
 
