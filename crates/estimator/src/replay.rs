@@ -31,14 +31,14 @@ pub(crate) fn estimate(
         sinks.accept(&evaluation.advance(step)?)?;
         let progress = Progress { stage: "estimating", done: step.index, total: last };
         if observer.observe(progress) == ControlFlow::Break(()) && step.index < last {
-            return Err(Stopped.into());
+            return Err(ObserverBreak.into());
         }
         Ok(())
     });
     let (pipeline, (balancing, _)) = sinks;
     let interrupted = match replayed {
         Ok(()) => false,
-        Err(error) if error.is::<Stopped>() => true,
+        Err(error) if error.is::<ObserverBreak>() => true,
         Err(error) => return Err(failed(error)),
     };
     let balance_over_time = balancing.finish();
@@ -51,7 +51,7 @@ pub(crate) fn estimate(
 /// The observer broke.
 #[derive(Debug, Error)]
 #[error("stopped")]
-struct Stopped;
+struct ObserverBreak;
 
 fn failed(error: SinkError) -> RunError {
     let error = match error.downcast::<StepError>() {

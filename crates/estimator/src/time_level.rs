@@ -63,7 +63,7 @@ pub(crate) struct SplitFields<const D: usize> {
 
 /// The inertia that is balanced, as far as it is known without F_DA.
 #[derive(Clone, Debug)]
-pub(crate) enum Inertia<const D: usize> {
+pub(crate) enum KnownInertia<const D: usize> {
     /// All nodal forces but those of contact (N): external, internal, of supports.
     Forces(NodalField<D>),
     /// ã under all forces; a_c of a split mass term (m/s²).
@@ -85,7 +85,7 @@ pub(crate) struct MotionKnown<const D: usize> {
     pub(crate) now: NodalMotion<D>,
     /// u̇_CA at t_{n−½} (m/s).
     pub(crate) mid_velocity: Option<NodalField<D>>,
-    pub(crate) inertia: Inertia<D>,
+    pub(crate) inertia: KnownInertia<D>,
 }
 
 /// Motion and ∫ã dt at an instant.

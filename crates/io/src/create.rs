@@ -1,9 +1,9 @@
 //! New files: written completely under another name, and then renamed. Their room can be reserved.
 
-use crate::driver::{Driven, Fault};
+use crate::driver::{Driven, DriverFault};
 use crate::error::{FileCause, FileError};
-use crate::held::Held;
 use crate::library::{alone, refused};
+use crate::lock::LockedFile;
 use crate::temporary::{probe, temporary};
 use crate::unfinished::Unfinished;
 use crate::write::Texts;
@@ -41,7 +41,7 @@ pub(crate) struct Unnamed {
     unfinished: Unfinished,
     path: PathBuf,
     /// Lock on the file to be replaced.
-    old: Option<Held>,
+    old: Option<LockedFile>,
     overwrite: Overwrite,
 }
 
@@ -103,10 +103,10 @@ impl Unnamed {
     }
 
     /// Gives the file its name. It is locked against writers from then on.
-    pub(crate) fn put(self) -> Result<Held, FileCause> {
+    pub(crate) fn put(self) -> Result<LockedFile, FileCause> {
         let Self { mut temporary, unfinished: _unfinished, path, mut old, overwrite } = self;
         let own = temporary.as_file().try_clone().map_err(|source| FileCause::Create { source })?;
-        let held = Held::shared(own)?;
+        let lock = LockedFile::shared(own)?;
         loop {
             // A file is replaced only by the one that holds the lock on it: of two runs that begin together, one is
             // refused.
@@ -119,7 +119,7 @@ impl Unnamed {
                 false => temporary.persist_noclobber(&path),
             };
             match put {
-                Ok(_) => return Ok(held),
+                Ok(_) => return Ok(lock),
                 Err(refused) if refused.error.kind() == io::ErrorKind::AlreadyExists => {
                     temporary = refused.file;
                     old = destination(&path, overwrite)?.1;
@@ -173,13 +173,13 @@ fn make<T>(file: &File, fill: impl FnOnce(&hdf5::File) -> Result<T, FileCause>) 
     let access = FileAccess::build().libver_bounds(LibraryVersion::V18, LibraryVersion::V110).alignment(1, 8).finish();
     let creation = FileCreate::build().obj_track_times(false).finish();
     let (access, creation) = access.and_then(|access| Ok((access, creation?))).map_err(|error| refused(&error))?;
-    let driven = Driven::create(file, &access, &creation).map_err(Fault::of_creation)?;
+    let driven = Driven::create(file, &access, &creation).map_err(DriverFault::of_creation)?;
     let made = fill(driven.file());
-    driven.close(made, Fault::of_creation)
+    driven.close(made, DriverFault::of_creation)
 }
 
 /// The path of the file, and the lock on the file to be replaced.
-fn destination(path: &Path, overwrite: Overwrite) -> Result<(PathBuf, Option<Held>), FileCause> {
+fn destination(path: &Path, overwrite: Overwrite) -> Result<(PathBuf, Option<LockedFile>), FileCause> {
     let Ok(found) = path.symlink_metadata() else { return Ok((path.to_path_buf(), None)) };
     if overwrite == Overwrite::Refuse {
         return Err(FileCause::Exists);
@@ -192,7 +192,7 @@ fn destination(path: &Path, overwrite: Overwrite) -> Result<(PathBuf, Option<Hel
     }
     let old = File::open(&path).map_err(|source| FileCause::Create { source })?;
     // Nobody writes it; others may read it until it is replaced.
-    Ok((path, Some(Held::alone(old)?.share()?)))
+    Ok((path, Some(LockedFile::alone(old)?.share()?)))
 }
 
 fn no_room(source: io::Error, folder: &Path, needed: u64) -> FileCause {

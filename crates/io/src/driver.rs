@@ -32,14 +32,14 @@ pub(crate) struct Driven {
 }
 
 /// What went wrong.
-pub(crate) enum Fault {
+pub(crate) enum DriverFault {
     /// A read or write.
     System(io::Error),
     /// HDF5 refuses.
     Library(hdf5::Error),
 }
 
-impl Fault {
+impl DriverFault {
     /// In the creation of a file.
     pub(crate) fn of_creation(self) -> FileCause {
         match self {
@@ -64,7 +64,7 @@ impl Fault {
     }
 }
 
-impl From<hdf5::Error> for Fault {
+impl From<hdf5::Error> for DriverFault {
     fn from(error: hdf5::Error) -> Self {
         Self::Library(error)
     }
@@ -72,30 +72,30 @@ impl From<hdf5::Error> for Fault {
 
 impl Driven {
     /// Creates the contents of an empty file.
-    pub(crate) fn create(file: &File, access: &FileAccess, creation: &FileCreate) -> Result<Self, Fault> {
+    pub(crate) fn create(file: &File, access: &FileAccess, creation: &FileCreate) -> Result<Self, DriverFault> {
         // SAFETY: the name ends with zero, and both property lists are open.
         Self::new(file, access, || unsafe { H5Fcreate(NAME.as_ptr(), H5F_ACC_TRUNC, creation.id(), access.id()) })
     }
 
     /// Opens a file for reading.
-    pub(crate) fn read(file: &File) -> Result<Self, Fault> {
+    pub(crate) fn read(file: &File) -> Result<Self, DriverFault> {
         Self::open(file, H5F_ACC_RDONLY)
     }
 
     /// Opens a file for changes.
-    pub(crate) fn change(file: &File) -> Result<Self, Fault> {
+    pub(crate) fn change(file: &File) -> Result<Self, DriverFault> {
         Self::open(file, H5F_ACC_RDWR)
     }
 
-    fn open(file: &File, flags: c_uint) -> Result<Self, Fault> {
+    fn open(file: &File, flags: c_uint) -> Result<Self, DriverFault> {
         let access = FileAccess::build().finish()?;
         // SAFETY: the name ends with zero, and the property list is open.
         Self::new(file, &access, || unsafe { H5Fopen(NAME.as_ptr(), flags, access.id()) })
     }
 
-    fn new(file: &File, access: &FileAccess, open: impl FnOnce() -> hid_t) -> Result<Self, Fault> {
-        let channel = Arc::new(Channel::new(file).map_err(Fault::System)?);
-        let failed = || Fault::Library(hdf5::Error::query().unwrap_or_else(|error| error));
+    fn new(file: &File, access: &FileAccess, open: impl FnOnce() -> hid_t) -> Result<Self, DriverFault> {
+        let channel = Arc::new(Channel::new(file).map_err(DriverFault::System)?);
+        let failed = || DriverFault::Library(hdf5::Error::query().unwrap_or_else(|error| error));
         let opened = hdf5::sync::sync(|| {
             // SAFETY: the property list is open, and the driver takes no information from it.
             if unsafe { H5Pset_driver(access.id(), registered(), null()) } < 0 {
@@ -108,7 +108,7 @@ impl Driven {
             if id < 0 { Err(failed()) } else { Ok(unsafe { hdf5::from_id::<hdf5::File>(id) }?) }
         });
         // What the library makes of a read that failed does not matter.
-        let file = opened.map_err(|fault| channel.state().fault.take().map_or(fault, Fault::System))?;
+        let file = opened.map_err(|fault| channel.state().fault.take().map_or(fault, DriverFault::System))?;
         Ok(Self { file, channel })
     }
 
@@ -120,12 +120,12 @@ impl Driven {
     ///
     /// # Errors
     /// The first write that failed, the error of `made`, a refusal of the library.
-    pub(crate) fn close<T, E>(self, made: Result<T, E>, told: impl FnOnce(Fault) -> E) -> Result<T, E> {
+    pub(crate) fn close<T, E>(self, made: Result<T, E>, told: impl FnOnce(DriverFault) -> E) -> Result<T, E> {
         let Self { file, channel } = self;
         let closed = file.close();
         match (channel.state().fault.take(), made, closed) {
-            (Some(error), ..) => Err(told(Fault::System(error))),
-            (None, Ok(_), Err(error)) => Err(told(Fault::Library(error))),
+            (Some(error), ..) => Err(told(DriverFault::System(error))),
+            (None, Ok(_), Err(error)) => Err(told(DriverFault::Library(error))),
             (None, made, _) => made,
         }
     }

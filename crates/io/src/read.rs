@@ -11,11 +11,11 @@ pub(crate) use data::Data;
 pub use superblock::is_hdf5;
 
 use crate::checksum::Checksum;
-use crate::driver::{Driven, Fault};
+use crate::driver::{Driven, DriverFault};
 use crate::error::{FileCause, FileError};
-use crate::held::Held;
 use crate::kind::Kind;
 use crate::library::{alone, damaged};
+use crate::lock::LockedFile;
 use crate::seal;
 use hdf5::dataset::Layout;
 use hdf5::types::{TypeDescriptor, VarLenAscii, VarLenUnicode};
@@ -34,14 +34,14 @@ pub(crate) const LAYOUT: i64 = 2;
 const TEXTS: [&str; 4] = ["kind", "program", "architecture", "system"];
 
 /// Whether texts of variable length can be read.
-struct Texts {
+struct TextSupport {
     /// Or why not.
     heaps: Result<(), String>,
     /// Of the attributes with these names.
     attributes: Vec<attribute::Found>,
 }
 
-impl Texts {
+impl TextSupport {
     fn check(file: &File, bytes: u64) -> io::Result<Self> {
         Ok(Self { heaps: heap::check(file, bytes)?, attributes: attribute::check(file, &TEXTS, bytes)? })
     }
@@ -52,8 +52,8 @@ pub(crate) struct Opened {
     driven: Driven,
     bytes: u64,
     /// Whether texts of variable length can be read; unknown until one is.
-    texts: OnceCell<Texts>,
-    held: Held,
+    texts: OnceCell<TextSupport>,
+    lock: LockedFile,
     /// Dropped last, after the file is closed.
     _alone: MutexGuard<'static, ()>,
 }
@@ -61,9 +61,9 @@ pub(crate) struct Opened {
 impl Opened {
     pub(crate) fn new(path: &Path) -> Result<Self, FileCause> {
         let alone = alone();
-        let (held, bytes) = look(path)?;
-        let driven = Driven::read(held.file()).map_err(Fault::of_reading)?;
-        Ok(Self { driven, bytes, texts: OnceCell::new(), held, _alone: alone })
+        let (lock, bytes) = look(path)?;
+        let driven = Driven::read(lock.file()).map_err(DriverFault::of_reading)?;
+        Ok(Self { driven, bytes, texts: OnceCell::new(), lock, _alone: alone })
     }
 
     /// Bytes of the file.
@@ -72,9 +72,9 @@ impl Opened {
     }
 
     pub(crate) fn root(&self) -> Part<'_> {
-        let Self { driven, bytes, texts, held, .. } = self;
+        let Self { driven, bytes, texts, lock, .. } = self;
         let group = (**driven.file()).clone();
-        Part { group, name: String::new(), file_bytes: *bytes, file: held.file(), texts }
+        Part { group, name: String::new(), file_bytes: *bytes, file: lock.file(), texts }
     }
 
     /// History or estimate; any other file is an error with its contents.
@@ -113,7 +113,7 @@ impl Opened {
 }
 
 /// Checks a file without HDF5, whose messages here are poor. Returns the locked file and its size.
-fn look(path: &Path) -> Result<(Held, u64), FileCause> {
+fn look(path: &Path) -> Result<(LockedFile, u64), FileCause> {
     let refused = |source: io::Error| match source.kind() {
         io::ErrorKind::NotFound => FileCause::Missing,
         _ => FileCause::Read { source },
@@ -122,20 +122,20 @@ fn look(path: &Path) -> Result<(Held, u64), FileCause> {
     if !found.is_file() {
         return Err(FileCause::NotAFile);
     }
-    let held = Held::shared(File::open(path).map_err(refused)?)?;
+    let lock = LockedFile::shared(File::open(path).map_err(refused)?)?;
     if found.len() == 0 {
         return Err(FileCause::Empty);
     }
-    if !superblock::begins_as_hdf5(held.file()).map_err(refused)? {
+    if !superblock::begins_as_hdf5(lock.file()).map_err(refused)? {
         return Err(FileCause::NotHdf5);
     }
-    if superblock::names_driver(held.file(), found.len()).map_err(refused)? {
+    if superblock::names_driver(lock.file(), found.len()).map_err(refused)? {
         return Err(FileCause::Damaged { detail: "its first bytes name a file in several parts".to_string() });
     }
-    if let Err(detail) = groups::check(held.file(), found.len()).map_err(refused)? {
+    if let Err(detail) = groups::check(lock.file(), found.len()).map_err(refused)? {
         return Err(FileCause::Damaged { detail: detail.to_string() });
     }
-    Ok((held, found.len()))
+    Ok((lock, found.len()))
 }
 
 /// A group of the file.
@@ -144,7 +144,7 @@ pub(crate) struct Part<'f> {
     name: String,
     file_bytes: u64,
     file: &'f File,
-    texts: &'f OnceCell<Texts>,
+    texts: &'f OnceCell<TextSupport>,
 }
 
 impl<'f> Part<'f> {
@@ -243,11 +243,12 @@ impl<'f> Part<'f> {
     }
 
     /// Makes sure that texts of variable length can be read.
-    fn checked_texts(&self) -> Result<&'f Texts, FileCause> {
+    fn checked_texts(&self) -> Result<&'f TextSupport, FileCause> {
         let texts = match self.texts.get() {
             Some(texts) => texts,
             None => {
-                let found = Texts::check(self.file, self.file_bytes).map_err(|source| FileCause::Read { source })?;
+                let found =
+                    TextSupport::check(self.file, self.file_bytes).map_err(|source| FileCause::Read { source })?;
                 self.texts.get_or_init(|| found)
             }
         };

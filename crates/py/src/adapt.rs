@@ -1,7 +1,7 @@
 //! Adaptations, run by run.
 
+use crate::built::BuiltEstimate;
 use crate::estimate::EstimateData;
-use crate::made::Made;
 use crate::options::{Stated, options};
 use crate::problem::ProblemData;
 use crate::simulate::Times;
@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Shared with the thread of a run.
 type Shared = Arc<Mutex<Adapting>>;
 /// Target, measure or quantity, limit and number of runs.
-type Wanted = (f64, String, f64, usize);
+type TargetOf = (f64, String, f64, usize);
 
 /// An adaptation on its way.
 #[pyclass(frozen, module = "percute._percute")]
@@ -32,7 +32,7 @@ impl AdaptingData {
         py: Python<'_>,
         problem: &ProblemData,
         times: Times,
-        wanted: Wanted,
+        wanted: TargetOf,
         gmsh: Option<(Option<PathBuf>, f64)>,
         stated: Stated,
         threads: Option<usize>,
@@ -77,20 +77,20 @@ impl AdaptingData {
         // A run that was told to stop ends first.
         let (document, table, best) = py.detach(|| told(&self.adapting, self.options));
         let document = document.map_err(|error| errors::percute_error(py, &error.to_string()))?;
-        let estimate = best.map(|made| EstimateData { made });
+        let estimate = best.map(|built| EstimateData { built });
         let problem = estimate.as_ref().map(EstimateData::problem);
         Ok((document, table, problem, estimate))
     }
 }
 
-type Told = (Result<String, std::io::Error>, String, Option<Arc<Made>>);
+type Adapted = (Result<String, std::io::Error>, String, Option<Arc<BuiltEstimate>>);
 
-fn told(adapting: &Shared, options: Options) -> Told {
+fn told(adapting: &Shared, options: Options) -> Adapted {
     let adaptation = adapting.lock().unwrap_or_else(PoisonError::into_inner).so_far();
     let (document, table) = (adaptation.to_json(), table(&adaptation));
-    let made = |best: Arc<Best>| {
+    let built = |best: Arc<Best>| {
         let best = Arc::unwrap_or_clone(best);
-        Arc::new(Made::new(best.problem, best.times, options, best.results, None, 0.0))
+        Arc::new(BuiltEstimate::new(best.problem, best.times, options, best.results, None, 0.0))
     };
-    (document, table, adaptation.best.map(made))
+    (document, table, adaptation.best.map(built))
 }

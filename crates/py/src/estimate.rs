@@ -1,7 +1,7 @@
 //! Estimates of histories.
 
+use crate::built::BuiltEstimate;
 use crate::history::HistoryData;
-use crate::made::Made;
 use crate::options::{self, Every, Stated, Wanted, analysis, options};
 use crate::problem::ProblemData;
 use crate::run::Run;
@@ -22,11 +22,11 @@ use std::time::Instant;
 /// An estimate of either dimension.
 #[pyclass(frozen, module = "percute._percute")]
 pub(crate) struct EstimateData {
-    pub(crate) made: Arc<Made>,
+    pub(crate) built: Arc<BuiltEstimate>,
 }
 
 /// A number of each element.
-type Numbers = fn(&ElementMap) -> &[f64];
+type MapNumbers = fn(&ElementMap) -> &[f64];
 /// Components of an admissible field.
 type Components = fn(&AdmissibleFields) -> &[f64];
 
@@ -51,8 +51,8 @@ pub(crate) fn estimate(
     let options = Options { ablation, threads, window, ..options(py, reconstruction, acceleration, &every)? };
     let instants = instants.map(Instants::from);
     let maps = (instants.as_ref(), fields);
-    let made = estimate_one(py, &history.run, options, maps, accept, progress)?;
-    Ok(EstimateData { made })
+    let built = estimate_one(py, &history.run, options, maps, accept, progress)?;
+    Ok(EstimateData { built })
 }
 
 /// A unit of a body of a stated thickness, or per metre.
@@ -74,7 +74,7 @@ fn estimate_one(
     (instants, fields): (Option<&Instants>, bool),
     accept: bool,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Arc<Made>> {
+) -> PyResult<Arc<BuiltEstimate>> {
     let analysis = analysis(options, instants, fields, false, run.times());
     let start = Instant::now();
     let work = {
@@ -87,34 +87,34 @@ fn estimate_one(
     let Graded { results, times, checked } =
         bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))?;
     let (held, seconds) = (run.file().map(|_| run.count()), start.elapsed().as_secs_f64());
-    let mut made = Made::new(run.problem.clone(), times, options, results, held, seconds);
-    made.checked = checked;
-    made.case = run.case();
-    Ok(Arc::new(made))
+    let mut built = BuiltEstimate::new(run.problem.clone(), times, options, results, held, seconds);
+    built.checked = checked;
+    built.case = run.case();
+    Ok(Arc::new(built))
 }
 
 #[pymethods]
 impl EstimateData {
     pub(crate) fn problem(&self) -> ProblemData {
-        ProblemData::new(self.made.problem.clone())
+        ProblemData::new(self.built.problem.clone())
     }
 
     /// All of it but its problem and its history, as bytes for `restore`; `name` is that of the report.
     fn state<'py>(&self, py: Python<'py>, name: String) -> PyResult<Bound<'py, PyBytes>> {
         let report = self.to_json(py, name)?;
-        let bytes = self.made.state(&report);
+        let bytes = self.built.state(&report);
         Ok(PyBytes::new(py, &bytes.map_err(|error| errors::percute_error(py, &error.to_string()))?))
     }
 
     /// The same estimate, bit by bit, from its problem and its `state`.
     #[staticmethod]
     fn restore(py: Python<'_>, problem: &ProblemData, state: &[u8]) -> PyResult<Self> {
-        Ok(Self { made: Arc::new(Made::restored(py, &problem.problem, state)?) })
+        Ok(Self { built: Arc::new(BuiltEstimate::restored(py, &problem.problem, state)?) })
     }
 
     /// The measures: those of `percute.Estimate` that are single numbers.
     fn measures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let estimate = &self.made.estimate;
+        let estimate = &self.built.estimate;
         let numbers = PyDict::new(py);
         for (name, value) in estimate.error.entries() {
             numbers.set_item(name, value)?;
@@ -128,19 +128,19 @@ impl EstimateData {
 
     /// Parts of η at the time of the sup: kinetic, elastic, contact (J).
     fn parts(&self) -> (f64, f64, f64) {
-        let parts = &self.made.estimate.parts;
+        let parts = &self.built.estimate.parts;
         (parts.kinetic, parts.elastic, parts.contact)
     }
 
     /// η, its parts and d at all samples, an array each.
     fn over_time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        view::columns(py, &self.made.estimate.over_time, &PARTS)
+        view::columns(py, &self.built.estimate.over_time, &PARTS)
     }
 
     /// The sources of η, each as its four numbers, but over time an array for each; `None` without an auxiliary
     /// solution.
     fn sources<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let Some(separation) = self.made.estimate.sources.as_ref() else { return Ok(None) };
+        let Some(separation) = self.built.estimate.sources.as_ref() else { return Ok(None) };
         let numbers = PyDict::new(py);
         let sources =
             [("at_sup", separation.at_sup), ("mean", separation.mean), ("halved_elements", separation.halved_elements)];
@@ -153,13 +153,13 @@ impl EstimateData {
     }
 
     fn by_element<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let shape = [self.made.estimate.by_element.len()];
-        view::view(py, &self.made, |made| made.estimate.by_element.as_slice(), &shape)
+        let shape = [self.built.estimate.by_element.len()];
+        view::view(py, &self.built, |built| built.estimate.by_element.as_slice(), &shape)
     }
 
     fn residuals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let residuals = PyDict::new(py);
-        for (name, value) in self.made.estimate.residuals.entries() {
+        for (name, value) in self.built.estimate.residuals.entries() {
             residuals.set_item(name, value)?;
         }
         Ok(residuals)
@@ -167,7 +167,7 @@ impl EstimateData {
 
     /// Whether the history brought velocities, and accelerations.
     fn supplied(&self) -> (bool, bool) {
-        let supplied = &self.made.estimate.supplied;
+        let supplied = &self.built.estimate.supplied;
         (supplied.velocity, supplied.acceleration)
     }
 
@@ -178,25 +178,25 @@ impl EstimateData {
             let of_options = warning.name == "few_samples";
             of_options && options || !of_options && input
         };
-        let [found, mut before] = self.made.warnings();
+        let [found, mut before] = self.built.warnings();
         before.retain(told);
         found.into_iter().chain(before).map(|warning| (warning.message.clone(), warning.doubts_result())).collect()
     }
 
     /// Names of the method's choices, and the samples taken.
     fn options(&self) -> Stated {
-        options::stated(&self.made.options)
+        options::stated(&self.built.options)
     }
 
     /// The elements that contribute most, largest first.
     fn worst_elements(&self, count: usize) -> Vec<(usize, f64)> {
-        let worst = self.made.estimate.worst_elements(count);
+        let worst = self.built.estimate.worst_elements(count);
         worst.into_iter().map(|(element, error)| (element.index(), error)).collect()
     }
 
     /// Each map as its arguments.
     fn maps<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        (0..self.made.estimate.maps.len()).map(|i| one_map(py, &self.made, i)).collect()
+        (0..self.built.estimate.maps.len()).map(|i| one_map(py, &self.built, i)).collect()
     }
 
     /// Writes an estimate file; contact results come from the history.
@@ -209,42 +209,42 @@ impl EstimateData {
         history: Option<&HistoryData>,
     ) -> PyResult<()> {
         let overwrite = Overwrite::allowed(overwrite);
-        self.made.saved(py, path, overwrite, name, history.map(|history| &history.run))
+        self.built.saved(py, path, overwrite, name, history.map(|history| &history.run))
     }
 
     /// A JSON document with verdict, rebound and warnings.
     fn verdict(&self, py: Python<'_>) -> PyResult<String> {
-        let made = self.made.clone();
-        let text = bridge::blocking(py, None, move |_| made.document("", Report::verdict_to_json))?;
+        let built = self.built.clone();
+        let text = bridge::blocking(py, None, move |_| built.document("", Report::verdict_to_json))?;
         text.map_err(|message| errors::percute_error(py, &message))
     }
 
     /// The document of `percute run --json`.
     fn to_json(&self, py: Python<'_>, name: String) -> PyResult<String> {
-        let made = self.made.clone();
-        let text = bridge::blocking(py, None, move |_| made.report(&name))?;
+        let built = self.built.clone();
+        let text = bridge::blocking(py, None, move |_| built.report(&name))?;
         text.map_err(|message| errors::percute_error(py, &message))
     }
 }
 
 /// One map.
-fn one_map<'py>(py: Python<'py>, made: &Arc<Made>, at: usize) -> PyResult<Bound<'py, PyDict>> {
-    let map = &made.estimate.maps[at];
+fn one_map<'py>(py: Python<'py>, built: &Arc<BuiltEstimate>, at: usize) -> PyResult<Bound<'py, PyDict>> {
+    let map = &built.estimate.maps[at];
     let arguments = PyDict::new(py);
     arguments.set_item("step", map.step)?;
     arguments.set_item("time", map.time)?;
     let elements = map.kinetic.len();
-    let parts: [(&str, Numbers); 3] =
+    let parts: [(&str, MapNumbers); 3] =
         [("kinetic", |m| &m.kinetic), ("elastic", |m| &m.elastic), ("contact", |m| &m.contact)];
     for (name, part) in parts {
-        arguments.set_item(name, view::view(py, made, |m| part(&m.estimate.maps[at]), &[elements])?)?;
+        arguments.set_item(name, view::view(py, built, |m| part(&m.estimate.maps[at]), &[elements])?)?;
     }
-    let accumulated = view::view(py, made, |m| m.estimate.maps[at].accumulated.as_slice(), &[elements])?;
+    let accumulated = view::view(py, built, |m| m.estimate.maps[at].accumulated.as_slice(), &[elements])?;
     arguments.set_item("accumulated", accumulated)?;
     arguments.set_item("total", PyArray1::from_vec(py, map.total()))?;
-    arguments.set_item("error", PyArray1::from_vec(py, map.error(made.estimate.end)))?;
+    arguments.set_item("error", PyArray1::from_vec(py, map.error(built.estimate.end)))?;
     let Some(fields) = &map.fields else { return Ok(arguments) };
-    let dimension = made.problem.dimension();
+    let dimension = built.problem.dimension();
     let nodes = fields.displacement.len() / dimension;
     let (vector, tensor) = ([elements, dimension], [elements, dimension, dimension]);
     let components: [(&str, &[usize], Components); 5] = [
@@ -255,11 +255,11 @@ fn one_map<'py>(py: Python<'py>, made: &Arc<Made>, at: usize) -> PyResult<Bound<
         ("compatible_stress", &tensor, |f| &f.compatible_stress),
     ];
     for (name, shape, field) in components {
-        arguments.set_item(name, view::view(py, made, |m| fields_of(m, at).map_or(&[], field), shape)?)?;
+        arguments.set_item(name, view::view(py, built, |m| fields_of(m, at).map_or(&[], field), shape)?)?;
     }
     Ok(arguments)
 }
 
-fn fields_of(made: &Made, at: usize) -> Option<&AdmissibleFields> {
-    made.estimate.maps[at].fields.as_ref()
+fn fields_of(built: &BuiltEstimate, at: usize) -> Option<&AdmissibleFields> {
+    built.estimate.maps[at].fields.as_ref()
 }

@@ -1,6 +1,6 @@
 //! Histories: simulated, shown as arrays, put together again.
 
-use crate::given::{Given, slice};
+use crate::history_arrays::{HistoryArrays, slice};
 use crate::options::Stated;
 use crate::problem::ProblemData;
 use crate::run::Run;
@@ -45,7 +45,7 @@ impl HistoryData {
     ) -> PyResult<Self> {
         problem.check_planes(py)?;
         let times = TimeGrid::from_instants(times).map_err(|error| errors::input(py, error))?;
-        let given = Given {
+        let arrays = HistoryArrays {
             count: touching.as_array().nrows(),
             displacement: displacement.as_slice()?,
             reaction: Some(reaction.as_slice()?),
@@ -57,7 +57,7 @@ impl HistoryData {
             let derived = names.iter().filter_map(|name| Derived::of_name(name)).collect();
             Origin { program, derived, ..Origin::default() }
         });
-        Ok(Self { run: Arc::new(given.run(py, &problem.problem, &times, options, origin)?) })
+        Ok(Self { run: Arc::new(arrays.run(py, &problem.problem, &times, options, origin)?) })
     }
 
     /// A history of another program; its missing parts are derived. With it the last instant (s), if it was left out.
@@ -76,14 +76,14 @@ impl HistoryData {
     ) -> PyResult<(Self, Option<String>)> {
         problem.check_planes(py)?;
         let times = TimeGrid::from_instants(times).map_err(|error| errors::input(py, format!("`time`: {error}")))?;
-        let given = Given {
+        let arrays = HistoryArrays {
             count: times.instants().len(),
             displacement: displacement.as_slice()?,
             reaction: slice(reaction.as_ref())?,
             touching: touching.as_ref().map(PyReadonlyArray2::as_slice).transpose()?,
             motion: [slice(velocity.as_ref())?, slice(acceleration.as_ref())?],
         };
-        let (run, left_out) = given.completed(py, &problem.problem, &times, program)?;
+        let (run, left_out) = arrays.completed(py, &problem.problem, &times, program)?;
         Ok((Self { run: Arc::new(run) }, left_out.map(percute_workflow::report::left_out)))
     }
 

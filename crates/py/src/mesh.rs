@@ -4,7 +4,7 @@ use crate::{bridge, errors, view};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use percute_core::mesh::{Diagonals, ElementGroups, FaceRows, Mesh, MeshError};
 use percute_io::Overwrite;
-use percute_io::gmsh::{self, Format, Version};
+use percute_io::gmsh::{self, MeshFormat, Version};
 use percute_presentation::Body;
 use percute_workflow::case::far_origin;
 use pyo3::prelude::*;
@@ -117,7 +117,7 @@ impl MeshData {
 
     /// Writes a file of Gmsh, of version 2.2 if it is `old` and of 4.1 otherwise.
     fn write(&self, py: Python<'_>, path: PathBuf, old: bool, binary: bool, overwrite: bool) -> PyResult<()> {
-        let format = Format { version: if old { Version::V22 } else { Version::V41 }, binary };
+        let format = MeshFormat { version: if old { Version::V22 } else { Version::V41 }, binary };
         let overwrite = Overwrite::allowed(overwrite);
         let mesh = self.mesh.clone();
         let written = bridge::blocking(py, None, move |_| gmsh::write(&path, overwrite, &mesh, format))?;

@@ -1,8 +1,8 @@
 //! The picture and the page of an estimate.
 
+use crate::built::BuiltEstimate;
 use crate::estimate::EstimateData;
 use crate::history::HistoryData;
-use crate::made::Made;
 use crate::mesh::MeshData;
 use crate::{bridge, errors};
 use numpy::PyReadonlyArray1;
@@ -26,7 +26,7 @@ struct Shown {
 }
 
 /// Title, author and program of a page.
-type Told = (Option<String>, Option<String>, Option<String>);
+type PageTexts = (Option<String>, Option<String>, Option<String>);
 
 /// What is to be written.
 #[derive(Clone)]
@@ -36,7 +36,7 @@ enum Form {
 }
 
 impl Form {
-    fn of(page: Option<Told>) -> Self {
+    fn of(page: Option<PageTexts>) -> Self {
         page.map_or(Self::Picture, |(title, author, program)| Self::Page(About { title, author, program }))
     }
 
@@ -105,7 +105,7 @@ pub(crate) fn deformed_outline(py: Python<'_>, mesh: &MeshData, report: &str) ->
 pub(crate) fn present(
     py: Python<'_>,
     estimate: &EstimateData,
-    page: Option<Told>,
+    page: Option<PageTexts>,
     path: PathBuf,
     overwrite: bool,
     name: String,
@@ -114,23 +114,23 @@ pub(crate) fn present(
     let form = Form::of(page);
     form.check(&path, None, overwrite).map_err(|failure| refused(py, &failure))?;
     let history = history.filter(|_| form.is_page()).map(|history| &history.run);
-    let contact = estimate.made.contact_steps(py, history)?;
-    let made = estimate.made.clone();
+    let contact = estimate.built.contact_steps(py, history)?;
+    let built = estimate.built.clone();
     let work = move |_| {
-        let shown = shown(&made, &name, contact.as_deref())?;
+        let shown = shown(&built, &name, contact.as_deref())?;
         form.write(&shown, &path, overwrite)
     };
     bridge::blocking(py, None, work)?.map_err(|failure| refused(py, &failure))
 }
 
-fn shown(made: &Made, name: &str, contact: Option<&ContactResults>) -> Result<Shown, Failure> {
-    let json = made.stored_report(name).map_err(Failure::Argument)?;
+fn shown(built: &BuiltEstimate, name: &str, contact: Option<&ContactResults>) -> Result<Shown, Failure> {
+    let json = built.stored_report(name).map_err(Failure::Argument)?;
     let document = Document::parse(&json).map_err(|error| Failure::Argument(error.to_string()))?;
     Ok(Shown {
-        body: Body::new(made.problem.mesh()),
+        body: Body::new(built.problem.mesh()),
         // A problem that the language of the case files cannot say has a page without it.
-        statement: statement(&made.problem, Some(&made.options)).unwrap_or_default(),
-        case: made.case.clone(),
+        statement: statement(&built.problem, Some(&built.options)).unwrap_or_default(),
+        case: built.case.clone(),
         surfaces: contact.map_or_else(Vec::new, |contact| Surface::all(contact, &document)),
         document,
     })
@@ -141,7 +141,7 @@ fn shown(made: &Made, name: &str, contact: Option<&ContactResults>) -> Result<Sh
 pub(crate) fn present_file(
     py: Python<'_>,
     estimate: PathBuf,
-    page: Option<Told>,
+    page: Option<PageTexts>,
     path: PathBuf,
     overwrite: bool,
 ) -> PyResult<()> {

@@ -1,10 +1,10 @@
 //! Simulations, into memory or into a file.
 
 use crate::bridge::Watch;
+use crate::built::BuiltEstimate;
 use crate::case::CaseData;
 use crate::estimate::EstimateData;
 use crate::history::HistoryData;
-use crate::made::Made;
 use crate::options::{Wanted, analysis};
 use crate::problem::ProblemData;
 use crate::run::{Growing, Run};
@@ -116,13 +116,13 @@ pub(crate) fn run_case(
         Planned { problem: problem.clone(), times: times.clone(), options: case.options, case: source, store };
     let (history, (results, seconds)) =
         planned.carry_out(py, progress, work, &|failure| run::located(case, failure))?;
-    let mut made = Made::new(problem, times, options, results, None, seconds);
-    made.case = Some(stored_case(&case.source));
-    made.unended.clone_from(&case.unended);
-    let made = EstimateData { made: Arc::new(made) };
+    let mut built = BuiltEstimate::new(problem, times, options, results, None, seconds);
+    built.case = Some(stored_case(&case.source));
+    built.unended.clone_from(&case.unended);
+    let built = EstimateData { built: Arc::new(built) };
     match history {
-        Ok(history) => Ok((history, made)),
-        Err(error) => Err(errors::with(py, error, "estimate", Some(made))),
+        Ok(history) => Ok((history, built)),
+        Err(error) => Err(errors::with(py, error, "estimate", Some(built))),
     }
 }
 

@@ -15,7 +15,7 @@ pub(crate) struct SweepPlan {
 }
 
 /// Cases done before, done now, failed and left, and name and reason of each failure.
-type Done = ([usize; 4], Vec<(String, String)>);
+type SweepDone = ([usize; 4], Vec<(String, String)>);
 
 /// How cases are run: the command, processes at a time, threads of each, whether long runs are allowed, whether all are
 /// run again.
@@ -50,7 +50,13 @@ impl SweepPlan {
     }
 
     /// Runs the cases with these names that are not done.
-    fn run(&self, py: Python<'_>, names: Vec<String>, way: Way, progress: Option<&Bound<'_, PyAny>>) -> PyResult<Done> {
+    fn run(
+        &self,
+        py: Python<'_>,
+        names: Vec<String>,
+        way: Way,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<SweepDone> {
         let cases = self.plan.cases.iter().filter(|case| names.contains(&case.name)).cloned().collect();
         run_cases(py, self.plan.folder.clone(), cases, way, progress)
     }
@@ -71,7 +77,7 @@ impl SweepPlan {
 
 /// Runs one case of a sweep in `folder`, by its name and text.
 #[pyfunction]
-pub(crate) fn sweep_case(py: Python<'_>, folder: PathBuf, name: String, text: String, way: Way) -> PyResult<Done> {
+pub(crate) fn sweep_case(py: Python<'_>, folder: PathBuf, name: String, text: String, way: Way) -> PyResult<SweepDone> {
     run_cases(py, folder, vec![Planned { name, text }], way, None)
 }
 
@@ -81,7 +87,7 @@ fn run_cases(
     cases: Vec<Planned>,
     (command, jobs, threads, long, again): Way,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Done> {
+) -> PyResult<SweepDone> {
     let default = Launch::of(command);
     let launch = Launch { jobs: jobs.unwrap_or(default.jobs), threads, long, again, ..default };
     // Waited for as for a file: the processes are stopped before an exception is raised.

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The JSON document and the table.
-type Told = (String, String);
+type VerificationTexts = (String, String);
 
 /// The argument with the probes.
 const PROBE: &str = "`probe`";
@@ -40,7 +40,7 @@ pub(crate) fn verification(
     probes: Vec<String>,
     tell: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Told> {
+) -> PyResult<VerificationTexts> {
     let (end, courant, step, steps) = times;
     let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
     let (reconstruction, acceleration, every) = stated;
@@ -74,7 +74,7 @@ pub(crate) fn verification(
     }
 }
 
-fn told(py: Python<'_>, verification: &Verification) -> PyResult<Told> {
+fn told(py: Python<'_>, verification: &Verification) -> PyResult<VerificationTexts> {
     let document = verification.to_json().map_err(|error| errors::percute_error(py, &error.to_string()))?;
     Ok((document, table(verification)))
 }

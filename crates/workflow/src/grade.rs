@@ -2,7 +2,7 @@
 //! filled.
 
 use crate::failure::Failure;
-use crate::foreign::{Between, Checked, Completed, Found, Lacks, Origin, Refusal, check, first_look, started};
+use crate::foreign::{Between, CheckResult, Checked, Completed, Lacks, Origin, Refusal, check, first_look, started};
 use crate::run::{self, Analysis, Results};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, StepSource};
@@ -39,7 +39,7 @@ pub fn estimate(
     let unfit = first_look(problem, source, critical, origin).map_err(refuse)?;
     let complete = Completed::new(problem, source, origin.lacks).map_err(unread)?;
     let derived = [complete.derived(), &origin.derived].concat();
-    let Found { consistency, samples, shifted, contradiction } =
+    let CheckResult { consistency, samples, shifted, contradiction } =
         check(problem, &complete, critical, &derived, origin.accept).map_err(refuse)?;
     let contradiction = unfit.or(contradiction);
     let program = origin.program.clone();

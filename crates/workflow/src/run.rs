@@ -13,7 +13,7 @@ use crate::outline::{LastOutline, Outline};
 use crate::report::Findings;
 use crate::storing::drive;
 pub use crate::storing::{Outcome, Storage};
-use crate::until::{Found, Stop, Until};
+use crate::until::{FoundEnd, Stop, Until};
 use percute_core::contact::{ContactMemoryError, ContactRecorder, ContactResults};
 use percute_core::dynamics::{Balance, Balancing, Simulation, replay, simulate_threaded};
 use percute_core::history::{Discard, SinkError, State, StateSink, Step, StepSource};
@@ -95,7 +95,7 @@ pub fn simulate(
 ///
 /// # Errors
 /// As [`simulate`].
-pub fn rebound(problem: &AnyProblem, until: &Until, observer: &mut dyn Observer) -> Result<Option<Found>, Failure> {
+pub fn rebound(problem: &AnyProblem, until: &Until, observer: &mut dyn Observer) -> Result<Option<FoundEnd>, Failure> {
     let refused = |error: TimeError| Failure::Argument(error.to_string());
     let (ordered, times, seen) = (Ordered::new(problem), until.times().map_err(refused)?, AtomicBool::new(false));
     let mut leaving = Leaving::new(ordered.problem(), until.after, &seen);
@@ -118,7 +118,7 @@ pub fn rebound(problem: &AnyProblem, until: &Until, observer: &mut dyn Observer)
 pub fn resolved(case: &Case, observer: &mut dyn Observer) -> Result<Option<Case>, Failure> {
     let Some(until) = &case.until else { return Ok(Some(case.clone())) };
     let found = rebound(&case.problem, until, observer)?;
-    Ok(found.map(|Found { times, warning }| Case { times, until: None, unended: warning, ..case.clone() }))
+    Ok(found.map(|FoundEnd { times, warning }| Case { times, until: None, unended: warning, ..case.clone() }))
 }
 
 /// Simulates a problem and analyses the steps beside the run.
@@ -205,9 +205,9 @@ pub fn estimate(
 }
 
 /// What a report shows beside contact and error, of the steps of a problem in its order.
-type Beside<'o> = (DeformationRecorder<'o>, LastOutline);
+type ReportSinks<'o> = (DeformationRecorder<'o>, LastOutline);
 
-fn shown<'o>(ordered: &'o Ordered<'_>, times: &TimeGrid) -> Beside<'o> {
+fn shown<'o>(ordered: &'o Ordered<'_>, times: &TimeGrid) -> ReportSinks<'o> {
     let problem = ordered.problem();
     (DeformationRecorder::new(problem, times.step_count()), LastOutline::new(problem.mesh()))
 }
@@ -218,7 +218,7 @@ fn results(
     simulation: Simulation,
     estimate: Estimate,
     contact: ContactResults,
-    (deformation, outline): Beside<'_>,
+    (deformation, outline): ReportSinks<'_>,
 ) -> Results {
     let mut deformation = deformation.finish(ordered.stated_problem().mesh(), |element| ordered.element(element));
     if let Some(touch) = &mut deformation.next_touch {

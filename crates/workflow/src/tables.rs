@@ -18,13 +18,13 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// A table: columns of equal length.
 #[derive(Clone, Debug, Default)]
-pub struct Table {
+pub struct ResultTable {
     units: Units,
     dimension: usize,
     columns: Vec<(String, Vec<f64>)>,
 }
 
-impl Table {
+impl ResultTable {
     /// An empty one.
     fn new(units: Units, dimension: usize) -> Self {
         Self { units, dimension, columns: Vec::new() }
@@ -65,7 +65,7 @@ impl Table {
 
 /// Results that can be tables; those that are not known are left out.
 #[derive(Clone, Copy, Debug)]
-pub struct Results<'a> {
+pub struct TableResults<'a> {
     /// The mesh.
     pub mesh: &'a Mesh,
     /// Contact results.
@@ -80,15 +80,15 @@ pub struct Results<'a> {
     pub by_element: &'a [f64],
 }
 
-impl Results<'_> {
+impl TableResults<'_> {
     /// An empty table.
-    fn table(&self) -> Table {
-        Table::new(self.units, self.mesh.dimension())
+    fn table(&self) -> ResultTable {
+        ResultTable::new(self.units, self.mesh.dimension())
     }
 
     /// Forces, energies and error over time: rows at the steps, and at the samples of the error between them.
     #[must_use]
-    pub fn over_time(&self) -> Table {
+    pub fn over_time(&self) -> ResultTable {
         let steps = self.contact.map_or(&[][..], |contact| &contact.instants);
         let mut rows: Vec<f64> = steps.iter().copied().chain(self.error.iter().map(|sample| sample.time)).collect();
         rows.sort_unstable_by(f64::total_cmp);
@@ -108,7 +108,7 @@ impl Results<'_> {
     }
 
     /// Forces and energies.
-    fn at_steps(&self) -> Table {
+    fn at_steps(&self) -> ResultTable {
         let mut table = self.table();
         if let Some(contact) = self.contact.filter(|contact| !contact.obstacles.is_empty()) {
             resultants(&mut table, "", &contact.total);
@@ -125,7 +125,7 @@ impl Results<'_> {
     }
 
     /// √η, its parts and d.
-    fn at_samples(&self) -> Table {
+    fn at_samples(&self) -> ResultTable {
         let mut table = self.table();
         if !self.error.is_empty() {
             table.add("error", "J^(1/2)", self.error.iter().map(|sample| sample.parts.total().sqrt()));
@@ -139,7 +139,7 @@ impl Results<'_> {
 
     /// Centroid and error of each element.
     #[must_use]
-    pub fn elements(&self) -> Table {
+    pub fn elements(&self) -> ResultTable {
         let mut table = self.table();
         let count = self.mesh.element_count();
         table.add("element", "", (0..count).map(|e| e as f64));
@@ -151,7 +151,7 @@ impl Results<'_> {
 
     /// Summary of each node of the contact surface.
     #[must_use]
-    pub fn contact_nodes(&self) -> Table {
+    pub fn contact_nodes(&self) -> ResultTable {
         let mut table = self.table();
         let Some(contact) = self.contact else { return table };
         let (nodes, summary) = (&contact.nodes, &contact.summary);
@@ -170,7 +170,7 @@ impl Results<'_> {
     }
 }
 
-fn resultants(table: &mut Table, prefix: &str, over_time: &[Resultant]) {
+fn resultants(table: &mut ResultTable, prefix: &str, over_time: &[Resultant]) {
     let name = |name: &str| format!("{prefix}{name}");
     table.vector(&name("force"), "N", &over_time.iter().map(|r| r.force).collect::<Vec<_>>());
     table.add(&name("normal_force"), "N", over_time.iter().map(|r| r.normal_force));
@@ -225,7 +225,7 @@ impl Destination {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn write(&self, results: &Results<'_>, overwrite: Overwrite) -> Result<(), Failure> {
+    pub fn write(&self, results: &TableResults<'_>, overwrite: Overwrite) -> Result<(), Failure> {
         let over_time = results.over_time();
         let folder = match self {
             Self::File(file) => return Ok(write_bytes(file, overwrite, over_time.csv().as_bytes())?),
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn a_table_has_a_header_with_units_and_empty_cells() {
-        let mut table = Table::new(Units::default(), 2);
+        let mut table = ResultTable::new(Units::default(), 2);
         table.add("time", "s", [0.0, 1.5e-6]);
         table.vector("force", "N", &[[1.0, -2.0, 0.0], [f64::NAN, 1e16, 0.0]]);
         table.add("nodes", "", [0.0, 12.0]);

@@ -32,7 +32,7 @@ pub struct Until {
 
 /// The instants of such a run.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct FoundEnd {
     /// The instants, to an end of four digits, which as a number gives the same run.
     pub times: TimeGrid,
     /// The warning, if contact did not end before `longest`.
@@ -58,10 +58,10 @@ impl Until {
 
     /// The instants of the run, from the time (s) at which all contact had ended in the first pass, or from what went
     /// on at its end.
-    pub(crate) fn found(&self, ended: Result<f64, &GoingOn>) -> Result<Found, TimeError> {
+    pub(crate) fn found(&self, ended: Result<f64, &GoingOn>) -> Result<FoundEnd, TimeError> {
         let end = ended.map_or(self.longest, |time| rounded_up(time).min(self.longest));
         let warning = ended.err().map(|going_on| self.not_ended(going_on));
-        Ok(Found { times: TimeGrid::with_step(end, self.step)?, warning })
+        Ok(FoundEnd { times: TimeGrid::with_step(end, self.step)?, warning })
     }
 
     fn not_ended(&self, going_on: &GoingOn) -> Warning {

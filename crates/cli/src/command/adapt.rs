@@ -44,7 +44,7 @@ pub(super) fn command(arguments: &AdaptArguments, console: &mut Console<'_>) -> 
     console.print(&if json { adaptation.to_json()? } else { table(&adaptation) })?;
     if let (Some(save), Some(best)) = (save, &adaptation.best) {
         let (mesh, overwrite) = (best.problem.mesh(), Overwrite::allowed(force));
-        let written = gmsh::write(save.file, overwrite, mesh, gmsh::Format::default());
+        let written = gmsh::write(save.file, overwrite, mesh, gmsh::MeshFormat::default());
         written.map_err(|error| Failure::Argument(format!("--save: {error}")))?;
     }
     if let Some(picture) = picture {

@@ -9,7 +9,7 @@ use percute_workflow::case::Case;
 use percute_workflow::history::open;
 use percute_workflow::info::{Info, of_case, of_estimate, of_history, of_mesh};
 use percute_workflow::report::{reported, units_in};
-use percute_workflow::tables::{Destination, Results};
+use percute_workflow::tables::{Destination, TableResults};
 use std::path::Path;
 
 pub(super) fn command(arguments: &InfoArguments, console: &mut Console<'_>) -> Result<u8, Failure> {
@@ -47,7 +47,10 @@ fn tables(file: &Path, path: &Path, force: bool) -> Result<(), Failure> {
             let stored = open(file)?;
             let (contact, balance) = stored.results()?;
             let (mesh, contact, units) = (stored.problem.mesh(), Some(&contact), stored.problem.units());
-            place.write(&Results { mesh, contact, units, balance: &balance, error: &[], by_element: &[] }, overwrite)
+            place.write(
+                &TableResults { mesh, contact, units, balance: &balance, error: &[], by_element: &[] },
+                overwrite,
+            )
         }
         Kind::Estimate => {
             let estimate = estimate_file::open(file)?;
@@ -55,7 +58,7 @@ fn tables(file: &Path, path: &Path, force: bool) -> Result<(), Failure> {
             let units = units_in(&estimate.report);
             let contact = estimate_file::contact(file)?;
             let (mesh, contact) = (&estimate.mesh, contact.as_ref());
-            place.write(&Results { mesh, contact, units, balance: &[], error, by_element }, overwrite)
+            place.write(&TableResults { mesh, contact, units, balance: &[], error, by_element }, overwrite)
         }
         Kind::Other | Kind::OtherHdf5 => {
             let told = "--csv applies to a history or an estimate file; `percute run` makes one of a case";

@@ -86,7 +86,7 @@ fn tabulate(finished: &Finished<'_>, force: bool) -> Result<(), Failure> {
     let problem = finished.subject.problem;
     let (mesh, contact, units) = (problem.mesh(), Some(contact), problem.units());
     let (balance, error) = (&simulation.balance_over_time[..], &estimate.over_time[..]);
-    let results = tables::Results { mesh, contact, units, balance, error, by_element: &estimate.by_element };
+    let results = tables::TableResults { mesh, contact, units, balance, error, by_element: &estimate.by_element };
     tables.write(&results, Overwrite::allowed(force))
 }
 

@@ -7,7 +7,7 @@ use std::path::Path;
 type Module = Vec<String>;
 
 /// The text of each module, without comments and tests.
-fn modules(source: &Path, at: &[String], found: &mut BTreeMap<Module, String>) {
+pub(super) fn modules(source: &Path, at: &[String], found: &mut BTreeMap<Module, String>) {
     for entry in std::fs::read_dir(source).unwrap().map(|entry| entry.unwrap().path()) {
         let mut module = at.to_vec();
         let stem = entry.file_stem().unwrap().to_str().unwrap().to_string();

@@ -18,10 +18,10 @@ mod history;
 mod interrupt;
 mod lines;
 #[cfg(target_os = "linux")]
-mod lost;
-#[cfg(target_os = "linux")]
 mod memory;
 mod mesh_file;
+#[cfg(target_os = "linux")]
+mod missing_files;
 mod mistakes;
 mod picture;
 mod rebound;
@@ -32,3 +32,4 @@ mod run;
 mod steps;
 #[cfg(target_os = "linux")]
 mod sweep;
+mod type_names;

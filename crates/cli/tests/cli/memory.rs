@@ -3,7 +3,7 @@
 use crate::common::{BAR, BLOCK, Bench, stderr};
 use percute_core::mesh::Mesh;
 use percute_io::Overwrite;
-use percute_io::gmsh::{self, Format, Version};
+use percute_io::gmsh::{self, MeshFormat, Version};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
@@ -66,7 +66,7 @@ fn no_command_is_aborted_for_want_of_memory() {
     let bench = Bench::new(&case);
     never_aborts(&bench, "info case.toml", (60_000..=220_000).step_by(40_000), "180000 elements needs about 0.07");
     let mesh = Mesh::rectangle(1.0, 1.0, 250, 250).unwrap();
-    let format = Format { version: Version::V41, binary: false };
+    let format = MeshFormat { version: Version::V41, binary: false };
     gmsh::write(&bench.path("block.msh"), Overwrite::Refuse, &mesh, format).unwrap();
     never_aborts(&bench, "info block.msh", (50_000..=200_000).step_by(30_000), "which is not available");
     let small = Bench::new(&BLOCK.replace("nx = 5, ny = 4", "nx = 40, ny = 40").replace("end = 5e-6", "end = 1e-7"));

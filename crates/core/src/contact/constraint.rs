@@ -48,13 +48,13 @@ pub(crate) struct Constraints<const D: usize> {
 
 /// The motion of a node against its obstacle without its reaction: the frame, the gap at t_{n+1} (m) and v_{n+½} (m/s).
 #[derive(Clone, Copy)]
-struct Motion<const D: usize> {
+struct RelativeMotion<const D: usize> {
     frame: Frame<D>,
     gap: f64,
     velocity: [f64; D],
 }
 
-impl<const D: usize> Motion<D> {
+impl<const D: usize> RelativeMotion<D> {
     #[inline]
     fn new(surface: &ContactSurface<D>, at: usize, prediction: &Prediction<'_, D>) -> Self {
         let mut motion = prediction.nodes[at];
@@ -86,8 +86,8 @@ impl<const D: usize> Constraints<D> {
         single.clear();
         corners.clear();
         let nodes = surface.nodes();
-        let is_violated = |motion: &Motion<D>| motion.gap < -prediction.tolerance;
-        let constraint = |at: usize, Motion { frame, gap, velocity }: Motion<D>| {
+        let is_violated = |motion: &RelativeMotion<D>| motion.gap < -prediction.tolerance;
+        let constraint = |at: usize, RelativeMotion { frame, gap, velocity }: RelativeMotion<D>| {
             let (law, mass) = (surface.law(at), moved[at]);
             Constraint { at, frame, law, mass, gap, velocity }
         };
@@ -96,10 +96,10 @@ impl<const D: usize> Constraints<D> {
             if second_slot.is_some_and(|second_slot| second_slot < at) {
                 continue;
             }
-            let own = Motion::new(surface, at, prediction);
+            let own = RelativeMotion::new(surface, at, prediction);
             let violated = is_violated(&own);
             if let Some(second_slot) = second_slot {
-                let other = Motion::new(surface, second_slot, prediction);
+                let other = RelativeMotion::new(surface, second_slot, prediction);
                 if violated || is_violated(&other) {
                     corners.push([(at, own), (second_slot, other)].map(|(at, motion)| constraint(at, motion)));
                 }

@@ -42,7 +42,7 @@ fn least<const D: usize>(all: Vec<[[f64; D]; 2]>) -> Option<[[f64; D]; 2]> {
 
 /// A part of the force in the corner: n λ + t τ, with τ = ∓μλ while it slides.
 #[derive(Clone, Copy)]
-struct Part {
+struct ForcePart {
     normal: [f64; 2],
     tangent: [f64; 2],
     friction: f64,
@@ -50,7 +50,7 @@ struct Part {
     sliding: f64,
 }
 
-impl Part {
+impl ForcePart {
     /// The force of λ = 1 without a sticking part.
     fn unit(&self) -> [f64; 2] {
         [0, 1].map(|c| self.normal[c] + self.sliding * self.friction * self.tangent[c])
@@ -77,7 +77,7 @@ fn together<const D: usize>(pair: &[Constraint<D>; 2], [dt, h]: [f64; 2], tolera
         let tangent = [normal[1], -normal[0]];
         let along = tangent[0] * after[0] + tangent[1] * after[1];
         let sliding = if along.abs() * dt > tolerance { -along.signum() } else { 0.0 };
-        Part { normal, tangent, friction, sliding }
+        ForcePart { normal, tangent, friction, sliding }
     });
     let size = total[0].hypot(total[1]);
     let (violation, [first, second]) = split(&parts, total);
@@ -92,7 +92,7 @@ fn together<const D: usize>(pair: &[Constraint<D>; 2], [dt, h]: [f64; 2], tolera
 
 /// λ and the sticking part of τ of both parts of a force: in the cones, with the least friction where it sticks; and by
 /// how much they violate the cones, over the force, if none are in them.
-fn split(parts: &[Part; 2], total: [f64; 2]) -> (f64, [[f64; 2]; 2]) {
+fn split(parts: &[ForcePart; 2], total: [f64; 2]) -> (f64, [[f64; 2]; 2]) {
     let units = parts.map(|part| part.unit());
     // λ = λ_0 − Σ x_i slope_i, of the sticking parts x_i of τ.
     let start = solve(units, total);

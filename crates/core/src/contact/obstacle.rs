@@ -43,7 +43,7 @@ pub enum ObstacleError {
 /// An obstacle that part of a body may touch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle<const D: usize> {
-    shape: Shape<D>,
+    shape: ObstacleShape<D>,
     law: Coulomb,
     group: Option<String>,
     /// Of a plane that is still to be placed, its gap at the start (m).
@@ -52,7 +52,7 @@ pub struct Obstacle<const D: usize> {
 
 /// The kinds of obstacles.
 #[derive(Clone, Debug, PartialEq)]
-enum Shape<const D: usize> {
+enum ObstacleShape<const D: usize> {
     Plane(Plane<D>),
     /// The surface of another body, which moves; its frame does not turn. With the index of the non-matching
     /// interfaces, if they do.
@@ -75,7 +75,7 @@ impl<const D: usize> Obstacle<D> {
         if point.iter().any(|x| !x.is_finite()) {
             return Err(ObstacleError::Point { point: point.to_vec() });
         }
-        Ok(Self { shape: Shape::Plane(shape), law: coulomb(D, friction)?, group, gap: None })
+        Ok(Self { shape: ObstacleShape::Plane(shape), law: coulomb(D, friction)?, group, gap: None })
     }
 
     /// The same plane, `gap` (m) from the nearest node that may touch it at the start.
@@ -102,8 +102,8 @@ impl<const D: usize> Obstacle<D> {
     /// A plane in its place, moved against its normal by a distance (m).
     pub(crate) fn moved_back(&self, distance: f64) -> Self {
         let shape = match &self.shape {
-            Shape::Plane(plane) => Shape::Plane(plane.moved_back(distance)),
-            surface @ Shape::Surface(..) => surface.clone(),
+            ObstacleShape::Plane(plane) => ObstacleShape::Plane(plane.moved_back(distance)),
+            surface @ ObstacleShape::Surface(..) => surface.clone(),
         };
         Self { shape, gap: None, ..self.clone() }
     }
@@ -111,7 +111,7 @@ impl<const D: usize> Obstacle<D> {
     /// The surface of another body, as a group of faces meets it; `normal` is the unit normal from there to the group.
     /// With `non_matching`, the two slide along each other: it is their index in the contact surface.
     pub(crate) fn surface(normal: [f64; D], law: Coulomb, group: String, non_matching: Option<usize>) -> Self {
-        Self { shape: Shape::Surface(Frame::new(normal), non_matching), law, group: Some(group), gap: None }
+        Self { shape: ObstacleShape::Surface(Frame::new(normal), non_matching), law, group: Some(group), gap: None }
     }
 
     /// The index of the non-matching interfaces, if it is one of them.
@@ -119,8 +119,8 @@ impl<const D: usize> Obstacle<D> {
     #[must_use]
     pub fn non_matching(&self) -> Option<usize> {
         match self.shape {
-            Shape::Plane(_) => None,
-            Shape::Surface(_, non_matching) => non_matching,
+            ObstacleShape::Plane(_) => None,
+            ObstacleShape::Surface(_, non_matching) => non_matching,
         }
     }
 
@@ -128,8 +128,8 @@ impl<const D: usize> Obstacle<D> {
     #[must_use]
     pub fn as_plane(&self) -> Option<&Plane<D>> {
         match &self.shape {
-            Shape::Plane(plane) => Some(plane),
-            Shape::Surface(..) => None,
+            ObstacleShape::Plane(plane) => Some(plane),
+            ObstacleShape::Surface(..) => None,
         }
     }
 
@@ -172,8 +172,8 @@ impl<const D: usize> Obstacle<D> {
     #[must_use]
     pub fn flat_frame(&self) -> Frame<D> {
         match &self.shape {
-            Shape::Plane(plane) => plane.frame(),
-            Shape::Surface(frame, _) => *frame,
+            ObstacleShape::Plane(plane) => plane.frame(),
+            ObstacleShape::Surface(frame, _) => *frame,
         }
     }
 }

@@ -2,9 +2,9 @@
 
 use super::Dynamics;
 use super::balance::BalanceKeeper;
-use super::contact::Contact;
+use super::contact::StepContact;
 use super::moving::MovingBody;
-use super::node_update::Motion;
+use super::node_update::NodeMotion;
 use super::simulation::{Simulation, SimulationError, unstable};
 use super::start::{restart, start};
 use crate::history::{Checkpoint, State, StateSink, Step};
@@ -50,7 +50,7 @@ fn run<const D: usize, const N: usize>(
 ) -> Result<Simulation, SimulationError> {
     let Dynamics { problem, times, .. } = *dynamics;
     let mut body = MovingBody::new(dynamics);
-    let mut contact = Contact::new(dynamics);
+    let mut contact = StepContact::new(dynamics);
     let mut balance = BalanceKeeper::new(problem, times);
     let mut balance_over_time = Vec::with_capacity(times.step_count() + 1);
     let (mut done, mut interrupted) = (0, false);
@@ -61,7 +61,7 @@ fn run<const D: usize, const N: usize>(
 
     for n in checkpoint.map_or(0, |checkpoint| checkpoint.step + 1)..=times.step_count() {
         if let Some(last) = n.checked_sub(1) {
-            let motion = Motion::Advance { h: times.velocity_step(last), dt: times.step(last) };
+            let motion = NodeMotion::Advance { h: times.velocity_step(last), dt: times.step(last) };
             body.step(dynamics, n, motion);
             contact.react(dynamics, n, &body.displacement, &body.velocity, &mut body.forces.total);
         } else {

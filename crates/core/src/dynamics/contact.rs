@@ -5,7 +5,7 @@ use crate::contact::{Constraints, NonMatchingContact, Predicted, Prediction, sol
 
 /// Contact at one step.
 #[derive(Clone, Debug)]
-pub(super) struct Contact<const D: usize> {
+pub(super) struct StepContact<const D: usize> {
     /// R_n on the nodes of the contact surface (N), global axes.
     pub(super) reaction: Vec<[f64; D]>,
     /// Touching status at t_n.
@@ -20,7 +20,7 @@ pub(super) struct Contact<const D: usize> {
     non_matching: Vec<NonMatchingContact>,
 }
 
-impl<const D: usize> Contact<D> {
+impl<const D: usize> StepContact<D> {
     pub(super) fn new<const N: usize>(dynamics: &Dynamics<'_, D, N>) -> Self {
         let surface = dynamics.problem.surface();
         let count = surface.nodes().len();

@@ -1,7 +1,7 @@
 //! The critical time step Δt_c = 2/ω_max, eq. \[34\].
 
 use super::Stiffness;
-use super::node_update::{Motion, Sums};
+use super::node_update::{NodeMotion, StripSums};
 use super::pass::{Fields, Pass};
 use crate::ids::ElementId;
 use crate::material::{Law, LinearLaw};
@@ -65,7 +65,7 @@ fn largest_eigenvalue<const D: usize, const N: usize>(problem: &Problem<D, N>) -
     let fewest = (10.0 * (count as f64).ln()).ceil() as usize;
     let stiffness = Stiffness::new(problem);
     let inverse_mass: Vec<f64> = problem.mass().iter().map(|m| 1.0 / m).collect();
-    let mut sums = vec![Sums::ZERO; stiffness.strips.count()];
+    let mut sums = vec![StripSums::ZERO; stiffness.strips.count()];
 
     let (mut current, mut previous) = (vec![[0.0; D]; problem.mesh().node_count()], random_start(problem));
     let mut force = vec![[0.0; D]; current.len()];
@@ -79,7 +79,7 @@ fn largest_eigenvalue<const D: usize, const N: usize>(problem: &Problem<D, N>) -
             inverse_mass: &inverse_mass,
             apart: &[],
             external: &[],
-            motion: Motion::Combine(factors),
+            motion: NodeMotion::Combine(factors),
             back: 0.0,
             parallel: false,
         };

@@ -2,7 +2,7 @@
 
 use super::Dynamics;
 use super::moving::MovingBody;
-use super::node_update::Motion;
+use super::node_update::NodeMotion;
 use super::update::advance_velocity;
 use crate::border::vectors;
 use crate::history::{SinkError, State, StateSink, Step, StepCheck, StepError, StepSource, half_of_last};
@@ -64,7 +64,7 @@ impl<const D: usize, const N: usize> Evaluate for Evaluator<'_, D, N> {
             advance_velocity(times, n - 1, &mut body.velocity, vectors(given).iter().copied());
             h = None;
         }
-        body.step(dynamics, n, Motion::Follow { h, displacement: step.displacement() });
+        body.step(dynamics, n, NodeMotion::Follow { h, displacement: step.displacement() });
         for (contact, reaction) in problem.surface().nodes().iter().zip(step.reaction::<D>()) {
             (0..D).for_each(|c| body.forces.total[contact.node.index()][c] += reaction[c]);
         }

@@ -36,11 +36,11 @@ pub(super) struct MissedContact<'p, const D: usize, const N: usize> {
 struct Body {
     /// Nodes, each with the way from a line of symmetry into the body (m), if it is on one.
     nodes: BTreeMap<NodeId, Point>,
-    faces: Vec<Side>,
+    faces: Vec<BoundaryFace>,
 }
 
 /// A face of a boundary.
-struct Side {
+struct BoundaryFace {
     face: FaceId,
     /// The height of its element there (m).
     height: f64,
@@ -66,7 +66,7 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
             let height = D as f64 * mesh.geometry::<D, N>(owner).volume / area;
             let line = symmetry::line_of(mesh, &problem.supported(face), &node_lines, face);
             let body = &mut made.bodies[of_node[nodes[0].index()]];
-            body.faces.push(Side { face, height, line });
+            body.faces.push(BoundaryFace { face, height, line });
             for node in nodes {
                 let way = body.nodes.entry(node).or_default();
                 line.iter().for_each(|line| way[line.across] = -BESIDE * height * normal[line.across]);
@@ -123,7 +123,7 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
     fn depth(&self, displacement: &[[f64; D]], body: &Body, point: &Point, common: &[SymmetryLine]) -> Option<f64> {
         let (mut inside, mut nearest) = (false, (f64::INFINITY, 0.0));
         let size = self.problem.mesh().size();
-        for &Side { face, height, line } in &body.faces {
+        for &BoundaryFace { face, height, line } in &body.faces {
             let [a, b] = self.ends(displacement, face);
             // How often a line to the right crosses the boundary.
             if (a[1] > point[1]) != (b[1] > point[1]) {

@@ -1,7 +1,7 @@
 //! The body as it moves from step to step.
 
 use super::Dynamics;
-use super::node_update::{Motion, Sums};
+use super::node_update::{NodeMotion, StripSums};
 use super::pass::{Fields, Pass};
 use crate::history::{StepForces, half_of_last};
 use crate::problem::Problem;
@@ -15,8 +15,8 @@ pub(super) struct MovingBody<const D: usize> {
     pub(super) velocity: Vec<[f64; D]>,
     pub(super) forces: StepForces<D>,
     external: Vec<[f64; D]>,
-    sums: Vec<Sums<D>>,
-    total: Sums<D>,
+    sums: Vec<StripSums<D>>,
+    total: StripSums<D>,
 }
 
 impl<const D: usize> MovingBody<D> {
@@ -29,13 +29,13 @@ impl<const D: usize> MovingBody<D> {
             velocity: problem.initial_velocity().to_vec(),
             forces: StepForces::new(problem),
             external: vec![[0.0; D]; loaded],
-            sums: vec![Sums::ZERO; dynamics.stiffness.strips.count()],
-            total: Sums::ZERO,
+            sums: vec![StripSums::ZERO; dynamics.stiffness.strips.count()],
+            total: StripSums::ZERO,
         }
     }
 
     /// Moves to t_n and computes the forces there but for contact.
-    pub(super) fn step<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize, motion: Motion<'_, D>) {
+    pub(super) fn step<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize, motion: NodeMotion<'_, D>) {
         if !self.external.is_empty() {
             dynamics.problem.external_forces(dynamics.times.instants()[n], &mut self.external);
         }

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 /// The motion of the nodes before the forces of an instant are computed.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Motion<'a, const D: usize> {
+pub(super) enum NodeMotion<'a, const D: usize> {
     /// None: the start.
     Start,
     /// v_{n+½} = v_{n−½} + h_n a_n and u_{n+1} = u_n + Δt_n v_{n+½}, eq. \[28\], \[31\].
@@ -30,7 +30,7 @@ pub(super) enum Motion<'a, const D: usize> {
 /// The sums over the nodes and elements of a strip, in lanes: component c of node i of a run has lane D i + c, modulo
 /// 8.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sums<const D: usize> {
+pub(super) struct StripSums<const D: usize> {
     /// Twice the strain energy (J).
     pub(super) strain: Wide,
     /// Twice the kinetic energy (J).
@@ -39,7 +39,7 @@ pub(super) struct Sums<const D: usize> {
     momentum: Wide,
 }
 
-impl<const D: usize> Sums<D> {
+impl<const D: usize> StripSums<D> {
     pub(super) const ZERO: Self = Self { strain: [0.0; 8], kinetic: [0.0; 8], momentum: [0.0; 8] };
 
     /// Strain energy (J).
@@ -116,11 +116,17 @@ impl<const D: usize> Nodes<'_, D> {
 
     /// Moves the nodes, with these numbers, and sets their forces to zero.
     #[inline(always)]
-    pub(super) fn advance<L: Lanes>(self, l: L, motion: &Motion<'_, D>, numbers: Range<usize>, sums: &mut Sums<D>) {
+    pub(super) fn advance<L: Lanes>(
+        self,
+        l: L,
+        motion: &NodeMotion<'_, D>,
+        numbers: Range<usize>,
+        sums: &mut StripSums<D>,
+    ) {
         match *motion {
-            Motion::Start => self.force.fill([0.0; D]),
-            Motion::Advance { h, dt } => self.step(l, h, dt),
-            Motion::Follow { h, displacement } => {
+            NodeMotion::Start => self.force.fill([0.0; D]),
+            NodeMotion::Advance { h, dt } => self.step(l, h, dt),
+            NodeMotion::Follow { h, displacement } => {
                 self.displacement.copy_from_slice(&displacement[numbers]);
                 match h {
                     // The displacement stays.
@@ -128,7 +134,7 @@ impl<const D: usize> Nodes<'_, D> {
                     None => self.force.fill([0.0; D]),
                 }
             }
-            Motion::Combine(factors) => self.combine(l, factors, sums),
+            NodeMotion::Combine(factors) => self.combine(l, factors, sums),
         }
     }
 
@@ -156,7 +162,7 @@ impl<const D: usize> Nodes<'_, D> {
 
     /// u ← a M⁻¹f + b v + c u and f = 0; adds twice the kinetic energy of u.
     #[inline(always)]
-    fn combine<L: Lanes>(self, l: L, [a, b, c]: [f64; 3], sums: &mut Sums<D>) {
+    fn combine<L: Lanes>(self, l: L, [a, b, c]: [f64; 3], sums: &mut StripSums<D>) {
         let rest = self.rest();
         let (of_force, of_v, of_u, none) = (l.splat(a), l.splat(b), l.splat(c), l.store(l.splat(0.0)));
         let mut kinetic = l.load(&sums.kinetic);
@@ -184,7 +190,7 @@ impl<const D: usize> Nodes<'_, D> {
 
     /// Adds momentum and kinetic energy of v_n = v_{n−½} + `back` a_n.
     #[inline(always)]
-    pub(super) fn sum_up<L: Lanes>(self, l: L, back: f64, sums: &mut Sums<D>) {
+    pub(super) fn sum_up<L: Lanes>(self, l: L, back: f64, sums: &mut StripSums<D>) {
         let rest = self.rest();
         let (factor, mut momentum, mut kinetic) = (l.splat(back), l.load(&sums.momentum), l.load(&sums.kinetic));
         let masses = self.mass.chunks_exact(8 / D).zip(self.inverse_mass.chunks_exact(8 / D));

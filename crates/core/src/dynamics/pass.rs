@@ -4,7 +4,7 @@
 //! nodes are summed up as soon as their last element is done, while the first caches still hold them.
 
 use super::internal_force::{Stiffness, sweep};
-use super::node_update::{Motion, Nodes, Sums};
+use super::node_update::{NodeMotion, Nodes, StripSums};
 use crate::simd::{Lanes, Task, dispatch};
 use std::ops::Range;
 
@@ -18,7 +18,7 @@ pub(super) struct Pass<'a, const D: usize, const N: usize> {
     pub(super) apart: &'a [u32],
     /// F_n of all nodes (N), empty if there is none.
     pub(super) external: &'a [[f64; D]],
-    pub(super) motion: Motion<'a, D>,
+    pub(super) motion: NodeMotion<'a, D>,
     /// ½Δt_{n−1} (s).
     pub(super) back: f64,
     /// Whether strips are worked on at the same time, by the threads of the pool of the caller.
@@ -31,7 +31,7 @@ pub(super) struct Fields<'a, const D: usize> {
     pub(super) displacement: &'a mut [[f64; D]],
     pub(super) velocity: &'a mut [[f64; D]],
     pub(super) force: &'a mut [[f64; D]],
-    pub(super) sums: &'a mut [Sums<D>],
+    pub(super) sums: &'a mut [StripSums<D>],
 }
 
 impl<'a, const D: usize> Fields<'a, D> {
@@ -62,7 +62,7 @@ impl<'a, const D: usize> Fields<'a, D> {
 impl<const D: usize, const N: usize> Pass<'_, D, N> {
     /// Moves all nodes, computes F_n − K u_n, and sums up nodes and elements; `fields` has one sum for each strip,
     /// those of even strips first.
-    pub(super) fn run(&self, fields: Fields<'_, D>) -> Sums<D> {
+    pub(super) fn run(&self, fields: Fields<'_, D>) -> StripSums<D> {
         let strips = self.stiffness.strips.count();
         let even = strips.div_ceil(2);
         let Fields { start, displacement, velocity, force, sums } = fields;
@@ -77,7 +77,7 @@ impl<const D: usize, const N: usize> Pass<'_, D, N> {
         self.phase(0, 0..even, even_fields);
         let odd_fields = Fields { start, displacement, velocity, force, sums: &mut *second };
         self.phase(1, 0..strips - even, odd_fields);
-        let mut total = Sums::ZERO;
+        let mut total = StripSums::ZERO;
         first.iter().chain(second.iter()).for_each(|sums| total.add_all(sums));
         total
     }
@@ -126,13 +126,13 @@ impl<const D: usize, const N: usize> Task for StripPass<'_, D, N> {
         // Even strips come first: they move all of their nodes, and odd strips complete all of theirs.
         let (mut moved, mut completed) = if strip % 2 == 0 { (all, own) } else { (own, all) };
         let mut passed = pass.apart.partition_point(|&node| (node as usize) < start + completed.start);
-        let mut sums = Sums::ZERO;
+        let mut sums = StripSums::ZERO;
         for (chunk, data) in pairs.strip(strip) {
             let reached = (chunk.reached as usize).clamp(moved.start, moved.end);
             pass.advance(lanes, moved.start..reached, &mut fields, &mut sums);
             moved.start = reached;
             sweep(lanes, *shape, &data, fields.displacement, fields.force, &mut sums.strain);
-            if matches!(pass.motion, Motion::Combine(_)) {
+            if matches!(pass.motion, NodeMotion::Combine(_)) {
                 continue;
             }
             let left = (chunk.left as usize).clamp(completed.start, completed.end);
@@ -146,7 +146,7 @@ impl<const D: usize, const N: usize> Task for StripPass<'_, D, N> {
 impl<const D: usize, const N: usize> Pass<'_, D, N> {
     /// Moves nodes, counted in the strip, and begins their forces anew.
     #[inline(always)]
-    fn advance<L: Lanes>(&self, lanes: L, nodes: Range<usize>, fields: &mut Fields<'_, D>, sums: &mut Sums<D>) {
+    fn advance<L: Lanes>(&self, lanes: L, nodes: Range<usize>, fields: &mut Fields<'_, D>, sums: &mut StripSums<D>) {
         if nodes.is_empty() {
             return;
         }
@@ -173,7 +173,7 @@ impl<const D: usize, const N: usize> Pass<'_, D, N> {
         nodes: Range<usize>,
         fields: &mut Fields<'_, D>,
         passed: &mut usize,
-        sums: &mut Sums<D>,
+        sums: &mut StripSums<D>,
     ) {
         let mut from = nodes.start;
         while from < nodes.end {

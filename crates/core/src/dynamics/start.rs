@@ -1,9 +1,9 @@
 //! The state from which the steps go on: that at t_0, or a checkpoint.
 
 use super::balance::BalanceKeeper;
-use super::contact::Contact;
+use super::contact::StepContact;
 use super::moving::MovingBody;
-use super::node_update::Motion;
+use super::node_update::NodeMotion;
 use super::{Dynamics, SimulationError};
 use crate::border::vectors;
 use crate::history::{Checkpoint, State, Step};
@@ -14,9 +14,9 @@ use crate::time::TimeGrid;
 pub(super) fn start<const D: usize, const N: usize>(
     dynamics: &Dynamics<'_, D, N>,
     body: &mut MovingBody<D>,
-    contact: &mut Contact<D>,
+    contact: &mut StepContact<D>,
 ) -> Result<(), SimulationError> {
-    body.step(dynamics, 0, Motion::Start);
+    body.step(dynamics, 0, NodeMotion::Start);
     contact.react(dynamics, 0, &body.displacement, &body.velocity, &mut body.forces.total);
     contact.settle_start(dynamics);
     refuse_a_start_too_near(dynamics, contact)
@@ -27,14 +27,14 @@ pub(super) fn restart<const D: usize, const N: usize>(
     dynamics: &Dynamics<'_, D, N>,
     checkpoint: &Checkpoint,
     body: &mut MovingBody<D>,
-    contact: &mut Contact<D>,
+    contact: &mut StepContact<D>,
 ) -> BalanceKeeper<D> {
     let Dynamics { problem, times, .. } = *dynamics;
     let Checkpoint { step: n, displacement, half_step, sums } = checkpoint;
     let motion = [vectors(displacement), vectors(half_step)];
     body.displacement.copy_from_slice(motion[0]);
     body.velocity.copy_from_slice(motion[1]);
-    body.step(dynamics, *n, Motion::Start);
+    body.step(dynamics, *n, NodeMotion::Start);
     contact.react(dynamics, *n, motion[0], motion[1], &mut body.forces.total);
     body.sum_up(dynamics, *n);
     let (index, time) = (*n, times.instants()[*n]);
@@ -50,14 +50,14 @@ pub(super) fn check_start<const D: usize, const N: usize>(
     times: &TimeGrid,
 ) -> Result<(), SimulationError> {
     let dynamics = &Dynamics::new(problem, times);
-    start(dynamics, &mut MovingBody::new(dynamics), &mut Contact::new(dynamics))
+    start(dynamics, &mut MovingBody::new(dynamics), &mut StepContact::new(dynamics))
 }
 
 /// A node that touches at step 1, but not at 0, must be able to slow down: its gap must be at
 /// least |v_n|Δt₀/4, or no admissible kinematic field exists (problem P_CA).
 fn refuse_a_start_too_near<const D: usize, const N: usize>(
     dynamics: &Dynamics<'_, D, N>,
-    contact: &Contact<D>,
+    contact: &StepContact<D>,
 ) -> Result<(), SimulationError> {
     let problem = dynamics.problem;
     let step = dynamics.times.step(0);

@@ -4,7 +4,7 @@ use crate::contact::{CORNER, dot};
 
 /// The node of a surface that is nearest to another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Nearest {
+pub(super) struct NearestNode {
     /// Its distance along the direction (m): infinite where no node faces an edge.
     pub(super) distance: f64,
     /// Whether the surface ends or turns there.
@@ -18,18 +18,18 @@ pub(super) fn nearest<const D: usize>(
     direction: &[f64; D],
     along: &[f64; D],
     tolerance: f64,
-) -> [Nearest; 2] {
-    let [first, second] = edges.map(|edges| Seen::new(edges, direction, along));
+) -> [NearestNode; 2] {
+    let [first, second] = edges.map(|edges| SurfaceView::new(edges, direction, along));
     [first.nearest_to(&second, 1.0, tolerance), second.nearest_to(&first, -1.0, tolerance)]
 }
 
 /// A surface in coordinates across (ξ) and along (η) a direction (m).
-struct Seen {
+struct SurfaceView {
     /// The ends of each edge, ascending in ξ, as are the edges.
     edges: Vec<[[f64; 2]; 2]>,
 }
 
-impl Seen {
+impl SurfaceView {
     fn new<const D: usize>(edges: &[[[f64; D]; 2]], direction: &[f64; D], along: &[f64; D]) -> Self {
         let place = |point: &[f64; D]| [dot(point, along), dot(point, direction)];
         let ascending = |ends: &[[f64; D]; 2]| {
@@ -42,15 +42,15 @@ impl Seen {
     }
 
     /// The node that is nearest to another surface, which is ahead where the sign is positive.
-    fn nearest_to(&self, other: &Self, sign: f64, tolerance: f64) -> Nearest {
+    fn nearest_to(&self, other: &Self, sign: f64, tolerance: f64) -> NearestNode {
         let nodes = self.edges.iter().enumerate().flat_map(|(at, ends)| {
             let beside = [at.checked_sub(1), Some(at + 1)].map(|next| next.and_then(|next| self.edges.get(next)));
             std::array::from_fn::<_, 2, _>(|k| (ends[k], beside[k].is_none_or(|next| turns(ends, next))))
         });
         let distances = nodes.filter_map(|([xi, eta], is_corner)| {
-            other.eta_at(xi, tolerance).map(|ahead| Nearest { distance: sign * (ahead - eta), is_corner })
+            other.eta_at(xi, tolerance).map(|ahead| NearestNode { distance: sign * (ahead - eta), is_corner })
         });
-        let none = Nearest { distance: f64::INFINITY, is_corner: false };
+        let none = NearestNode { distance: f64::INFINITY, is_corner: false };
         distances.min_by(|a, b| a.distance.total_cmp(&b.distance)).unwrap_or(none)
     }
 

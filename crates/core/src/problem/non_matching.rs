@@ -2,8 +2,8 @@
 
 use super::gaps::Gaps;
 use super::roles::Roles;
-use super::sides::{Bodies, Side, check_nodes};
-use super::symmetry::{Motion, ONE_PLACE};
+use super::sides::{Bodies, InterfaceSide, check_nodes};
+use super::symmetry::{LineMotion, ONE_PLACE};
 use super::{Cause, candidates};
 use crate::contact::{
     ContactFace, ContactNode, ContactSurface, Interface, NonMatchingSurfaces, Obstacle, Side as Line, dot, tangent,
@@ -62,7 +62,7 @@ impl<const D: usize> Bodies<'_, D> {
         &self,
         surface: &mut ContactSurface<D>,
         interface: &Interface,
-        sides: &[Side<D>; 2],
+        sides: &[InterfaceSide<D>; 2],
         roles: Roles,
     ) -> Result<(), Cause> {
         let (slave, normal) = (roles.slave, self.normal(sides, roles));
@@ -86,7 +86,7 @@ impl<const D: usize> Bodies<'_, D> {
 
     /// On a line of symmetry one of the surfaces at least stands across it: a force along the line is not normal to
     /// two slopes.
-    fn check_ridge(&self, sides: &[Side<D>; 2], normal: &[f64; D]) -> Result<(), Cause> {
+    fn check_ridge(&self, sides: &[InterfaceSide<D>; 2], normal: &[f64; D]) -> Result<(), Cause> {
         for line in self.common_lines(sides) {
             let slopes = |&&face: &&FaceId| {
                 let meets_line = self.mesh.face_nodes::<D>(face).iter().any(|node| self.is_on(&line, *node));
@@ -105,7 +105,7 @@ impl<const D: usize> Bodies<'_, D> {
     fn add_side(
         &self,
         surface: &mut ContactSurface<D>,
-        side: &Side<D>,
+        side: &InterfaceSide<D>,
         (normal, origin): (&[f64; D], &[f64; D]),
         facing: Obstacle<D>,
     ) -> Result<Line, Cause> {
@@ -146,7 +146,7 @@ impl<const D: usize> Bodies<'_, D> {
         let contacts = nodes.iter().map(contact).collect::<Result<Vec<_>, Cause>>()?;
         let eta = nodes.iter().map(|&node| dot(&from_origin(node), normal)).collect();
         let velocity: Vec<[f64; D]> = nodes.iter().map(|node| self.velocity[node.index()]).collect();
-        let uniform = |line: &Option<Motion>| matches!(line, Some(Motion::Uniform(_)));
+        let uniform = |line: &Option<LineMotion>| matches!(line, Some(LineMotion::Uniform(_)));
         let steady: Vec<bool> = nodes.iter().map(|node| self.lines[node.index()].iter().any(uniform)).collect();
         let fastest = velocity.iter().fold(0.0_f64, |most, v| most.max(dot(v, v).sqrt()));
         let velocity: Vec<f64> = velocity.iter().map(|velocity| dot(velocity, &along)).collect();
@@ -156,7 +156,7 @@ impl<const D: usize> Bodies<'_, D> {
     }
 
     /// The faces of each body of a side, of bodies in ascending order of their first ξ.
-    fn chains(&self, side: &Side<D>, xi: impl Fn(NodeId) -> f64) -> Result<Vec<Chain>, Cause> {
+    fn chains(&self, side: &InterfaceSide<D>, xi: impl Fn(NodeId) -> f64) -> Result<Vec<Chain>, Cause> {
         let of_body = side.faces.chunk_by(|&a, &b| self.body_of(a) == self.body_of(b));
         let mut chains = of_body.map(|faces| self.chain(faces, &xi)).collect::<Result<Vec<_>, Cause>>()?;
         chains.sort_by(|a, b| a[0].1[0].0.total_cmp(&b[0].1[0].0));

@@ -1,7 +1,7 @@
 //! Pairs of nodes of two bodies that face each other across an interface.
 
 use super::Cause;
-use super::sides::{Bodies, Side, check_nodes};
+use super::sides::{Bodies, InterfaceSide, check_nodes};
 use crate::contact::{ContactFace, ContactNode, ContactSurface, Frame, Interface, Obstacle, dot};
 use crate::ids::{FaceId, NodeId};
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 const MATCHING: f64 = 1e-9;
 /// The two sides of an interface, the common normal from the second one to the first, and the node of the second side
 /// that faces each node of the first one.
-type OpposedSides<const D: usize> = ([Side<D>; 2], [f64; D], Vec<NodeId>);
+type OpposedSides<const D: usize> = ([InterfaceSide<D>; 2], [f64; D], Vec<NodeId>);
 
 /// Adds the pairs of an interface to the contact surface, as two obstacles: for the first group the surface of the
 /// second one, and the other way round.
@@ -69,7 +69,7 @@ impl<const D: usize> Bodies<'_, D> {
     }
 
     /// The node of the second side that faces each node of the first one.
-    fn partners(&self, [first, second]: &[Side<D>; 2], normal: &[f64; D]) -> Result<Vec<NodeId>, Cause> {
+    fn partners(&self, [first, second]: &[InterfaceSide<D>; 2], normal: &[f64; D]) -> Result<Vec<NodeId>, Cause> {
         let points = self.mesh.points_in::<D>();
         let counts = [first.nodes.len(), second.nodes.len()];
         if counts[0] != counts[1] {

@@ -2,7 +2,7 @@
 
 use super::alignment::unit;
 use super::distance::nearest;
-use super::sides::{Bodies, Side};
+use super::sides::{Bodies, InterfaceSide};
 use crate::contact::{dot, tangent};
 use crate::ids::NodeId;
 use crate::material::Law;
@@ -31,7 +31,7 @@ impl<const D: usize> Bodies<'_, D> {
     ///
     /// The normal stands on the surface that a corner of the slave strikes. Else it stands on the flatter one, or on
     /// the master where both are flat alike.
-    pub(super) fn roles(&self, sides: &[Side<D>; 2], displacement: &[[f64; D]]) -> Roles {
+    pub(super) fn roles(&self, sides: &[InterfaceSide<D>; 2], displacement: &[[f64; D]]) -> Roles {
         let on_flatter = |slave: usize| Roles { slave, face: self.flatter(sides).unwrap_or(1 - slave) };
         if let Some(several) = sides.iter().position(|side| side.bodies.len() > 1) {
             return on_flatter(several);
@@ -66,7 +66,7 @@ impl<const D: usize> Bodies<'_, D> {
     /// side to the second one, and lengths below `rounding` (m) are equal.
     fn striking(
         &self,
-        sides: &[Side<D>; 2],
+        sides: &[InterfaceSide<D>; 2],
         [direction, along]: [&[f64; D]; 2],
         rounding: f64,
         displacement: &[[f64; D]],
@@ -81,20 +81,20 @@ impl<const D: usize> Bodies<'_, D> {
     }
 
     /// The side that is flatter, if one is.
-    fn flatter(&self, sides: &[Side<D>; 2]) -> Option<usize> {
+    fn flatter(&self, sides: &[InterfaceSide<D>; 2]) -> Option<usize> {
         let spread = sides.each_ref().map(|side| self.spread(side));
         let alike = (spread[0] - spread[1]).abs() <= FLAT * (spread[0].max(spread[1]) + FLAT);
         (!alike).then_some(usize::from(spread[1] < spread[0]))
     }
 
     /// The unit normal from the master to the slave that stands on a side.
-    pub(super) fn normal(&self, sides: &[Side<D>; 2], Roles { slave, face }: Roles) -> [f64; D] {
+    pub(super) fn normal(&self, sides: &[InterfaceSide<D>; 2], Roles { slave, face }: Roles) -> [f64; D] {
         let outward = self.outward(sides)[face];
         if face == slave { outward.map(|n| -n) } else { outward }
     }
 
     /// The mean square of the difference of the normals of edges and their mean one, by length.
-    fn spread(&self, side: &Side<D>) -> f64 {
+    fn spread(&self, side: &InterfaceSide<D>) -> f64 {
         let mean = unit(&side.of_whole);
         let (mut sum, mut length) = (0.0, 0.0);
         for &face in &side.faces {
@@ -108,12 +108,12 @@ impl<const D: usize> Bodies<'_, D> {
 
     /// The side of the softer body, or of the lighter one, or of that whose centre of mass is nearer to its surface
     /// along a direction.
-    fn weaker(&self, sides: &[Side<D>; 2], direction: &[f64; D], displacement: &[[f64; D]]) -> Option<usize> {
+    fn weaker(&self, sides: &[InterfaceSide<D>; 2], direction: &[f64; D], displacement: &[[f64; D]]) -> Option<usize> {
         let less = |[first, second]: [f64; 2]| {
             ((first - second).abs() > EQUAL * first.abs().max(second.abs())).then_some(usize::from(second < first))
         };
         let masses = sides.each_ref().map(|side| self.mass_and_centre(side, displacement));
-        let depth = |side: &Side<D>, centre: &[f64; D]| {
+        let depth = |side: &InterfaceSide<D>, centre: &[f64; D]| {
             let count = side.nodes.len() as f64;
             let places = side.nodes.iter().map(|&node| dot(&self.place(node, displacement), direction));
             (places.sum::<f64>() / count - dot(centre, direction)).abs()
@@ -124,7 +124,7 @@ impl<const D: usize> Bodies<'_, D> {
     }
 
     /// The mean modulus λ + 2G = ρc² at the edges of a side, by length (Pa).
-    fn modulus(&self, side: &Side<D>) -> f64 {
+    fn modulus(&self, side: &InterfaceSide<D>) -> f64 {
         let (mut sum, mut length) = (0.0, 0.0);
         for &face in &side.faces {
             let (law, area) = ((self.law)(face), self.mesh.normal_in::<D>(face).1);
@@ -135,7 +135,7 @@ impl<const D: usize> Bodies<'_, D> {
     }
 
     /// The mass (kg) and the centre of mass (m) of the first body of a side.
-    fn mass_and_centre(&self, side: &Side<D>, displacement: &[[f64; D]]) -> (f64, [f64; D]) {
+    fn mass_and_centre(&self, side: &InterfaceSide<D>, displacement: &[[f64; D]]) -> (f64, [f64; D]) {
         let (mut mass, mut centre) = (0.0, [0.0; D]);
         for (index, _) in self.body.iter().enumerate().filter(|(_, body)| **body == side.bodies[0]) {
             let place = self.place(NodeId::new(index), displacement);
@@ -146,7 +146,7 @@ impl<const D: usize> Bodies<'_, D> {
     }
 
     /// The ends of the edges of a side (m).
-    fn edges(&self, side: &Side<D>, displacement: &[[f64; D]]) -> Vec<[[f64; D]; 2]> {
+    fn edges(&self, side: &InterfaceSide<D>, displacement: &[[f64; D]]) -> Vec<[[f64; D]; 2]> {
         let nodes = side.faces.iter().map(|face| self.mesh.face_nodes::<D>(*face));
         nodes.map(|nodes| std::array::from_fn(|k| self.place(nodes[k.min(nodes.len() - 1)], displacement))).collect()
     }
@@ -157,7 +157,7 @@ impl<const D: usize> Bodies<'_, D> {
 }
 
 /// The direction from the first side to the second one, midway between the normals of both.
-fn between<const D: usize>(sides: &[Side<D>; 2]) -> [f64; D] {
+fn between<const D: usize>(sides: &[InterfaceSide<D>; 2]) -> [f64; D] {
     let outward = sides.each_ref().map(|side| unit(&side.of_whole));
     let sum: [f64; D] = std::array::from_fn(|c| outward[0][c] - outward[1][c]);
     // Sides that do not face each other are refused later.

@@ -2,7 +2,7 @@
 
 use super::alignment::{FACES, outward, unit};
 use super::candidates::along_the_boundary;
-use super::symmetry::{self, Motion, NodeLines, SymmetryLine};
+use super::symmetry::{self, LineMotion, NodeLines, SymmetryLine};
 use super::{Cause, HeldBy, boundary};
 use crate::border::cut;
 use crate::contact::{ContactSurface, Interface, Obstacle, dot};
@@ -34,7 +34,7 @@ pub(super) struct Bodies<'m, const D: usize> {
 const UPRIGHT: f64 = 1e-9;
 
 /// One side of an interface.
-pub(super) struct Side<const D: usize> {
+pub(super) struct InterfaceSide<const D: usize> {
     /// Those of one body after those of the other.
     pub(super) faces: Vec<FaceId>,
     /// Nodes along the boundary.
@@ -61,7 +61,7 @@ impl<const D: usize> Bodies<'_, D> {
 
     /// Both sides of an interface, which are of different bodies with one hypothesis. Of non-matching interfaces, one
     /// side may be of several bodies.
-    pub(super) fn sides(&self, interface: &Interface) -> Result<[Side<D>; 2], Cause> {
+    pub(super) fn sides(&self, interface: &Interface) -> Result<[InterfaceSide<D>; 2], Cause> {
         let [first, second] = interface.groups();
         let mut sides = [self.side(first)?, self.side(second)?];
         let lines = self.common_lines(&sides);
@@ -81,7 +81,7 @@ impl<const D: usize> Bodies<'_, D> {
     }
 
     /// The mean outward unit normals of two sides. Rounding of places does not lean them across a support.
-    pub(super) fn outward(&self, sides: &[Side<D>; 2]) -> [[f64; D]; 2] {
+    pub(super) fn outward(&self, sides: &[InterfaceSide<D>; 2]) -> [[f64; D]; 2] {
         let fixed = |c: usize| sides.iter().flat_map(|side| &side.nodes).any(|node| self.fixed[node.index()][c]);
         let fixed: [bool; D] = std::array::from_fn(fixed);
         sides.each_ref().map(|side| {
@@ -95,7 +95,7 @@ impl<const D: usize> Bodies<'_, D> {
     }
 
     /// Whether all edges face the other side, with the normal from the second one to the first.
-    pub(super) fn check_directions(&self, sides: [&Side<D>; 2], normal: &[f64; D]) -> Result<(), Cause> {
+    pub(super) fn check_directions(&self, sides: [&InterfaceSide<D>; 2], normal: &[f64; D]) -> Result<(), Cause> {
         let away = normal.map(|n| -n);
         for (side, outward) in sides.into_iter().zip([&away, normal]) {
             let faces = |&face: &FaceId| dot(&self.mesh.normal_in::<D>(face).0, outward) >= FACES;
@@ -109,7 +109,7 @@ impl<const D: usize> Bodies<'_, D> {
     }
 
     /// The faces of a group, which are free.
-    fn side(&self, group: &str) -> Result<Side<D>, Cause> {
+    fn side(&self, group: &str) -> Result<InterfaceSide<D>, Cause> {
         let mut faces = boundary::face_group(self.mesh, group)?.to_vec();
         let nodes_of = |face: FaceId| self.mesh.face_nodes::<D>(face);
         let shown = |face: FaceId| nodes_of(face).map(NodeId::index).to_vec();
@@ -124,21 +124,21 @@ impl<const D: usize> Bodies<'_, D> {
         bodies.dedup();
         let nodes = along_the_boundary(self.mesh, &faces);
         let outward = cut(&outward(self.mesh, &faces));
-        Ok(Side { of_whole: outward, nodes, faces, outward, bodies })
+        Ok(InterfaceSide { of_whole: outward, nodes, faces, outward, bodies })
     }
 
     /// The line of symmetry on which an edge is, if its way is known before the run.
     pub(super) fn line_of(&self, face: FaceId) -> Option<SymmetryLine> {
         let line = symmetry::line_of(self.mesh, &self.supported[face.index()], &self.lines, face)?;
-        matches!(line.motion, Motion::Uniform(_)).then_some(line)
+        matches!(line.motion, LineMotion::Uniform(_)).then_some(line)
     }
 
     /// The lines of symmetry that both sides meet, of which the way is known before the run.
-    pub(super) fn common_lines(&self, sides: &[Side<D>; 2]) -> Vec<SymmetryLine> {
+    pub(super) fn common_lines(&self, sides: &[InterfaceSide<D>; 2]) -> Vec<SymmetryLine> {
         let [own, other] = sides.each_ref().map(|side| side.nodes.as_slice());
         let mut lines: Vec<SymmetryLine> = Vec::new();
         for (node, across) in own.iter().flat_map(|&node| (0..D).map(move |c| (node, c))) {
-            let Some(motion @ Motion::Uniform(_)) = self.lines[node.index()][across] else { continue };
+            let Some(motion @ LineMotion::Uniform(_)) = self.lines[node.index()][across] else { continue };
             let line = SymmetryLine { across, place: self.mesh.points_in::<D>()[node.index()][across], motion };
             if other.iter().any(|node| self.is_on(&line, *node)) {
                 lines.push(line);
@@ -158,7 +158,7 @@ impl<const D: usize> Bodies<'_, D> {
     }
 }
 
-impl<const D: usize> Side<D> {
+impl<const D: usize> InterfaceSide<D> {
     /// Adds the outward normals of the mirrored side. A line along the surface is none of a half.
     fn mirror(&mut self, lines: &[SymmetryLine]) {
         let largest = self.outward.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
@@ -171,7 +171,7 @@ impl<const D: usize> Side<D> {
 /// Whether no node may touch anything else.
 pub(super) fn check_nodes<const D: usize>(
     surface: &ContactSurface<D>,
-    sides: &[Side<D>; 2],
+    sides: &[InterfaceSide<D>; 2],
     interface: &Interface,
 ) -> Result<(), Cause> {
     let nodes = sides.iter().flat_map(|side| &side.nodes);

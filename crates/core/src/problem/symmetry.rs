@@ -14,14 +14,14 @@ const ONE_VELOCITY: f64 = 1e-9;
 
 /// How a line moves across itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Motion {
+pub(crate) enum LineMotion {
     /// With this velocity (m/s), which may be 0.
     Uniform(f64),
     /// As the table of supports of this number says.
     Changing(usize),
 }
 
-impl Motion {
+impl LineMotion {
     /// Whether two lines that move so stay at one place.
     fn is_that_of(self, other: Self) -> bool {
         match (self, other) {
@@ -36,11 +36,11 @@ impl Motion {
 pub(crate) struct SymmetryLine {
     pub(crate) across: usize,
     pub(crate) place: f64,
-    pub(crate) motion: Motion,
+    pub(crate) motion: LineMotion,
 }
 
 /// The motion of the line of symmetry across each direction on which a node is, if it is on one.
-pub(crate) type NodeLines<const D: usize> = [Option<Motion>; D];
+pub(crate) type NodeLines<const D: usize> = [Option<LineMotion>; D];
 
 /// Those of all nodes.
 pub(crate) fn node_lines<const D: usize>(
@@ -53,10 +53,10 @@ pub(crate) fn node_lines<const D: usize>(
     let mut lines = vec![[None; D]; mesh.node_count()];
     for p in prescribed.iter().filter(|p| mirrors[p.node.index()][p.component]) {
         let of_table = |index: usize| match motions[index].is_constant() {
-            true => Motion::Uniform(motions[index].value()[0][0]),
-            false => Motion::Changing(index),
+            true => LineMotion::Uniform(motions[index].value()[0][0]),
+            false => LineMotion::Changing(index),
         };
-        lines[p.node.index()][p.component] = Some(p.motion.map_or(Motion::Uniform(0.0), of_table));
+        lines[p.node.index()][p.component] = Some(p.motion.map_or(LineMotion::Uniform(0.0), of_table));
     }
     lines
 }
@@ -154,22 +154,22 @@ impl SymmetryLine {
 
 #[cfg(test)]
 mod tests {
-    use super::{Motion, SymmetryLine};
+    use super::{LineMotion, SymmetryLine};
 
     #[test]
     fn lines_move_together_or_apart() {
-        let line = |motion: Motion| SymmetryLine { across: 0, place: 0.0, motion };
-        let together = |one: Motion, other: Motion| line(one).is_at(&line(other), 0.01);
-        assert!(together(Motion::Uniform(0.3), Motion::Uniform(0.1 + 0.2)));
-        assert!(!together(Motion::Uniform(0.3), Motion::Uniform(0.0)));
-        assert!(together(Motion::Changing(1), Motion::Changing(1)));
-        assert!(!together(Motion::Changing(1), Motion::Changing(0)));
-        assert!(!together(Motion::Changing(0), Motion::Uniform(0.0)));
+        let line = |motion: LineMotion| SymmetryLine { across: 0, place: 0.0, motion };
+        let together = |one: LineMotion, other: LineMotion| line(one).is_at(&line(other), 0.01);
+        assert!(together(LineMotion::Uniform(0.3), LineMotion::Uniform(0.1 + 0.2)));
+        assert!(!together(LineMotion::Uniform(0.3), LineMotion::Uniform(0.0)));
+        assert!(together(LineMotion::Changing(1), LineMotion::Changing(1)));
+        assert!(!together(LineMotion::Changing(1), LineMotion::Changing(0)));
+        assert!(!together(LineMotion::Changing(0), LineMotion::Uniform(0.0)));
     }
 
     #[test]
     fn a_line_is_found_beside_rounding() {
-        let line = SymmetryLine { across: 0, place: 1000.0, motion: Motion::Uniform(3.0) };
+        let line = SymmetryLine { across: 0, place: 1000.0, motion: LineMotion::Uniform(3.0) };
         assert!(line.is_at(&SymmetryLine { place: 1000.0 + 2e-13, ..line }, 0.01));
         assert!(!line.is_at(&SymmetryLine { place: 1000.0 + 1e-9, ..line }, 0.01));
         assert!(!line.is_at(&SymmetryLine { across: 1, ..line }, 0.01));

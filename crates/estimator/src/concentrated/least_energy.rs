@@ -18,14 +18,14 @@ const REFINEMENTS: usize = 3;
 /// A cut star under several loads.
 #[derive(Clone, Debug)]
 pub(super) struct Solved {
-    pub(super) parts: Parts,
+    pub(super) parts: SubTriangles,
     /// Those of each ring, from the outline to the node, then of the core.
     pub(super) states: Vec<LayerState>,
 }
 
 /// The sub-triangles of a cut star.
 #[derive(Clone, Debug)]
-pub(super) struct Parts {
+pub(super) struct SubTriangles {
     /// The triangles at the outline.
     pub(super) outline: Vec<Panel>,
     /// Different rings, then the core.
@@ -34,7 +34,7 @@ pub(super) struct Parts {
     pub(super) rings: Vec<(usize, f64)>,
 }
 
-impl Parts {
+impl SubTriangles {
     fn layer(&self, ring: usize) -> &Layer {
         &self.layers[self.rings[ring].0]
     }
@@ -49,7 +49,7 @@ struct Elimination {
 }
 
 impl Elimination {
-    fn new(parts: &Parts, arcs: usize, free: &[usize]) -> Self {
+    fn new(parts: &SubTriangles, arcs: usize, free: &[usize]) -> Self {
         let stiffness = |ring: usize| &parts.layer(ring).stiffness;
         let core = parts.rings.len() - 1;
         let mut reduced = stiffness(core).clone();
@@ -94,7 +94,12 @@ impl Elimination {
 impl Solved {
     /// `given` are the forces of tractions on the pieces of the first and the last edge, ring by ring; `supported` the
     /// components there whose tractions are unknown.
-    pub(super) fn new(star: &CutStar, parts: Parts, given: &[[DMatrix<f64>; 2]], supported: &[[bool; 2]; 2]) -> Self {
+    pub(super) fn new(
+        star: &CutStar,
+        parts: SubTriangles,
+        given: &[[DMatrix<f64>; 2]],
+        supported: &[[bool; 2]; 2],
+    ) -> Self {
         let elimination = Elimination::new(&parts, 4 * star.sectors(), &free_motions(star, supported));
         let forces = given.iter().enumerate().map(|(ring, given)| parts.layer(ring).at_arcs(given)).collect();
         let displacements = elimination.solve(forces);

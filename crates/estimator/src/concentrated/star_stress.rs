@@ -10,7 +10,7 @@ use super::HATS;
 use super::cut_star::{CutStar, SubTriangle};
 use super::edge_traction::{EdgeTraction, OnEdge, forces, radii};
 use super::layer::Layer;
-use super::least_energy::{Parts, Solved};
+use super::least_energy::{Solved, SubTriangles};
 use super::panel::{self, Panel};
 use crate::residual::worse;
 use crate::stress::{LOADS, Loading, MONOMIALS, StressResiduals, TriangleStress};
@@ -93,7 +93,7 @@ pub(crate) struct StarElement<'a, L> {
 }
 
 /// ∫mτ for each monomial m in the three parts of an element, rows (monomial, component), under each load.
-type Moments = [DMatrix<f64>; 3];
+type MonomialMoments = [DMatrix<f64>; 3];
 
 impl StarStress {
     /// Those of hats on candidate edges of a star: 0 the first, 1 the last. `elements` are ordered counterclockwise;
@@ -195,11 +195,11 @@ fn solve<L: LinearLaw>(
     layers.push(layer(star.core()));
     let inner = radii[1..].iter().chain(&[0.0]);
     let given: Vec<_> = inner.zip(radii).map(|(inner, outer)| forces([*inner, *outer])).collect();
-    Solved::new(&star, Parts { outline: panels(star.outline()), layers, rings }, &given, &supported)
+    Solved::new(&star, SubTriangles { outline: panels(star.outline()), layers, rings }, &given, &supported)
 }
 
 /// Moments of the stresses in each element, and the residuals of all sub-triangles.
-fn gather(solved: &Solved, elements: usize) -> (Vec<Moments>, StarResiduals) {
+fn gather(solved: &Solved, elements: usize) -> (Vec<MonomialMoments>, StarResiduals) {
     let columns = solved.states[0].force.ncols();
     let mut all = vec![[(); 3].map(|()| DMatrix::zeros(3 * MONOMIALS, columns)); elements];
     let mut residuals = StarResiduals::default();
@@ -229,7 +229,7 @@ fn gather(solved: &Solved, elements: usize) -> (Vec<Moments>, StarResiduals) {
 }
 
 /// ∫σ:K⁻¹τ for the stress σ of each unit load of an element.
-fn products<L: LinearLaw>(element: &StarElement<'_, L>, moments: &Moments) -> DMatrix<f64> {
+fn products<L: LinearLaw>(element: &StarElement<'_, L>, moments: &MonomialMoments) -> DMatrix<f64> {
     let [first, second] = element.ends;
     let map = TriangleStress::new(&[[0.0; 2], first, second], element.law);
     let (alpha, beta) = element.law.compliance::<2>();

@@ -16,11 +16,11 @@ struct Batch {
     intervals: Range<usize>,
     /// Numbers of each block.
     lengths: Vec<u32>,
-    place: Place,
+    place: BacklogPlace,
 }
 
 #[derive(Debug)]
-enum Place {
+enum BacklogPlace {
     /// Block after block.
     Memory(Vec<Vec<f64>>),
     /// From this number of the file on.
@@ -68,13 +68,13 @@ impl Backlog {
     /// Begins a batch of these intervals.
     pub(super) fn begin(&mut self, intervals: Range<usize>) {
         let place = if self.held + self.last <= self.most {
-            Place::Memory(Vec::new())
+            BacklogPlace::Memory(Vec::new())
         } else {
             self.spare = Vec::new();
-            if !self.batches.iter().rev().any(|batch| matches!(batch.place, Place::File(_))) {
+            if !self.batches.iter().rev().any(|batch| matches!(batch.place, BacklogPlace::File(_))) {
                 self.end = 0;
             }
-            Place::File(self.end)
+            BacklogPlace::File(self.end)
         };
         self.last = 0;
         self.batches.push_back(Batch { intervals, lengths: Vec::new(), place });
@@ -86,14 +86,14 @@ impl Backlog {
         batch.lengths.push(block.len() as u32);
         self.last += block.len();
         match &mut batch.place {
-            Place::Memory(blocks) => {
+            BacklogPlace::Memory(blocks) => {
                 self.held += block.len();
                 // Later blocks may be a little longer.
                 let other = self.spare.pop().unwrap_or_else(|| Vec::with_capacity(block.len() + block.len() / 16));
                 blocks.push(std::mem::replace(block, other));
                 Ok(())
             }
-            Place::File(_) => {
+            BacklogPlace::File(_) => {
                 let place = self.end;
                 self.end += block.len() as u64;
                 self.file.write(place, block)
@@ -110,8 +110,8 @@ impl Backlog {
     pub(super) fn blocks(&mut self, blocks: Range<usize>) -> Result<Vec<&[f64]>, ScratchError> {
         let Some(batch) = self.batches.front() else { return Ok(Vec::new()) };
         let place = match &batch.place {
-            Place::Memory(held) => return Ok(held[blocks].iter().map(Vec::as_slice).collect()),
-            Place::File(place) => *place,
+            BacklogPlace::Memory(held) => return Ok(held[blocks].iter().map(Vec::as_slice).collect()),
+            BacklogPlace::File(place) => *place,
         };
         let numbers = |lengths: &[u32]| lengths.iter().map(|&length| length as usize).sum::<usize>();
         let (start, count) = (numbers(&batch.lengths[..blocks.start]), numbers(&batch.lengths[blocks.clone()]));
@@ -128,7 +128,7 @@ impl Backlog {
 
     /// Forgets the first batch.
     pub(super) fn pop(&mut self) {
-        if let Some(Batch { place: Place::Memory(blocks), .. }) = self.batches.pop_front() {
+        if let Some(Batch { place: BacklogPlace::Memory(blocks), .. }) = self.batches.pop_front() {
             self.held -= blocks.iter().map(Vec::len).sum::<usize>();
             self.spare = blocks;
         }

@@ -5,7 +5,7 @@ mod fields;
 
 use super::maps::Contribution;
 use super::sampled_levels::SampledLevels;
-use super::sampling::{Course, Sampling};
+use super::sampling::{Course, SharedData};
 use crate::blocks::BLOCK;
 use crate::lanes::{LANES, Lanes, Value};
 use crate::measure::{AdmissibleStress, BalanceNode, ElementError, ElementMeasure};
@@ -69,7 +69,7 @@ struct FarSamples<T> {
 
 /// The sampling of all far elements at some levels, part by part: blocks are added up in their order.
 pub(super) struct FarSampling<'a, 's, 'p, const D: usize, const N: usize> {
-    shared: &'a Sampling<'s, 'p, D, N>,
+    shared: &'a SharedData<'s, 'p, D, N>,
     /// The level before these.
     before: Option<EquilibratedLevel<'a, D>>,
     is_near: &'a [bool],
@@ -85,7 +85,7 @@ pub(super) struct FarSampling<'a, 's, 'p, const D: usize, const N: usize> {
 
 impl<'a, 's, 'p, const D: usize, const N: usize> FarSampling<'a, 's, 'p, D, N> {
     pub(super) fn new(
-        shared: &'a Sampling<'s, 'p, D, N>,
+        shared: &'a SharedData<'s, 'p, D, N>,
         before: Option<EquilibratedLevel<'a, D>>,
         is_near: &'a [bool],
         courses: &'a mut [FarCourse<D, N>],
@@ -151,7 +151,7 @@ impl<const D: usize, const N: usize> Task for SampleBlock<'_, '_, '_, '_, D, N> 
 
 /// The data that all blocks share at some levels.
 struct FarLevels<'a, 's, 'p, const D: usize, const N: usize> {
-    shared: &'a Sampling<'s, 'p, D, N>,
+    shared: &'a SharedData<'s, 'p, D, N>,
     levels: &'a SampledLevels<'a, D>,
     /// Which levels end an interval of a single step, and whether any and all of them do.
     single: [bool; LANES],
@@ -171,7 +171,7 @@ struct FarLevels<'a, 's, 'p, const D: usize, const N: usize> {
 }
 
 impl<'a, 's, 'p, const D: usize, const N: usize> FarLevels<'a, 's, 'p, D, N> {
-    fn new(shared: &'a Sampling<'s, 'p, D, N>, levels: &'a SampledLevels<'a, D>) -> Self {
+    fn new(shared: &'a SharedData<'s, 'p, D, N>, levels: &'a SampledLevels<'a, D>) -> Self {
         let (forces, instants) = (levels.levels.forces(), shared.times.instants());
         let single: [bool; LANES] = std::array::from_fn(|lane| lane < forces.len() && levels.is_single(lane));
         let length = |lane: usize| {

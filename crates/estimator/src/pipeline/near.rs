@@ -7,7 +7,7 @@ mod side_by_side;
 use super::maps::Contribution;
 use super::non_matching::NonMatchingMisfit;
 use super::sampling::{
-    ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, Sampling, trapezoid,
+    ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, SharedData, trapezoid,
 };
 use super::waiting::{ContactInstant, Waiting};
 use crate::concentrated::HatStress;
@@ -18,7 +18,7 @@ use crate::measure::Balanced;
 use crate::numbers::Reader;
 use crate::reconstruction::ReconstructionMethod;
 use crate::residual::{Residuals, worse};
-use crate::stress::KeptForm;
+use crate::stress::ElementForm;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 
@@ -39,7 +39,7 @@ pub(super) struct ResidualShare {
 #[derive(Clone, Debug)]
 pub(super) struct NearElement<const D: usize, const N: usize> {
     pub(super) element: ElementId,
-    form: KeptForm,
+    form: ElementForm,
     /// Position of each node in the contact surface, the first one of a node at two planes.
     contact: [Option<usize>; N],
     /// Candidate faces that the element owns.
@@ -84,7 +84,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
         let contact = mesh.nodes_of::<N>()[e].map(|n| of_node[n.index()]);
         contact.iter().any(Option::is_some).then(|| NearElement {
             element: ElementId::new(e),
-            form: KeptForm::new(problem, ElementId::new(e)),
+            form: ElementForm::new(problem, ElementId::new(e)),
             contact,
             faces,
             start: None,
@@ -104,7 +104,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
 /// The data that all near elements share.
 #[derive(Clone, Copy)]
 pub(super) struct ContactSampling<'a, 'p, const D: usize, const N: usize> {
-    pub(super) shared: &'a Sampling<'a, 'p, D, N>,
+    pub(super) shared: &'a SharedData<'a, 'p, D, N>,
     pub(super) reconstruction: &'a dyn ReconstructionMethod<D, N>,
     /// The largest component of the initial velocity (m/s).
     pub(super) fastest: f64,
@@ -209,7 +209,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
 
     /// The part of friction beside nodes at two planes at the beginning, middle and end of an interval (J).
     fn beside_corners(&mut self, context: &ContactSampling<'_, '_, D, N>, waiting: &Waiting<D, N>) -> [f64; 3] {
-        let Sampling { problem, times, .. } = context.shared;
+        let SharedData { problem, times, .. } = context.shared;
         let (start, first) = (self.corner_friction, waiting.sliding.first().map(|sliding| sliding.step));
         let mut middle = start;
         for sliding in &waiting.sliding {

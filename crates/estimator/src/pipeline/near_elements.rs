@@ -9,13 +9,13 @@ use super::maps::Maps;
 use super::near::{ContactSampling, NearElement, near_count, near_elements};
 use super::sampled_interval::SampledInterval;
 use super::sampled_levels::SampledLevels;
-use super::sampling::{ElementSample, Sampling};
+use super::sampling::{ElementSample, SharedData};
 use super::waiting;
 use crate::kinematic::ContactMotions;
 use crate::lanes::LANES;
 use crate::numbers::Reader;
 use crate::scratch_file::{ScratchError, ScratchFile};
-use crate::stress::KeptForm;
+use crate::stress::ElementForm;
 use percute_core::problem::Problem;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -32,7 +32,7 @@ pub(super) fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, sa
     let (all, most) = (samples.saturating_mul(elements).saturating_mul(interval), backlog::most_bytes(nodes));
     // The memory of a group has room for more; what is in the file is read into another.
     let groups = (2 + usize::from(all > most)) * elements.min(BLOCK * GROUP) * LANES * interval;
-    elements * (size_of::<NearElement<D, N>>() + KeptForm::memory())
+    elements * (size_of::<NearElement<D, N>>() + ElementForm::memory())
         + all.min(most)
         + groups
         + ContactMotions::memory(problem, span(spacing))
@@ -77,7 +77,7 @@ impl<const D: usize, const N: usize> NearElements<D, N> {
     /// Takes in the intervals between consecutive levels, which have these numbers.
     pub(super) fn append(
         &mut self,
-        shared: &Sampling<'_, '_, D, N>,
+        shared: &SharedData<'_, '_, D, N>,
         levels: &SampledLevels<'_, D>,
         intervals: Range<usize>,
     ) -> Result<(), ScratchError> {

@@ -10,7 +10,7 @@ use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, h
 use crate::numbers::Reader;
 use crate::options::Acceleration;
 use crate::residual::{Residuals, worse};
-use crate::stress::{KeptForm, Loading};
+use crate::stress::{ElementForm, Loading};
 use crate::time_level::{Side, Velocities};
 use crate::traction::{EquilibratedLevel, Equilibration};
 use percute_core::ids::ElementId;
@@ -165,7 +165,7 @@ pub(super) struct ElementInterval<'i, const D: usize, const N: usize> {
 
 /// The data that all elements share.
 #[derive(Clone, Copy)]
-pub(super) struct Sampling<'a, 'p, const D: usize, const N: usize> {
+pub(super) struct SharedData<'a, 'p, const D: usize, const N: usize> {
     pub(super) problem: &'p Problem<D, N>,
     pub(super) times: &'p TimeGrid,
     pub(super) equilibration: &'a Equilibration<'p, D, N>,
@@ -175,14 +175,14 @@ pub(super) struct Sampling<'a, 'p, const D: usize, const N: usize> {
 
 /// The maps of one element, with the data that all share.
 pub(super) struct ElementSampler<'a, 'p, const D: usize, const N: usize> {
-    shared: &'a Sampling<'a, 'p, D, N>,
+    shared: &'a SharedData<'a, 'p, D, N>,
     pub(super) id: ElementId,
     pub(super) element: &'a Element<D, N>,
     pub(super) measure: ElementMeasure<'a, D, N>,
 }
 
 impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
-    pub(super) fn new(shared: &'a Sampling<'a, 'p, D, N>, id: ElementId) -> Self {
+    pub(super) fn new(shared: &'a SharedData<'a, 'p, D, N>, id: ElementId) -> Self {
         let (problem, element) = (shared.problem, &shared.equilibration.elements[id.index()]);
         Self { shared, id, element, measure: ElementMeasure::new(problem, element, id, shared.choice) }
     }
@@ -192,7 +192,7 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
     }
 
     /// σ_DA of the fields that balance, by the form of the element, with its loading or without.
-    pub(super) fn stress(&self, form: &KeptForm, balanced: &Balanced<D, N>, loaded: bool) -> SampledStress<D, N> {
+    pub(super) fn stress(&self, form: &ElementForm, balanced: &Balanced<D, N>, loaded: bool) -> SampledStress<D, N> {
         let AdmissibleStress { mean, fluctuation } = self.measure.stress(form, balanced);
         SampledStress { mean, fluctuation: fluctuation.energy(), loading: loaded.then_some(balanced.loading) }
     }

@@ -98,7 +98,7 @@ impl Schedule {
 
 /// Whether the steps around a change are samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Around {
+struct ChangeWindow {
     before: bool,
     now: bool,
 }
@@ -127,10 +127,10 @@ impl ContactChanges {
     }
 
     /// Takes in a step: the steps before, at and after a change are samples, and the step of a peak.
-    fn advance(&mut self, touching: &[bool], force: f64) -> Around {
+    fn advance(&mut self, touching: &[bool], force: f64) -> ChangeWindow {
         let changed = self.changes(touching);
         let peak = self.peaks(force);
-        let around = Around { before: changed || peak, now: changed || self.changed };
+        let around = ChangeWindow { before: changed || peak, now: changed || self.changed };
         self.changed = changed;
         around
     }

@@ -10,7 +10,7 @@ use super::near_elements::{self, NearElements};
 use super::prepare::Preparation;
 use super::sampled_interval::SampledInterval;
 use super::sampled_levels::SampledLevels;
-use super::sampling::Sampling;
+use super::sampling::SharedData;
 use super::totals::{self, Worked};
 use crate::contact_density::OffContact;
 use crate::difference::Difference;
@@ -241,7 +241,7 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
         equilibrate: impl FnOnce(&Equilibration<'p, D, N>, &mut EquilibratedLevels<D>, Then<'_, D>) -> f64,
     ) -> Result<Option<Vec<Contribution>>, ScratchError> {
         let (problem, times, equilibration, choice) = (self.problem, self.times, &self.equilibration, self.choice);
-        let shared = Sampling { problem, times, equilibration, choice, maps: &self.maps };
+        let shared = SharedData { problem, times, equilibration, choice, maps: &self.maps };
         let before = self.carried.as_ref().map(KeptLevel::level);
         let mut far = FarSampling::new(&shared, before, &self.is_near, &mut self.courses);
         let miss = equilibrate(equilibration, levels, &mut |levels, part| far.sample(levels, part.elements.clone()));
@@ -274,7 +274,7 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
                 preparation.show([2 * from, 2 * to])?;
                 self.maps.settle(problem, preparation.tracks().all(), to);
             }
-            let shared = Sampling { problem, times, equilibration, choice, maps: &self.maps };
+            let shared = SharedData { problem, times, equilibration, choice, maps: &self.maps };
             let (reconstruction, tracks) = (preparation.reconstruction(), preparation.tracks().all());
             let non_matching = preparation.non_matching();
             self.near.sample(

@@ -18,7 +18,7 @@ use crate::error::EstimateError;
 use crate::kinematic::ContactMotion;
 use crate::nodal_field::{FieldPool, NodalField};
 use crate::options::{Acceleration, Options, Reconstruction};
-use crate::time_level::{ForcesKnown, Inertia, MotionKnown, SplitFields, SurfaceStep};
+use crate::time_level::{ForcesKnown, KnownInertia, MotionKnown, SplitFields, SurfaceStep};
 use crate::traction::{EquilibratedLevels, Equilibration, Then};
 pub(crate) use admissibility::check;
 use consistent::Consistent;
@@ -64,7 +64,7 @@ pub(crate) struct SimulatedStep<'a, const D: usize> {
 pub(crate) struct BalancedFields<const D: usize> {
     /// The displacement whose stress is equilibrated (m).
     pub(crate) displacement: NodalField<D>,
-    pub(crate) inertia: Inertia<D>,
+    pub(crate) inertia: KnownInertia<D>,
     /// The forces of which densities are made (N).
     pub(crate) contact: Vec<[f64; D]>,
     /// Their densities, where they depend on no other instant.
@@ -100,7 +100,7 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
         let (displacement, contact, mut force) =
             (pool.copy(step.displacement()), step.reaction().to_vec(), pool.take());
         state.write_force_without_contact(dynamics.problem().surface(), &mut force);
-        let inertia = Inertia::Forces(force);
+        let inertia = KnownInertia::Forces(force);
         BalancedFields { displacement, inertia, contact, densities: None, split: None, smoothed: false }
     }
 

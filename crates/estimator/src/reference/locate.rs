@@ -17,7 +17,7 @@ const INWARDS: f64 = 1e-5;
 
 /// The element of the coarse mesh that a fine node lies in, and its barycentric coordinates there.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct CoarsePoint {
     element: ElementId,
     weight: Weights,
 }
@@ -26,7 +26,7 @@ struct Place {
 #[derive(Clone, Debug)]
 pub(super) struct Transfer {
     /// Of each fine node.
-    places: Vec<Place>,
+    places: Vec<CoarsePoint>,
     /// The coarse element that has the centroid of each fine one.
     elements: Vec<ElementId>,
 }
@@ -46,7 +46,7 @@ impl Transfer {
                 if weight.iter().any(|w| *w < -OUTSIDE) {
                     return Err(not_nested());
                 }
-                places[node.index()] = Some(Place { element, weight });
+                places[node.index()] = Some(CoarsePoint { element, weight });
             }
             elements.push(element);
         }
@@ -72,14 +72,14 @@ impl Transfer {
             if weight.iter().any(|w| *w < -1.0) {
                 return Err(ReferenceError::Outside { node });
             }
-            places.push(Place { element, weight });
+            places.push(CoarsePoint { element, weight });
         }
         Ok(Self { places, elements })
     }
 
     /// The coarse field at each fine node.
     pub(super) fn at_nodes<const D: usize>(&self, coarse: &Mesh, field: &[[f64; D]]) -> Vec<[f64; D]> {
-        let value = |place: &Place| {
+        let value = |place: &CoarsePoint| {
             let mut value = [0.0; D];
             for (node, weight) in coarse.cell(place.element).iter().zip(&place.weight) {
                 (0..D).for_each(|c| value[c] += weight * field[node.index()][c]);

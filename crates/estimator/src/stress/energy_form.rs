@@ -9,9 +9,9 @@
 //! which the energy is the sum of squares. Coordinates are linear in the loads: half way between two instants they are
 //! the mean. The form takes more memory than all other data of an element, so it is made anew for each window of
 //! levels, for [`LANES`] triangles at once, and triangles of the same shape share it. Elements around contact nodes,
-//! of which there are few, keep theirs ([`KeptForm`]).
+//! of which there are few, keep theirs ([`ElementForm`]).
 
-mod kept;
+mod element_form;
 
 use super::bar::BarStress;
 use super::fluctuation::{MODES, START, gram};
@@ -20,7 +20,7 @@ use super::triangle::reference_compliance;
 use super::{Fluctuation, Loading};
 use crate::lanes::{LANES, Lanes, Value};
 use crate::simd::dispatch;
-pub(crate) use kept::KeptForm;
+pub(crate) use element_form::ElementForm;
 use nalgebra::Matrix2;
 use percute_core::ids::ElementId;
 use percute_core::material::LinearLaw;

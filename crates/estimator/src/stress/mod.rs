@@ -12,7 +12,7 @@ mod triangle;
 
 use crate::lanes::Value;
 use bar::BarStress;
-pub(crate) use energy_form::{EnergyForm, EnergyForms, FluctuationForm, KeptForm};
+pub(crate) use energy_form::{ElementForm, EnergyForm, EnergyForms, FluctuationForm};
 pub(crate) use fluctuation::Fluctuation;
 use percute_core::material::LinearLaw;
 use percute_core::simplex::{Shape, Simplex};

@@ -24,13 +24,13 @@ pub(crate) struct EquilibratedLevels<const D: usize> {
 pub(crate) struct EquilibratedLevel<'a, const D: usize> {
     forces: &'a ForcesKnown<D>,
     force_scale: f64,
-    moments: Moments<'a, D>,
+    moments: LinkMoments<'a, D>,
     pub(super) moments_before: Option<&'a [[f64; D]]>,
 }
 
 /// The moments of a level on links of stars (N).
 #[derive(Clone, Copy, Debug)]
-enum Moments<'a, const D: usize> {
+enum LinkMoments<'a, const D: usize> {
     /// On some links: their numbers, in order, and their moments.
     Some(&'a [u32], &'a [[f64; D]]),
     Lane(&'a [[Lanes; D]], usize),
@@ -64,7 +64,7 @@ impl<const D: usize> EquilibratedLevels<D> {
         EquilibratedLevel {
             forces: &self.forces[k],
             force_scale: self.force_scale.0[k],
-            moments: Moments::Lane(&self.moments, k),
+            moments: LinkMoments::Lane(&self.moments, k),
             moments_before: self.moments_before[k].as_deref(),
         }
     }
@@ -124,7 +124,7 @@ impl<const D: usize> KeptLevel<D> {
         EquilibratedLevel {
             forces: &self.forces,
             force_scale: self.force_scale,
-            moments: Moments::Some(&self.links, &self.moments),
+            moments: LinkMoments::Some(&self.links, &self.moments),
             moments_before: None,
         }
     }
@@ -152,12 +152,12 @@ impl<'a, const D: usize> EquilibratedLevel<'a, D> {
     #[inline]
     pub(super) fn moment(&self, link: usize) -> [f64; D] {
         match self.moments {
-            Moments::Some(links, moments) => {
+            LinkMoments::Some(links, moments) => {
                 let at = links.partition_point(|&kept| (kept as usize) < link);
                 assert_eq!(links[at] as usize, link, "only the links of near elements are kept");
                 moments[at]
             }
-            Moments::Lane(moments, lane) => moments[link].map(|m| m.0[lane]),
+            LinkMoments::Lane(moments, lane) => moments[link].map(|m| m.0[lane]),
         }
     }
 }

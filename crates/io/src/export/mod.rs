@@ -18,7 +18,7 @@ use vtkhdf::Single;
 
 /// The place of the rows of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FieldPlace {
     /// One row for each node.
     Nodes,
     /// One row for each element.
@@ -35,7 +35,7 @@ pub struct ExportField {
     /// Numbers in a row: 1, 3 (a vector) or 9 (a tensor).
     pub components: usize,
     /// Its place.
-    pub place: Place,
+    pub place: FieldPlace,
 }
 
 /// What an export holds: fields over instants, each a step of the run and its time (s).
@@ -50,31 +50,31 @@ pub struct Contents<'a> {
 }
 
 impl Contents<'_> {
-    fn rows(&self, place: Place) -> usize {
+    fn rows(&self, place: FieldPlace) -> usize {
         match place {
-            Place::Nodes => self.mesh.node_count(),
-            Place::Elements => self.mesh.element_count(),
+            FieldPlace::Nodes => self.mesh.node_count(),
+            FieldPlace::Elements => self.mesh.element_count(),
         }
     }
 }
 
-/// Writes an export, instant after instant. Without [`Writer::finish`] no file remains.
-pub struct Writer<'a>(Kind<'a>);
+/// Writes an export, instant after instant. Without [`ExportWriter::finish`] no file remains.
+pub struct ExportWriter<'a>(WriterKind<'a>);
 
-enum Kind<'a> {
+enum WriterKind<'a> {
     Single(Single<'a>),
     Series(Series<'a>),
 }
 
-impl<'a> Writer<'a> {
+impl<'a> ExportWriter<'a> {
     /// Begins an export; the ending of the name says its format.
     ///
     /// # Errors
     /// An existing file, a folder that is missing or not writable, a disk without enough space.
     pub fn new(path: &Path, format: Format, overwrite: Overwrite, contents: Contents<'a>) -> Result<Self, FileError> {
         Ok(Self(match format {
-            Format::Vtkhdf => Kind::Single(Single::new(path, overwrite, contents)?),
-            Format::Vtu | Format::Pvd => Kind::Series(Series::new(path, format, overwrite, contents)),
+            Format::Vtkhdf => WriterKind::Single(Single::new(path, overwrite, contents)?),
+            Format::Vtu | Format::Pvd => WriterKind::Series(Series::new(path, format, overwrite, contents)),
         }))
     }
 
@@ -84,8 +84,8 @@ impl<'a> Writer<'a> {
     /// A file that cannot be written.
     pub fn push(&mut self, values: &[Vec<f64>]) -> Result<(), FileError> {
         match &mut self.0 {
-            Kind::Single(single) => single.push(values),
-            Kind::Series(series) => series.push(values),
+            WriterKind::Single(single) => single.push(values),
+            WriterKind::Series(series) => series.push(values),
         }
     }
 
@@ -95,8 +95,8 @@ impl<'a> Writer<'a> {
     /// A file that cannot be written.
     pub fn finish(self) -> Result<Vec<PathBuf>, FileError> {
         match self.0 {
-            Kind::Single(single) => single.finish(),
-            Kind::Series(series) => series.finish(),
+            WriterKind::Single(single) => single.finish(),
+            WriterKind::Series(series) => series.finish(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! All instants in one VTKHDF file.
 
-use super::{Contents, Place};
+use super::{Contents, FieldPlace};
 use crate::create::{Overwrite, Unnamed};
 use crate::error::{FileCause, FileError};
 use crate::library::refused;
@@ -53,7 +53,7 @@ impl<'a> Single<'a> {
 
 /// Size of the file.
 fn bytes(contents: &Contents<'_>) -> u64 {
-    let (nodes, cells) = (contents.rows(Place::Nodes), contents.rows(Place::Elements));
+    let (nodes, cells) = (contents.rows(FieldPlace::Nodes), contents.rows(FieldPlace::Elements));
     let grid = 24 * nodes + 8 * contents.mesh.nodes_of_element() * cells + 8 * (cells + 1) + cells;
     let fields: usize = contents.fields.iter().map(|field| 8 * field.components * contents.rows(field.place) + 8).sum();
     let instants = contents.instants.len();
@@ -63,10 +63,12 @@ fn bytes(contents: &Contents<'_>) -> u64 {
 /// Creates the grid, the instants and room for the fields; returns the place of each field.
 fn fill(file: &hdf5::File, contents: &Contents<'_>) -> Result<Vec<u64>, FileCause> {
     let vtk = write_grid(file, contents.mesh)?;
-    let of = |place: Place| contents.fields.iter().filter(move |field| field.place == place);
+    let of = |place: FieldPlace| contents.fields.iter().filter(move |field| field.place == place);
     let mut groups: [Option<Group>; 2] = [None, None];
-    for (to, (place, name)) in groups.iter_mut().zip([(Place::Nodes, "PointData"), (Place::Elements, "CellData")]) {
-        if of(place).next().is_some() || (place == Place::Elements && contents.mesh.parts() > 1) {
+    for (to, (place, name)) in
+        groups.iter_mut().zip([(FieldPlace::Nodes, "PointData"), (FieldPlace::Elements, "CellData")])
+    {
+        if of(place).next().is_some() || (place == FieldPlace::Elements && contents.mesh.parts() > 1) {
             *to = Some(group(&vtk, name)?);
         }
     }
@@ -74,17 +76,17 @@ fn fill(file: &hdf5::File, contents: &Contents<'_>) -> Result<Vec<u64>, FileCaus
     let mut places = Vec::new();
     for field in contents.fields {
         let [points, cells] = &groups;
-        let Some(to) = (if field.place == Place::Nodes { points } else { cells }) else { continue };
+        let Some(to) = (if field.place == FieldPlace::Nodes { points } else { cells }) else { continue };
         let rows = contents.rows(field.place) * contents.instants.len();
         let shape = if field.components == 1 { vec![rows] } else { vec![rows, field.components] };
         let set = room::<f64>(to, field.name, &shape)?;
         unit(&set, field.unit)?;
         places.push(offset(&set)?);
     }
-    let starts = |place: Place| of(place).map(|field| (field.name, contents.rows(place))).collect::<Vec<_>>();
+    let starts = |place: FieldPlace| of(place).map(|field| (field.name, contents.rows(place))).collect::<Vec<_>>();
     let times: Vec<f64> = contents.instants.iter().map(|(_, time)| *time).collect();
-    let of_elements: Vec<_> = starts(Place::Elements).into_iter().chain(bodies).collect();
-    write_steps(&vtk, &times, &starts(Place::Nodes), &of_elements)?;
+    let of_elements: Vec<_> = starts(FieldPlace::Elements).into_iter().chain(bodies).collect();
+    write_steps(&vtk, &times, &starts(FieldPlace::Nodes), &of_elements)?;
     give_steps(&vtk, &times).and_then(|()| note_steps(&vtk, times.len())).map_err(|error| refused(&error))?;
     Ok(places)
 }

@@ -1,7 +1,7 @@
 //! An instant as VTK XML: an unstructured grid with binary arrays in base64.
 
 use super::base64::encode;
-use super::{Contents, Place};
+use super::{Contents, FieldPlace};
 use crate::mesh::{BODY, VTK_TYPES, bodies, in_space};
 
 /// The text of a file.
@@ -25,12 +25,12 @@ pub(super) fn text(contents: &Contents<'_>, time: f64, values: &[Vec<f64>]) -> V
     array(&mut to, "Int64", "Name=\"offsets\"", offsets.flat_map(i64::to_le_bytes).collect());
     array(&mut to, "UInt8", "Name=\"types\"", vec![VTK_TYPES[mesh.dimension() - 1].0; cells]);
     line(&mut to, "</Cells>");
-    for (place, name) in [(Place::Nodes, "PointData"), (Place::Elements, "CellData")] {
+    for (place, name) in [(FieldPlace::Nodes, "PointData"), (FieldPlace::Elements, "CellData")] {
         line(&mut to, &format!("<{name}>"));
         for (field, values) in contents.fields.iter().zip(values).filter(|(field, _)| field.place == place) {
             floats(&mut to, field.name, field.components, values);
         }
-        if let Some(bodies) = bodies(mesh).filter(|_| place == Place::Elements) {
+        if let Some(bodies) = bodies(mesh).filter(|_| place == FieldPlace::Elements) {
             let bytes = bodies.into_iter().flat_map(i64::to_le_bytes).collect();
             array(&mut to, "Int64", &format!("Name=\"{BODY}\""), bytes);
         }

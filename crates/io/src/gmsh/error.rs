@@ -14,21 +14,21 @@ pub struct GmshError {
     /// The file.
     pub path: PathBuf,
     /// Its place in the file, if there is one.
-    pub place: Option<Place>,
+    pub place: Option<FilePlace>,
     /// What is wrong.
     pub cause: GmshCause,
 }
 
 /// A place in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePlace {
     /// A line of a text, from 1.
     Line(usize),
     /// A byte of a binary file, from 0.
     Byte(usize),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line(line) => write!(f, "line {line}"),
@@ -37,7 +37,7 @@ impl fmt::Display for Place {
     }
 }
 
-fn at(place: Option<Place>) -> String {
+fn at(place: Option<FilePlace>) -> String {
     place.map_or_else(String::new, |place| format!(", {place}"))
 }
 
@@ -189,7 +189,11 @@ impl Fault {
     pub(super) fn of(self, path: &Path, bytes: &[u8], text: bool) -> GmshError {
         let place = self.at.map(|byte| {
             let before = bytes.get(..byte).unwrap_or(bytes);
-            if text { Place::Line(1 + before.iter().filter(|&&b| b == b'\n').count()) } else { Place::Byte(byte) }
+            if text {
+                FilePlace::Line(1 + before.iter().filter(|&&b| b == b'\n').count())
+            } else {
+                FilePlace::Byte(byte)
+            }
         });
         GmshError { path: path.to_path_buf(), place, cause: *self.cause }
     }

@@ -21,12 +21,12 @@ mod v2;
 mod v4;
 mod write;
 
-pub use error::{GmshCause, GmshError, Place};
+pub use error::{FilePlace, GmshCause, GmshError};
 pub use header::Version;
 pub use kind::ElementKind;
 pub use outline::outline;
 pub use size_field::write_sizes;
-pub use write::{Format, write};
+pub use write::{MeshFormat, write};
 
 use crate::error::FileCause;
 use cursor::{Cursor, Form};

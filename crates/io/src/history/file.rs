@@ -42,7 +42,7 @@ impl Identity {
 
 /// The contents read on opening.
 #[derive(Debug)]
-pub(super) struct Contents {
+pub(super) struct FileContents {
     pub(super) path: PathBuf,
     pub(super) identity: Identity,
     pub(super) bytes: u64,
@@ -69,7 +69,7 @@ pub(super) struct Contents {
 /// A history in a file. Steps are read on demand, and the file is open only during reading.
 #[derive(Clone, Debug)]
 pub struct HistoryFile {
-    pub(super) contents: Arc<Contents>,
+    pub(super) contents: Arc<FileContents>,
 }
 
 /// The place of an array in the file, for mapping into memory.
@@ -86,7 +86,7 @@ pub struct NativeArray {
 }
 
 impl HistoryFile {
-    pub(super) fn new(contents: Contents) -> Self {
+    pub(super) fn new(contents: FileContents) -> Self {
         Self { contents: Arc::new(contents) }
     }
 
@@ -161,7 +161,7 @@ impl HistoryFile {
     /// u₀ at the nodes (m): step 0, unless the file has that of the problem.
     #[must_use]
     pub fn initial_displacement(&self) -> &[f64] {
-        let Contents { elsewhere, initial_displacement, .. } = &*self.contents;
+        let FileContents { elsewhere, initial_displacement, .. } = &*self.contents;
         elsewhere.as_ref().map_or(initial_displacement, |elsewhere| &elsewhere.initial_displacement)
     }
 

@@ -2,7 +2,7 @@
 
 use super::DISPLACEMENT;
 use super::elsewhere::Elsewhere;
-use super::file::{Contents, HistoryFile, Identity};
+use super::file::{FileContents, HistoryFile, Identity};
 use super::nodal::{finite, nodal};
 use super::rows::FIELDS;
 use super::stored_part;
@@ -74,7 +74,7 @@ pub(super) fn contents(path: &Path, identity: Identity, opened: &Opened) -> Resu
         }
         check_seen(&vtk, count, complete)?;
     }
-    Ok(HistoryFile::new(Contents {
+    Ok(HistoryFile::new(FileContents {
         path: path.to_path_buf(),
         identity,
         bytes: opened.bytes(),

@@ -14,14 +14,14 @@ const WAITING: usize = 2;
 /// A queue of what is to be written, in order.
 #[derive(Debug)]
 pub(super) struct Queue {
-    entries: Option<SyncSender<Entry>>,
+    entries: Option<SyncSender<QueueEntry>>,
     used: Receiver<Row>,
     thread: Option<JoinHandle<Result<(), Failure>>>,
     failed: Option<Failure>,
 }
 
 /// A copy of what is to be written.
-enum Entry {
+enum QueueEntry {
     Row(Row),
     Checkpoint(Checkpoint),
 }
@@ -65,7 +65,7 @@ impl Queue {
     pub(super) fn row(&mut self, step: &Step<'_>, place: usize) -> Result<(), FileCause> {
         let mut row = self.used.try_recv().unwrap_or_default();
         row.take(step, place);
-        self.pass_on(Entry::Row(row), step.index)
+        self.pass_on(QueueEntry::Row(row), step.index)
     }
 
     /// Takes a checkpoint in.
@@ -74,10 +74,10 @@ impl Queue {
     /// A file that cannot be written.
     pub(super) fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), FileCause> {
         let step = checkpoint.step;
-        self.pass_on(Entry::Checkpoint(checkpoint), step)
+        self.pass_on(QueueEntry::Checkpoint(checkpoint), step)
     }
 
-    fn pass_on(&mut self, entry: Entry, step: usize) -> Result<(), FileCause> {
+    fn pass_on(&mut self, entry: QueueEntry, step: usize) -> Result<(), FileCause> {
         self.check()?;
         if self.entries.as_ref().is_some_and(|entries| entries.send(entry).is_ok()) {
             return Ok(());
@@ -124,15 +124,15 @@ impl Drop for Queue {
 }
 
 /// Writes entries in order, until the last one or a failure.
-fn write_all(file: &File, places: &Places, taken: &Receiver<Entry>, back: &Sender<Row>) -> Result<(), Failure> {
+fn write_all(file: &File, places: &Places, taken: &Receiver<QueueEntry>, back: &Sender<Row>) -> Result<(), Failure> {
     for entry in taken {
         match entry {
-            Entry::Row(row) => {
+            QueueEntry::Row(row) => {
                 row.write(file, places).map_err(Failure::of(row.index))?;
                 // There is no receiver once the run has ended.
                 let _ = back.send(row);
             }
-            Entry::Checkpoint(checkpoint) => {
+            QueueEntry::Checkpoint(checkpoint) => {
                 let written = places.checkpoints.map_or(Ok(()), |places| places.write(file, &checkpoint));
                 written.map_err(Failure::of(checkpoint.step))?;
             }

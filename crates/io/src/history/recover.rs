@@ -5,8 +5,8 @@ use super::file::NativeArray;
 use super::open::open;
 use crate::driver::Driven;
 use crate::error::{FileCause, FileError};
-use crate::held::Held;
 use crate::library::{alone, detail};
+use crate::lock::LockedFile;
 use crate::steps::{give_steps, note_steps};
 use percute_system::give_back;
 use std::fs::File;
@@ -42,18 +42,18 @@ pub fn recover(path: impl AsRef<Path>) -> Result<Recovered, FileError> {
         let file = File::options().read(true).write(true).open(path);
         let file = file.map_err(|error| FileCause::Finish { detail: error.to_string(), steps: recovered.count })?;
         // A running writer holds a lock on the file.
-        let held = Held::alone(file)?;
+        let lock = LockedFile::alone(file)?;
         if count == 0 {
             return Err(FileCause::NoStep);
         }
         let failed = |detail: String| FileCause::Finish { detail, steps: recovered.count };
-        set_steps(held.file(), recovered.count).map_err(failed)?;
-        give_back_room(held.file(), arrays.iter().filter_map(room), planned, count);
+        set_steps(lock.file(), recovered.count).map_err(failed)?;
+        give_back_room(lock.file(), arrays.iter().filter_map(room), planned, count);
         if let Some(checkpoints) = checkpoints.filter(|_| count == planned) {
-            checkpoints.give_back(held.file());
+            checkpoints.give_back(lock.file());
         }
-        set_complete(held.file()).map_err(failed)?;
-        held.file().sync_all().map_err(|error| failed(error.to_string()))
+        set_complete(lock.file()).map_err(failed)?;
+        lock.file().sync_all().map_err(|error| failed(error.to_string()))
     };
     finish().map_err(|cause| cause.at(path))?;
     Ok(recovered)

@@ -8,7 +8,7 @@ use super::stored_part::StoredPart;
 use super::writer::{Begun, Target, Writer};
 use crate::create::reserve;
 use crate::error::{FileCause, FileError};
-use crate::held::Held;
+use crate::lock::LockedFile;
 use crate::read::{Data, Opened};
 use crate::write::Provenance;
 use percute_core::history::Checkpoint;
@@ -83,7 +83,7 @@ impl HistoryFile {
         }
         let path = self.path();
         let create = |source| FileCause::Create { source };
-        let held = Held::alone(File::options().read(true).write(true).open(path).map_err(create)?)?.share()?;
+        let lock = LockedFile::alone(File::options().read(true).write(true).open(path).map_err(create)?)?.share()?;
         // Another run may have gone on with the file since it was opened.
         let opened = Opened::new(path)?;
         let now: Self = contents(path, Identity::of(path)?, &opened)?;
@@ -96,17 +96,17 @@ impl HistoryFile {
         let next = checkpoint.as_ref().map_or(0, |checkpoint: &Checkpoint| checkpoint.step + 1);
         let stored = next.checked_sub(1).map_or(0, |step| now.rows_until(step));
         now.check_rows(stored).map_err(|error| error.cause)?;
-        let missing = bytes.saturating_sub(occupied(held.file()));
-        reserve(held.file(), path, bytes).map_err(|cause| match cause {
+        let missing = bytes.saturating_sub(occupied(lock.file()));
+        reserve(lock.file(), path, bytes).map_err(|cause| match cause {
             FileCause::NoSpace { free, .. } => FileCause::NoSpace { needed: missing, free },
             other => other,
         })?;
-        write_all_at(held.file(), &[0], places.complete).map_err(create)?;
+        write_all_at(lock.file(), &[0], places.complete).map_err(create)?;
         let (kept, supplied) = (now.keeps(), now.stored());
         let begun = Begun { last: now.run_times().step_count(), next, stored, supplied, kept };
         Ok(Unended {
             checkpoint,
-            writer: Writer::new(Target::Named(held, path.to_path_buf()), places, begun).map_err(create)?,
+            writer: Writer::new(Target::Named(lock, path.to_path_buf()), places, begun).map_err(create)?,
         })
     }
 

@@ -7,7 +7,7 @@ use super::rows::Places;
 use super::stored_part::StoredPart;
 use crate::create::Unnamed;
 use crate::error::{FileCause, FileError};
-use crate::held::Held;
+use crate::lock::LockedFile;
 use crate::unfinished::Unfinished;
 use percute_core::history::{Checkpoint, SinkError, State, StateSink, Step, StepError};
 use percute_system::write_all_at;
@@ -37,7 +37,7 @@ pub struct Writer {
 #[derive(Debug)]
 pub(super) enum Target {
     /// It has its name.
-    Named(Held, PathBuf),
+    Named(LockedFile, PathBuf),
     /// It is given its name once it is complete.
     Unnamed(Unnamed),
 }
@@ -45,7 +45,7 @@ pub(super) enum Target {
 impl Target {
     fn file(&self) -> &File {
         match self {
-            Self::Named(held, _) => held.file(),
+            Self::Named(lock, _) => lock.file(),
             Self::Unnamed(unnamed) => unnamed.file(),
         }
     }
@@ -61,7 +61,7 @@ impl Target {
     /// Where it is now.
     fn place(&self) -> Option<PathBuf> {
         match self {
-            Self::Named(held, path) => held.place(path),
+            Self::Named(lock, path) => lock.place(path),
             Self::Unnamed(unnamed) => Some(unnamed.temporary().to_path_buf()),
         }
     }

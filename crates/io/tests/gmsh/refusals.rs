@@ -1,10 +1,10 @@
 //! Files that are refused: each with its place, in the tags of Gmsh, and with what to do there.
 
 use crate::gmsh::common::*;
-use percute_io::gmsh::{Place, parse, read};
+use percute_io::gmsh::{FilePlace, parse, read};
 
 /// What is said of a file, and where.
-fn said(text: &str) -> (String, Option<Place>) {
+fn said(text: &str) -> (String, Option<FilePlace>) {
     let error = of_bytes(text.as_bytes()).unwrap_err();
     let message = error.to_string();
     assert!(!message.contains("Some(") && message.contains("a.msh"), "{message}");
@@ -52,8 +52,8 @@ fn mistakes_in_a_mesh_are_named_with_their_line_and_tags() {
             assert!(message.contains(phrase), "{from} -> {to}: {message}");
         }
         let named = place.map_or("", |place| match place {
-            Place::Line(line) => text.lines().nth(line - 1).unwrap(),
-            Place::Byte(byte) => panic!("byte {byte} of a text"),
+            FilePlace::Line(line) => text.lines().nth(line - 1).unwrap(),
+            FilePlace::Byte(byte) => panic!("byte {byte} of a text"),
         });
         let at_its_place = if line.is_empty() { named.is_empty() } else { named.starts_with(line) };
         assert!(at_its_place, "{from} -> {to}: {message}: {named}");
@@ -121,7 +121,7 @@ fn files_that_are_no_meshes_say_what_they_may_be() {
     ] {
         let (message, place) = said(text);
         assert!(message.contains(phrase), "{message}");
-        assert_eq!(place, Some(Place::Line(1)));
+        assert_eq!(place, Some(FilePlace::Line(1)));
     }
     let by_ending = |name: &str, text: &str| parse(name.as_ref(), text.as_bytes(), 1.0).unwrap_err().to_string();
     for (name, text) in [("a.geo", "lc = 1;\n"), ("a.GEO", "h = 2;\nPoint(1) = {0, 0, 0};\n")] {
@@ -157,7 +157,7 @@ fn a_name_that_is_no_utf_8_is_not_called_damage() {
     let error = of_bytes(&latin).unwrap_err();
     assert!(error.to_string().contains("save names in UTF-8"), "{error}");
     assert!(!error.to_string().contains("damaged"), "{error}");
-    assert_eq!(error.place, Some(Place::Line(6)));
+    assert_eq!(error.place, Some(FilePlace::Line(6)));
 }
 
 /// A binary file names the byte.
@@ -170,7 +170,7 @@ fn places_in_binary_files_are_bytes() {
     spoilt[at + 32 + 8] = 3;
     let error = of_bytes(&spoilt).unwrap_err();
     assert!(error.to_string().contains("is a quadrangle"), "{error}");
-    assert_eq!(error.place, Some(Place::Byte(at + 32 + 12 + 8)));
+    assert_eq!(error.place, Some(FilePlace::Byte(at + 32 + 12 + 8)));
     let mut spoilt = whole;
     spoilt[20..24].copy_from_slice(&[7, 7, 7, 7]);
     let error = of_bytes(&spoilt).unwrap_err().to_string();

@@ -2,16 +2,18 @@
 
 use crate::gmsh::common::*;
 use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
-use percute_io::gmsh::{Format, GmshCause, MeshFile, Version, read, write};
+use percute_io::gmsh::{GmshCause, MeshFile, MeshFormat, Version, read, write};
 use percute_io::{FileCause, Overwrite};
 use percute_testkit::{random_rectangle, rotated};
 use proptest::prelude::*;
 
-fn formats() -> impl Iterator<Item = Format> {
-    [Version::V22, Version::V41].into_iter().flat_map(|version| [false, true].map(|binary| Format { version, binary }))
+fn formats() -> impl Iterator<Item = MeshFormat> {
+    [Version::V22, Version::V41]
+        .into_iter()
+        .flat_map(|version| [false, true].map(|binary| MeshFormat { version, binary }))
 }
 
-fn again(mesh: impl Into<Mesh>, format: Format) -> MeshFile {
+fn again(mesh: impl Into<Mesh>, format: MeshFormat) -> MeshFile {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.msh");
     write(&path, Overwrite::Refuse, &mesh.into(), format).unwrap();
@@ -73,14 +75,14 @@ fn no_file_is_lost() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.msh");
     let [one, two] = [1, 2].map(|n| Mesh::rectangle(1.0, 1.0, n, n).unwrap());
-    write(&path, Overwrite::Refuse, &one, Format::default()).unwrap();
-    let error = write(&path, Overwrite::Refuse, &two, Format::default()).unwrap_err();
+    write(&path, Overwrite::Refuse, &one, MeshFormat::default()).unwrap();
+    let error = write(&path, Overwrite::Refuse, &two, MeshFormat::default()).unwrap_err();
     assert!(matches!(error.cause, GmshCause::File(FileCause::Exists)), "{error}");
     assert_eq!(plane(read(&path, 1.0).unwrap()).mesh.element_count(), 2);
-    write(&path, Overwrite::Replace, &two, Format::default()).unwrap();
+    write(&path, Overwrite::Replace, &two, MeshFormat::default()).unwrap();
     assert_eq!(plane(read(&path, 1.0).unwrap()).mesh.element_count(), 8);
     let elsewhere = folder.path().join("nowhere/a.msh");
-    assert!(write(&elsewhere, Overwrite::Refuse, &one, Format::default()).is_err());
+    assert!(write(&elsewhere, Overwrite::Refuse, &one, MeshFormat::default()).is_err());
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "something was left behind");
 }
 
@@ -90,7 +92,7 @@ fn names_that_the_format_cannot_hold_are_refused() {
     for name in ["a \"b\"", "a\nb"] {
         let groups = FaceGroups::from([(name.to_string(), vec![[0]])]);
         let mesh = Mesh::new(vec![[0.0], [1.0]], &[[0, 1]], &groups, &ElementGroups::new()).unwrap();
-        let error = write(&folder.path().join("a.msh"), Overwrite::Refuse, &mesh, Format::default()).unwrap_err();
+        let error = write(&folder.path().join("a.msh"), Overwrite::Refuse, &mesh, MeshFormat::default()).unwrap_err();
         assert!(error.to_string().contains("no quotes and no line breaks"), "{error}");
     }
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);

@@ -54,9 +54,9 @@ const EXPECTED: &str = "expected by the verdict on the first mesh";
 #[must_use]
 pub fn convergence(verification: &Verification) -> Option<String> {
     let levels = &verification.levels;
-    let errors = with_values(ERRORS.iter().map(|quantity| Line::new(quantity, levels, 1.0).positive()));
+    let errors = with_values(ERRORS.iter().map(|quantity| LevelLine::new(quantity, levels, 1.0).positive()));
     let y = around(&errors).filter(|_| levels.len() > 1)?;
-    let (indices, band) = (INDICES.iter().map(|quantity| Line::new(quantity, levels, 1.0)), levels[0].expected);
+    let (indices, band) = (INDICES.iter().map(|quantity| LevelLine::new(quantity, levels, 1.0)), levels[0].expected);
     let (indices, contact) = (with_values(indices), over_the_finest(levels));
     let charts = [
         Chart {
@@ -96,13 +96,13 @@ pub fn convergence(verification: &Verification) -> Option<String> {
 }
 
 /// A quantity at the levels that have it: element size over that of the first mesh, and value.
-struct Line {
+struct LevelLine {
     class: String,
     name: String,
     points: Vec<(f64, f64)>,
 }
 
-impl Line {
+impl LevelLine {
     /// The values over `scale`.
     fn new(quantity: &Quantity, levels: &[Level], scale: f64) -> Self {
         let (class, name) = (quantity.class.to_string(), quantity.name.to_string());
@@ -126,7 +126,7 @@ fn points(levels: &[Level], of: impl Fn(&Level) -> Option<f64>, scale: f64) -> V
 /// linear scale a line marks 1.
 struct Chart {
     label: String,
-    lines: Vec<Line>,
+    lines: Vec<LevelLine>,
     y: Scale,
     rows: usize,
     band: Option<[f64; 2]>,
@@ -197,33 +197,33 @@ fn fraction(level: usize) -> String {
     if level == 0 { "1".to_string() } else { format!("1/{}", 1 << level) }
 }
 
-fn with_values(lines: impl Iterator<Item = Line>) -> Vec<Line> {
+fn with_values(lines: impl Iterator<Item = LevelLine>) -> Vec<LevelLine> {
     lines.filter(|line| !line.points.is_empty()).collect()
 }
 
 /// The lines of contact and of probes, each over its value on the finest mesh; those without one are left out.
-fn over_the_finest(levels: &[Level]) -> Vec<Line> {
+fn over_the_finest(levels: &[Level]) -> Vec<LevelLine> {
     let finest = |of: &dyn Fn(&Level) -> Option<f64>| levels.last().and_then(of).filter(|value| *value != 0.0);
-    let line = |quantity: &Quantity| Some(Line::new(quantity, levels, finest(&quantity.of)?));
+    let line = |quantity: &Quantity| Some(LevelLine::new(quantity, levels, finest(&quantity.of)?));
     let probe = |(at, probe): (usize, &ProbeValue)| {
         let of = |level: &Level| level.probes.get(at).map(|probe| probe.value);
         // Three colours are left; a fourth probe has the first of them, and a dashed line.
         let look = if (at / 3).is_multiple_of(2) { "solid" } else { "dashed" };
         let class = format!("s{} {look}", CONTACT.len() + at % 3);
-        Some(Line { class, name: probe.name.clone(), points: points(levels, of, finest(&of)?) })
+        Some(LevelLine { class, name: probe.name.clone(), points: points(levels, of, finest(&of)?) })
     };
     let probes = levels.last().map_or(&[][..], |level| &level.probes);
     with_values(CONTACT.iter().filter_map(line).chain(probes.iter().enumerate().filter_map(probe)))
 }
 
 /// A logarithmic scale with room on both sides of the errors; none without any.
-fn around(lines: &[Line]) -> Option<Scale> {
+fn around(lines: &[LevelLine]) -> Option<Scale> {
     let values = || lines.iter().flat_map(|line| &line.points).map(|point| point.1);
     Some(Scale::logarithmic(values().reduce(f64::min)? / AROUND, values().reduce(f64::max)? * AROUND))
 }
 
 /// A linear scale around the values of lines, others and 1.
-fn padded(lines: &[Line], others: &[f64]) -> Scale {
+fn padded(lines: &[LevelLine], others: &[f64]) -> Scale {
     let values = lines.iter().flat_map(|line| &line.points).map(|point| point.1).chain(others.iter().copied());
     let (low, high) = values.fold((1.0_f64, 1.0_f64), |(low, high), v| (low.min(v), high.max(v)));
     let room = PADDING * (high - low).max(0.05);

@@ -1,7 +1,7 @@
 //! The mesh of a plan by bisection of the first mesh.
 
 use crate::failure::Failure;
-use crate::plan::{Basis, Branch, Plan, Wanted, sizes};
+use crate::plan::{Basis, Branch, Plan, PlannedSizes, sizes};
 use percute_core::ids::ElementId;
 use percute_core::mesh::{Bisection, Mesh};
 use std::sync::Arc;
@@ -24,7 +24,7 @@ pub(super) fn bisected(
     (basis, plan): (&Basis, &Plan),
     most: usize,
 ) -> Result<(Arc<Mesh>, f64), Failure> {
-    let (wanted, mut bisection) = (Wanted::new(run, basis, plan), first.clone());
+    let (wanted, mut bisection) = (PlannedSizes::new(run, basis, plan), first.clone());
     let mut predicted = f64::INFINITY;
     for tolerance in TOLERANCES {
         for _ in 0..ROUNDS {
@@ -44,7 +44,7 @@ pub(super) fn bisected(
 }
 
 /// The mean error that is expected on a mesh, over that of the run.
-pub(super) fn expected(wanted: &Wanted<'_>, mesh: &Mesh, basis: &Basis, plan: &Plan) -> f64 {
+pub(super) fn expected(wanted: &PlannedSizes<'_>, mesh: &Mesh, basis: &Basis, plan: &Plan) -> f64 {
     let count = basis.size().len();
     let (mut volume, mut parts, mut least) = (vec![0.0; count], vec![0.0; count], vec![f64::INFINITY; count]);
     let size = sizes(mesh);

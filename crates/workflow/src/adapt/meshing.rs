@@ -3,7 +3,7 @@
 use super::bisect::{bisected, expected};
 use super::gmsh::{self, Geometry};
 use crate::failure::Failure;
-use crate::plan::{Basis, Branch, LARGEST, Plan, Wanted, sizes};
+use crate::plan::{Basis, Branch, LARGEST, Plan, PlannedSizes, sizes};
 use percute_core::ids::ElementId;
 use percute_core::mesh::{Bisection, Locator, Mesh};
 use percute_core::problem::AnyProblem;
@@ -65,7 +65,7 @@ impl Meshing {
             return bisected(&self.first, run, (basis, plan), most);
         };
         let next = gmsh::meshed(self.first.mesh(), geometry, run, (basis, plan), most)?;
-        let expected = expected(&Wanted::new(run, basis, plan), &next, basis, plan);
+        let expected = expected(&PlannedSizes::new(run, basis, plan), &next, basis, plan);
         Ok((next.into(), expected))
     }
 

@@ -22,12 +22,12 @@ enum Steps<'a> {
 /// The table, read but not yet compared with the critical step.
 pub(super) struct Wanted<'a> {
     end: Option<(f64, Value<'a>)>,
-    rebound: Option<Rebound<'a>>,
+    rebound: Option<UntilRebound<'a>>,
     steps: Steps<'a>,
 }
 
 /// `end = "rebound"`: its place, the latest end, and how long the run goes on after contact (s).
-struct Rebound<'a> {
+struct UntilRebound<'a> {
     end: Value<'a>,
     longest: f64,
     after: Option<f64>,
@@ -69,7 +69,7 @@ pub(super) fn read<'a>(root: &Table<'a>) -> Result<Wanted<'a>, CaseError> {
 }
 
 /// Reads `end = "rebound"`, and the keys that need it.
-fn rebound<'a>(table: &Table<'a>, steps: &Steps<'_>) -> Result<Option<Rebound<'a>>, CaseError> {
+fn rebound<'a>(table: &Table<'a>, steps: &Steps<'_>) -> Result<Option<UntilRebound<'a>>, CaseError> {
     let Some(end) = table.get("end").filter(|end| end.text("").is_ok()) else {
         let surplus = ["longest", "after"].iter().find_map(|key| table.get(key));
         let refuse = |value: Value<'_>| Err(value.error("needs end = \"rebound\": give this, or leave the key out"));
@@ -83,7 +83,7 @@ fn rebound<'a>(table: &Table<'a>, steps: &Steps<'_>) -> Result<Option<Rebound<'a
     }
     let at = table.get("longest").ok_or_else(|| end.error("needs `longest`: the latest end in s"))?;
     let after = table.get("after").map(|after| positive(&after)).transpose()?;
-    Ok(Some(Rebound { longest: positive(&at)?, end, after }))
+    Ok(Some(UntilRebound { longest: positive(&at)?, end, after }))
 }
 
 fn positive(value: &Value<'_>) -> Result<f64, CaseError> {
@@ -94,7 +94,7 @@ fn positive(value: &Value<'_>) -> Result<f64, CaseError> {
 impl Wanted<'_> {
     /// The end with the rebound, if the run ends so; it needs a plane.
     pub(super) fn until(&self, problem: &AnyProblem, critical: f64) -> Result<Option<Until>, CaseError> {
-        let Some(Rebound { end, longest, after }) = &self.rebound else { return Ok(None) };
+        let Some(UntilRebound { end, longest, after }) = &self.rebound else { return Ok(None) };
         if let Some(told) = no_rebound(problem) {
             return Err(end.error(format!("= {told}")));
         }

@@ -6,13 +6,13 @@ use crate::choice::StepChoice;
 use crate::failure::Failure;
 use crate::outputs::{self, OutputFile};
 use crate::run;
-use crate::through::Through;
+use crate::step_filter::StepFilter;
 use percute_core::history::{SinkError, Step, StepSource};
 use percute_core::observer::{Observer, Progress};
 use percute_core::problem::AnyProblem;
-use percute_io::export::{Contents, Format, Writer};
+use percute_io::export::{Contents, ExportWriter, Format};
 use percute_io::{FileError, Overwrite};
-use quantity::{Rows, quantities};
+use quantity::{ExportRows, quantities};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -66,7 +66,7 @@ pub struct Export<'a> {
     source: &'a dyn StepSource,
     path: &'a Path,
     format: Format,
-    rows: Rows<'a>,
+    rows: ExportRows<'a>,
     instants: Vec<(usize, f64)>,
     /// Whether velocities and accelerations follow from the scheme.
     by_scheme: bool,
@@ -111,7 +111,7 @@ impl<'a> Export<'a> {
             source,
             path,
             format,
-            rows: Rows { problem, quantities, error },
+            rows: ExportRows { problem, quantities, error },
             instants,
             by_scheme: request.lacks.is_none(),
         })
@@ -161,11 +161,11 @@ impl<'a> Export<'a> {
     pub fn write(&self, overwrite: Overwrite, observer: &mut dyn Observer) -> Result<Option<Vec<PathBuf>>, Failure> {
         let (fields, rows) = (self.rows.fields(), &self.rows);
         let contents = Contents { mesh: self.problem.mesh(), fields: &fields, instants: &self.instants };
-        let mut writer = Writer::new(self.path, self.format, overwrite, contents)?;
+        let mut writer = ExportWriter::new(self.path, self.format, overwrite, contents)?;
         let steps: Vec<usize> = self.instants.iter().map(|(step, _)| *step).collect();
         let last = steps.last().copied().unwrap_or(0);
         let observer = RefCell::new(observer);
-        let source = Through::new(self.source, |step, take| {
+        let source = StepFilter::new(self.source, |step, take| {
             if step.index > last {
                 return Err(Done.into());
             }

@@ -7,11 +7,11 @@ use percute_core::element_state::ElementState;
 use percute_core::history::Step;
 use percute_core::ids::ElementId;
 use percute_core::problem::AnyProblem;
-use percute_io::export::{ExportField, Place, in_space};
+use percute_io::export::{ExportField, FieldPlace, in_space};
 
 /// A quantity of an export, beside the displacement, which each export has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
+pub(super) enum ExportQuantity {
     Displacement,
     Velocity,
     Acceleration,
@@ -22,7 +22,7 @@ pub(super) enum Quantity {
     Error,
 }
 
-impl Quantity {
+impl ExportQuantity {
     /// In the order of a file.
     const ALL: [Self; 8] = [
         Self::Displacement,
@@ -37,28 +37,28 @@ impl Quantity {
 
     fn field(self) -> ExportField {
         let (name, unit, components, place) = match self {
-            Self::Displacement => ("displacement", "m", 3, Place::Nodes),
-            Self::Velocity => ("velocity", "m/s", 3, Place::Nodes),
-            Self::Acceleration => ("acceleration", "m/s2", 3, Place::Nodes),
-            Self::Reaction => ("reaction", "N", 3, Place::Nodes),
-            Self::Stress => ("stress", "Pa", 9, Place::Elements),
-            Self::VonMises => ("von_mises", "Pa", 1, Place::Elements),
-            Self::Pressure => ("pressure", "Pa", 1, Place::Elements),
-            Self::Error => ("error", "J^(1/2)", 1, Place::Elements),
+            Self::Displacement => ("displacement", "m", 3, FieldPlace::Nodes),
+            Self::Velocity => ("velocity", "m/s", 3, FieldPlace::Nodes),
+            Self::Acceleration => ("acceleration", "m/s2", 3, FieldPlace::Nodes),
+            Self::Reaction => ("reaction", "N", 3, FieldPlace::Nodes),
+            Self::Stress => ("stress", "Pa", 9, FieldPlace::Elements),
+            Self::VonMises => ("von_mises", "Pa", 1, FieldPlace::Elements),
+            Self::Pressure => ("pressure", "Pa", 1, FieldPlace::Elements),
+            Self::Error => ("error", "J^(1/2)", 1, FieldPlace::Elements),
         };
         ExportField { name, unit, components, place }
     }
 }
 
 /// The rows of the fields of an export.
-pub(super) struct Rows<'a> {
+pub(super) struct ExportRows<'a> {
     pub(super) problem: &'a AnyProblem,
-    pub(super) quantities: Vec<Quantity>,
+    pub(super) quantities: Vec<ExportQuantity>,
     /// e_E of each element (J^½).
     pub(super) error: Vec<f64>,
 }
 
-impl Rows<'_> {
+impl ExportRows<'_> {
     pub(super) fn fields(&self) -> Vec<ExportField> {
         let units = self.problem.units();
         let fields = self.quantities.iter().map(|quantity| quantity.field());
@@ -67,27 +67,29 @@ impl Rows<'_> {
 
     /// Whether steps must have their velocity and acceleration.
     pub(super) fn need_motion(&self) -> bool {
-        self.quantities.iter().any(|q| matches!(q, Quantity::Velocity | Quantity::Acceleration))
+        self.quantities.iter().any(|q| matches!(q, ExportQuantity::Velocity | ExportQuantity::Acceleration))
     }
 
     /// The rows of all fields at a step.
     pub(super) fn at(&self, step: &Step<'_>) -> Vec<Vec<f64>> {
         let d = self.problem.dimension();
-        let of_elements = |q: &Quantity| matches!(q, Quantity::Stress | Quantity::VonMises | Quantity::Pressure);
+        let of_elements = |q: &ExportQuantity| {
+            matches!(q, ExportQuantity::Stress | ExportQuantity::VonMises | ExportQuantity::Pressure)
+        };
         let elements = (0..self.problem.mesh().element_count()).map(ElementId::new);
         let states: Vec<ElementState> = match self.quantities.iter().any(of_elements) {
             true => elements.map(|e| ElementState::new(self.problem, e, step.displacement)).collect(),
             false => Vec::new(),
         };
-        let rows = |quantity: &Quantity| match quantity {
-            Quantity::Displacement => in_space(step.displacement, d),
-            Quantity::Velocity => in_space(step.velocity.unwrap_or_default(), d),
-            Quantity::Acceleration => in_space(step.acceleration.unwrap_or_default(), d),
-            Quantity::Reaction => self.reaction(step),
-            Quantity::Stress => states.iter().flat_map(tensor).collect(),
-            Quantity::VonMises => states.iter().map(ElementState::von_mises).collect(),
-            Quantity::Pressure => states.iter().map(ElementState::pressure).collect(),
-            Quantity::Error => self.error.clone(),
+        let rows = |quantity: &ExportQuantity| match quantity {
+            ExportQuantity::Displacement => in_space(step.displacement, d),
+            ExportQuantity::Velocity => in_space(step.velocity.unwrap_or_default(), d),
+            ExportQuantity::Acceleration => in_space(step.acceleration.unwrap_or_default(), d),
+            ExportQuantity::Reaction => self.reaction(step),
+            ExportQuantity::Stress => states.iter().flat_map(tensor).collect(),
+            ExportQuantity::VonMises => states.iter().map(ElementState::von_mises).collect(),
+            ExportQuantity::Pressure => states.iter().map(ElementState::pressure).collect(),
+            ExportQuantity::Error => self.error.clone(),
         };
         self.quantities.iter().map(rows).collect()
     }
@@ -102,40 +104,40 @@ impl Rows<'_> {
     }
 }
 
-/// The quantities of a request, in the order of [`Quantity::ALL`].
-pub(super) fn quantities(request: &Request) -> Result<Vec<Quantity>, Failure> {
+/// The quantities of a request, in the order of [`ExportQuantity::ALL`].
+pub(super) fn quantities(request: &Request) -> Result<Vec<ExportQuantity>, Failure> {
     let (estimated, fields) = (request.error.is_some(), request.fields.as_deref());
-    let wanted = |quantity: &Quantity| match fields {
+    let wanted = |quantity: &ExportQuantity| match fields {
         Some(names) => names.iter().any(|name| name == quantity.field().name),
-        None => !matches!(quantity, Quantity::Acceleration | Quantity::Pressure | Quantity::Error),
+        None => !matches!(quantity, ExportQuantity::Acceleration | ExportQuantity::Pressure | ExportQuantity::Error),
     };
-    let known = Quantity::ALL.map(|quantity| quantity.field().name);
+    let known = ExportQuantity::ALL.map(|quantity| quantity.field().name);
     let unknown = fields.into_iter().flatten().find(|name| !known.contains(&name.as_str()));
     if let Some(name) = unknown {
         let of = request.names.fields;
         let told = format!("{of}: there is no field {name:?}; choose from {}{}", known.join(", "), hint(name, known));
         return Err(Failure::Argument(told));
     }
-    let lacks = |quantity: &Quantity| request.lacks.iter().flatten().any(|name| *name == quantity.field().name);
-    if let Some(quantity) = Quantity::ALL.iter().find(|q| fields.is_some() && wanted(q) && lacks(q)) {
+    let lacks = |quantity: &ExportQuantity| request.lacks.iter().flatten().any(|name| *name == quantity.field().name);
+    if let Some(quantity) = ExportQuantity::ALL.iter().find(|q| fields.is_some() && wanted(q) && lacks(q)) {
         let (of, name) = (request.names.fields, quantity.field().name);
         let told = format!(
             "{of}: {name:?} is not in this history, which keeps a part of its run; run again with it among `fields`"
         );
         return Err(Failure::Argument(told));
     }
-    let chosen = |quantity: &Quantity| match quantity {
-        Quantity::Displacement => true,
-        Quantity::Error => estimated,
+    let chosen = |quantity: &ExportQuantity| match quantity {
+        ExportQuantity::Displacement => true,
+        ExportQuantity::Error => estimated,
         other => wanted(other) && !lacks(other),
     };
-    if wanted(&Quantity::Error) && !estimated {
+    if wanted(&ExportQuantity::Error) && !estimated {
         return Err(Failure::Argument(format!(
             "{}: \"error\" needs an estimate of this history; name one",
             request.names.fields
         )));
     }
-    Ok(Quantity::ALL.into_iter().filter(chosen).collect())
+    Ok(ExportQuantity::ALL.into_iter().filter(chosen).collect())
 }
 
 /// σ in three dimensions (Pa), row after row.

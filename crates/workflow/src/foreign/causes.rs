@@ -1,10 +1,10 @@
 //! The likely cause of an inconsistency.
 
+use super::attempt::FALL;
 use super::complete::Derived;
+use super::diagnosis::Diagnosis;
 use super::limits::{BALANCE, DRIFT, Excess, PLACE, THROUGH_PLANES, by_a_penalty};
 use super::nearness::NEAR;
-use super::suspect::Suspect;
-use super::tried::FALL;
 use super::{of_balance, penalty, planes, skipped, systems, units};
 use crate::message::{percent, times, trimmed, vector};
 use percute_core::history::SinkError;
@@ -12,7 +12,7 @@ use percute_core::history::SinkError;
 /// The cause of a history that runs backwards.
 pub(crate) const REVERSED: &str = "the order in time is reversed: the last instants fit the initial state";
 
-impl Suspect<'_> {
+impl Diagnosis<'_> {
     /// The likely cause, if the numbers single one out.
     pub(super) fn cause(&self, exceeded: &[Excess]) -> Result<Option<String>, SinkError> {
         let over = |name: &str| exceeded.iter().any(|excess| excess.name == name);

@@ -39,7 +39,7 @@ impl PlaneSums {
 
 /// Contact of all nodes and instants.
 #[derive(Debug)]
-pub(super) struct Contact<'p> {
+pub(super) struct ContactCheck<'p> {
     problem: &'p AnyProblem,
     nearness: Nearness,
     /// Of each plane.
@@ -64,7 +64,7 @@ pub(super) struct Contact<'p> {
     changes: [usize; 2],
 }
 
-impl<'p> Contact<'p> {
+impl<'p> ContactCheck<'p> {
     pub(super) fn new(problem: &'p AnyProblem) -> Self {
         Self {
             problem,

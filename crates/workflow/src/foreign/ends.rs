@@ -1,9 +1,9 @@
 //! The start of a history against the initial state of its problem, and its end against the same.
 
+use super::attempt::FALL;
 use super::balance::{Balance, Motion, dot, norm, rate};
 use super::figures::Consistency;
 use super::limits::PLACE;
-use super::tried::FALL;
 use super::window::{Window, rows_of, vectors_of};
 use super::{ratio, widest};
 use crate::message::{trimmed, vector};

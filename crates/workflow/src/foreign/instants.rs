@@ -1,8 +1,8 @@
 //! Instants that are missing or doubled: the residual is at two or three instants alone.
 
+use super::attempt::Attempt;
+use super::diagnosis::Diagnosis;
 use super::holding::{MOST, holding};
-use super::suspect::Suspect;
-use super::tried::Tried;
 use crate::message::{times, trimmed};
 use percute_core::history::{SinkError, Step, StepSource};
 use percute_core::time::TimeGrid;
@@ -48,20 +48,20 @@ struct Jump {
 }
 
 /// An instant that is missing or doubled where the residual is.
-pub(super) fn tried(suspect: &Suspect<'_>) -> Result<Option<Tried>, SinkError> {
-    let (at, _) = holding(&suspect.evidence.residual.by_instant, MOST);
+pub(super) fn attempt(diagnosis: &Diagnosis<'_>) -> Result<Option<Attempt>, SinkError> {
+    let (at, _) = holding(&diagnosis.evidence.residual.by_instant, MOST);
     let [Some(&first), Some(&last)] = [at.first(), at.last()] else { return Ok(None) };
     if last + 1 > first + FEW {
         return Ok(None);
     }
-    let Some(Jump { step, way }) = jump(suspect.source, first, last)? else { return Ok(None) };
-    let instants = suspect.source.times().instants();
+    let Some(Jump { step, way }) = jump(diagnosis.source, first, last)? else { return Ok(None) };
+    let instants = diagnosis.source.times().instants();
     let told = |n: usize| format!("instant {n} ({} s)", trimmed(instants[n], 5));
     let (whole, place) = (way.round(), format!("between {} and {}", told(step), told(step + 1)));
     if way.abs() < REST {
         let text =
             format!("{} repeats the one before it: leave it out of all arrays but the last of `time`", told(step + 1));
-        return retimed(suspect, instants[..instants.len() - 1].to_vec(), Some(step + 1), text).map(Some);
+        return retimed(diagnosis, instants[..instants.len() - 1].to_vec(), Some(step + 1), text).map(Some);
     }
     if whole >= 2.0 && (way - whole).abs() < 0.5 {
         let text = format!(
@@ -70,19 +70,19 @@ pub(super) fn tried(suspect: &Suspect<'_>) -> Result<Option<Tried>, SinkError> {
         );
         let longer = (whole - 1.0) * (instants[step + 1] - instants[step]);
         let later = instants.iter().enumerate().map(|(n, t)| if n > step { t + longer } else { *t });
-        return retimed(suspect, later.collect(), None, text).map(Some);
+        return retimed(diagnosis, later.collect(), None, text).map(Some);
     }
     Ok(None)
 }
 
 fn retimed(
-    suspect: &Suspect<'_>,
+    diagnosis: &Diagnosis<'_>,
     instants: Vec<f64>,
     left_out: Option<usize>,
     text: String,
-) -> Result<Tried, SinkError> {
+) -> Result<Attempt, SinkError> {
     let times = TimeGrid::from_instants(instants)?;
-    suspect.tried(&Retimed { source: suspect.source, times, left_out }, 0, text)
+    diagnosis.attempt(&Retimed { source: diagnosis.source, times, left_out }, 0, text)
 }
 
 /// The step whose motion differs most from that of the steps beside it, among those that change the balance at some

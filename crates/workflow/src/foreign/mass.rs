@@ -1,9 +1,9 @@
 //! A consistent mass matrix in the place of the lumped one.
 
+use super::attempt::Attempt;
 use super::balance::Balance;
+use super::diagnosis::Diagnosis;
 use super::measure::nodal;
-use super::suspect::Suspect;
-use super::tried::Tried;
 use super::window::windows;
 use percute_core::border::Vector;
 use percute_core::history::SinkError;
@@ -12,15 +12,15 @@ use percute_core::material::Law;
 use percute_core::problem::AnyProblem;
 
 /// The inertia of the consistent mass matrix.
-pub(super) fn consistent(suspect: &Suspect<'_>) -> Result<Tried, SinkError> {
-    let (problem, evidence) = (suspect.problem, suspect.evidence);
-    let balance = Balance::new(problem, suspect.source.times());
+pub(super) fn consistent(diagnosis: &Diagnosis<'_>) -> Result<Attempt, SinkError> {
+    let (problem, evidence) = (diagnosis.problem, diagnosis.evidence);
+    let balance = Balance::new(problem, diagnosis.source.times());
     let [mut lumped, mut other] = [evidence.residual.clone(), evidence.residual.emptied()];
     if evidence.silent() {
         lumped.leave_the_surface_open();
         other.leave_the_surface_open();
     }
-    windows(suspect.source, problem.dimension(), &mut |window| {
+    windows(diagnosis.source, problem.dimension(), &mut |window| {
         let now = window.now;
         let derived = if now.index > 0 { balance.motion(window).map(|motion| motion.acceleration) } else { None };
         let Some(used) = now.acceleration.as_ref().or(derived.as_ref()) else { return Ok(()) };
@@ -33,7 +33,7 @@ pub(super) fn consistent(suspect: &Suspect<'_>) -> Result<Tried, SinkError> {
         "the accelerations fit a consistent mass matrix, but percute lumps the mass, each element in equal shares \
                 at its nodes: run the other program with a lumped mass"
             .to_string();
-    Ok(Tried { text, before: lumped.norm([1.0; 4]), left: other.norm([1.0; 4]) })
+    Ok(Attempt { text, before: lumped.norm([1.0; 4]), left: other.norm([1.0; 4]) })
 }
 
 /// M_c a (N) of linear elements: m/(N(N+1)) times the sum over the nodes, with that of the node itself twice. It is 0

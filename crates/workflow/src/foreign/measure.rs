@@ -1,14 +1,14 @@
 //! How consistent the steps of a history are: one pass over them.
 
+use super::attempt::FALL;
 use super::balance::{Balance, Motion, norm};
 use super::complete::Derived;
 use super::conditions::Conditions;
-use super::contact::Contact;
+use super::contact::ContactCheck;
 use super::ends::Ends;
 use super::figures::Consistency;
 use super::long_steps::at_long_steps;
 use super::residual::Residual;
-use super::tried::FALL;
 use super::velocities::Rates;
 use super::window::{Window, windows};
 use super::{take_in, widest};
@@ -24,7 +24,7 @@ const FLIGHT: f64 = 1e-2;
 #[derive(Debug)]
 pub(super) struct Evidence<'p> {
     pub(super) residual: Residual,
-    pub(super) contact: Contact<'p>,
+    pub(super) contact: ContactCheck<'p>,
     pub(super) ends: Ends,
     pub(super) rates: Rates,
     /// Whether velocities and accelerations are given.
@@ -65,7 +65,7 @@ pub(super) fn measure<'p>(
         found: Consistency::default(),
         evidence: Evidence {
             residual,
-            contact: Contact::new(problem),
+            contact: ContactCheck::new(problem),
             ends: Ends::new(),
             rates: Rates::default(),
             given: [false; 2],

@@ -1,5 +1,6 @@
 //! Histories of other programs: what they lack is derived, and their consistency is checked.
 
+mod attempt;
 mod axes;
 mod balance;
 mod causes;
@@ -7,6 +8,7 @@ mod complete;
 mod conditions;
 mod contact;
 mod derive;
+mod diagnosis;
 mod ends;
 mod figures;
 mod gaps;
@@ -15,9 +17,9 @@ mod instants;
 mod interface_balance;
 mod limits;
 mod long_steps;
-mod lost;
 mod mass;
 mod measure;
+mod missing_instants;
 mod moduli;
 mod nearness;
 mod of_balance;
@@ -32,10 +34,8 @@ mod samples;
 mod skipped;
 mod start;
 mod surface;
-mod suspect;
 mod systems;
 mod travel;
-mod tried;
 mod units;
 mod velocities;
 mod window;
@@ -47,8 +47,9 @@ pub use samples::Samples;
 use samples::{lacking, too_far};
 pub(crate) use start::started;
 
-use crate::through::Through;
+use crate::step_filter::StepFilter;
 pub(crate) use causes::REVERSED;
+use diagnosis::Diagnosis;
 pub(crate) use ends::runs_backwards;
 use limits::{BALANCE, Excess, exceeded, through_planes};
 pub(crate) use limits::{by_a_penalty, is_off_contact, off_contact};
@@ -58,7 +59,6 @@ use percute_core::history::{SinkError, StateSink, StepSource};
 use percute_core::problem::AnyProblem;
 use std::cell::RefCell;
 use std::path::PathBuf;
-use suspect::Suspect;
 
 /// What is known of the origin of a history of another program.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -106,7 +106,7 @@ pub struct Contradiction {
 }
 
 /// What a check found.
-pub(crate) struct Found {
+pub(crate) struct CheckResult {
     pub(crate) consistency: Consistency,
     pub(crate) samples: Option<Samples>,
     /// That contact forces fit another step better, if they do.
@@ -145,8 +145,8 @@ pub(crate) fn first_look(
     if let Some((figure, way_out)) = too_far(source.times(), critical) {
         let (found, evidence) = measure(problem, source, &derived, 0)?;
         if evidence.given == [true; 2] {
-            let suspect = Suspect { problem, source, derived: &derived, found: &found, evidence: &evidence };
-            let cause = if found.balance > BALANCE { suspect.in_other_units()? } else { None };
+            let diagnosis = Diagnosis { problem, source, derived: &derived, found: &found, evidence: &evidence };
+            let cause = if found.balance > BALANCE { diagnosis.in_other_units()? } else { None };
             let cause = Some(cause.unwrap_or(way_out));
             return Err(Refusal::Inconsistent(Contradiction { figure, cause, can_be_accepted: false }));
         }
@@ -162,9 +162,9 @@ pub(crate) fn check(
     critical: f64,
     derived: &[Derived],
     accept: bool,
-) -> Result<Found, Refusal> {
+) -> Result<CheckResult, Refusal> {
     let energies = RefCell::new((Evaluation::new(problem, source.times()), Balancing::new(problem, source.times())));
-    let watched = Through::new(source, |step, take| {
+    let watched = StepFilter::new(source, |step, take| {
         let (evaluation, balancing) = &mut *energies.borrow_mut();
         balancing.accept(&evaluation.advance(step)?)?;
         take(step)
@@ -176,34 +176,34 @@ pub(crate) fn check(
     let touches = evidence.contact.forced.contains(&true);
     let lacking = lacking(source, &found, (evidence.given, [touches, evidence.contact.slides()]), critical);
     exceeded.extend(through_planes(&found).filter(|_| !touches));
-    let suspect = Suspect { problem, source, derived, found: &found, evidence: &evidence };
-    exceeded.extend(penalty::excess(&suspect).filter(|_| samples.is_none()));
-    let contradiction = contradiction(&suspect, lacking, &exceeded)?;
+    let diagnosis = Diagnosis { problem, source, derived, found: &found, evidence: &evidence };
+    exceeded.extend(penalty::excess(&diagnosis).filter(|_| samples.is_none()));
+    let contradiction = contradiction(&diagnosis, lacking, &exceeded)?;
     if let Some(contradiction) = contradiction.clone().filter(|_| !accept) {
         return Err(Refusal::Inconsistent(contradiction));
     }
     let complete = samples.is_none() && contradiction.is_none();
-    let shifted = if complete { of_balance::shifted(&suspect)? } else { None };
-    Ok(Found { consistency: found, samples, shifted, contradiction })
+    let shifted = if complete { of_balance::shifted(&diagnosis)? } else { None };
+    Ok(CheckResult { consistency: found, samples, shifted, contradiction })
 }
 
 /// The figure over its limit that tells most, with its likely cause. What is `lacking` comes with a way out.
 fn contradiction(
-    suspect: &Suspect<'_>,
+    diagnosis: &Diagnosis<'_>,
     lacking: Option<(String, String)>,
     exceeded: &[Excess],
 ) -> Result<Option<Contradiction>, SinkError> {
     let balance = exceeded.iter().find(|excess| excess.name == "balance");
     let can_be_accepted = exceeded.iter().all(|excess| excess.name != "initial_displacement");
     if let Some((figure, way_out)) = lacking {
-        let changed = balance.map(|_| suspect.in_other_units()).transpose()?.flatten();
+        let changed = balance.map(|_| diagnosis.in_other_units()).transpose()?.flatten();
         let figure = balance.filter(|_| changed.is_some()).map_or(figure, |excess| excess.what.clone());
         return Ok(Some(Contradiction { figure, cause: changed.or(Some(way_out)), can_be_accepted }));
     }
     let Some(first) = exceeded.first() else { return Ok(None) };
-    let cause = suspect.cause(exceeded)?;
-    let place = if cause.is_none() && balance.is_some() { of_balance::place(suspect) } else { String::new() };
-    let cause = cause.or_else(|| of_balance::hint(suspect).filter(|_| balance.is_some()));
+    let cause = diagnosis.cause(exceeded)?;
+    let place = if cause.is_none() && balance.is_some() { of_balance::place(diagnosis) } else { String::new() };
+    let cause = cause.or_else(|| of_balance::hint(diagnosis).filter(|_| balance.is_some()));
     let figure = format!("{}{place}", balance.unwrap_or(first).what);
     Ok(Some(Contradiction { figure, cause, can_be_accepted }))
 }

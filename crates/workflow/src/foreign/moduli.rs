@@ -1,10 +1,10 @@
 //! Poisson's ratio and the hypothesis of a plane body, from the parts of the stiffness.
 
+use super::attempt::Attempt;
 use super::balance::Balance;
+use super::diagnosis::Diagnosis;
 use super::limits::BALANCE;
 use super::residual::{fit, norm};
-use super::suspect::Suspect;
-use super::tried::Tried;
 use super::window::{vectors_of, windows};
 use crate::message::trimmed;
 use percute_core::dynamics::AnyStiffness;
@@ -18,10 +18,10 @@ const OF_SHEAR: usize = 2;
 type Products = [[f64; 4]; 4];
 
 /// Other moduli of a plane body of one material.
-pub(super) fn tried(suspect: &Suspect<'_>) -> Result<Vec<Tried>, SinkError> {
-    let [material] = suspect.problem.materials() else { return Ok(Vec::new()) };
-    let Some(sheared) = sheared(suspect.problem, material) else { return Ok(Vec::new()) };
-    let products = products(suspect, &sheared)?;
+pub(super) fn attempt(diagnosis: &Diagnosis<'_>) -> Result<Vec<Attempt>, SinkError> {
+    let [material] = diagnosis.problem.materials() else { return Ok(Vec::new()) };
+    let Some(sheared) = sheared(diagnosis.problem, material) else { return Ok(Vec::new()) };
+    let products = products(diagnosis, &sheared)?;
     let before = norm(&products, [1.0; 4]);
     let other = other_hypothesis(material);
     let mut told = Vec::new();
@@ -34,7 +34,7 @@ pub(super) fn tried(suspect: &Suspect<'_>) -> Result<Vec<Tried>, SinkError> {
     {
         told.push((text, factors));
     }
-    Ok(told.into_iter().map(|(text, factors)| Tried { text, before, left: norm(&products, factors) }).collect())
+    Ok(told.into_iter().map(|(text, factors)| Attempt { text, before, left: norm(&products, factors) }).collect())
 }
 
 /// The body with the same shear modulus and without λ: plane stress with ν = 0. None for a bar.
@@ -81,12 +81,12 @@ fn fitted(material: &Elastic, factors: [f64; 4]) -> Option<String> {
 }
 
 /// Scalar products of the terms with their signs (N²), where they do not follow from the balance.
-fn products(suspect: &Suspect<'_>, sheared: &AnyProblem) -> Result<Products, SinkError> {
-    let balance = Balance::new(suspect.problem, suspect.source.times());
+fn products(diagnosis: &Diagnosis<'_>, sheared: &AnyProblem) -> Result<Products, SinkError> {
+    let balance = Balance::new(diagnosis.problem, diagnosis.source.times());
     let stiffness = AnyStiffness::new(sheared);
-    let (problem, residual) = (suspect.problem, &suspect.evidence.residual);
+    let (problem, residual) = (diagnosis.problem, &diagnosis.evidence.residual);
     let mut products = Products::default();
-    windows(suspect.source, suspect.problem.dimension(), &mut |window| {
+    windows(diagnosis.source, diagnosis.problem.dimension(), &mut |window| {
         let now = window.now;
         let derived = if now.index > 0 { balance.motion(window).map(|motion| motion.acceleration) } else { None };
         let Some(used) = now.acceleration.as_ref().or(derived.as_ref()) else { return Ok(()) };
@@ -98,7 +98,7 @@ fn products(suspect: &Suspect<'_>, sheared: &AnyProblem) -> Result<Products, Sin
         for (contact, reaction) in problem.contact_nodes().iter().zip(&now.reaction) {
             (0..3).for_each(|c| force[contact.node.index()][c] += reaction[c]);
         }
-        for p in suspect.problem.prescribed() {
+        for p in diagnosis.problem.prescribed() {
             (shear[p.node.index()][p.component], force[p.node.index()][p.component]) = (0.0, 0.0);
         }
         for node in (0..force.len()).filter(|&node| !residual.is_open(node)) {

@@ -1,9 +1,9 @@
 //! Displacements that are tried in other orders and from other origins.
 
+use super::attempt::Attempt;
+use super::diagnosis::Diagnosis;
 use super::holding::descending;
 use super::limits::PLACE;
-use super::suspect::Suspect;
-use super::tried::Tried;
 use super::window::rows_of;
 use percute_core::history::SinkError;
 
@@ -11,31 +11,33 @@ use percute_core::history::SinkError;
 const WORST: usize = 4;
 
 /// Displacements that are changed at all nodes in the same way.
-pub(super) fn places(suspect: &Suspect<'_>) -> Result<Vec<Tried>, SinkError> {
-    let (ends, size) = (&suspect.evidence.ends, suspect.problem.mesh().size());
-    let d = suspect.problem.dimension();
+pub(super) fn places(diagnosis: &Diagnosis<'_>) -> Result<Vec<Attempt>, SinkError> {
+    let (ends, size) = (&diagnosis.evidence.ends, diagnosis.problem.mesh().size());
+    let d = diagnosis.problem.dimension();
     let less = |field: &[f64], rest: &[f64]| -> Vec<f64> { field.iter().zip(rest).map(|(u, x)| u - x).collect() };
-    let mut tried = Vec::new();
+    let mut attempts = Vec::new();
     if ends.places <= PLACE {
         let text = "the displacements are places: subtract those of the nodes, displacement - mesh.points".to_string();
-        tried.push(suspect.tried_inside(text, |u| less(u, suspect.problem.mesh().points()))?);
-    } else if suspect.found.initial_displacement > PLACE && size.is_finite() {
+        attempts.push(diagnosis.attempt_inside(text, |u| less(u, diagnosis.problem.mesh().points()))?);
+    } else if diagnosis.found.initial_displacement > PLACE && size.is_finite() {
         let text =
             "all displacements have another origin: add the same field to all, so that u_0 is `initial_displacement`";
-        tried.push(suspect.tried_inside(text.to_string(), |u| less(u, &rows_of(&ends.offset, d)))?);
+        attempts.push(diagnosis.attempt_inside(text.to_string(), |u| less(u, &rows_of(&ends.offset, d)))?);
     }
     if d == 2 {
         let text = "the components of the displacements are exchanged: y comes before x".to_string();
-        tried.push(suspect.tried_inside(text, |u| u.chunks_exact(d).flat_map(|u| u.iter().rev()).copied().collect())?);
+        attempts.push(
+            diagnosis.attempt_inside(text, |u| u.chunks_exact(d).flat_map(|u| u.iter().rev()).copied().collect())?,
+        );
     }
-    Ok(tried)
+    Ok(attempts)
 }
 
 /// Other orders of the nodes: all reversed, counted from another number, or two of those with the largest residuals
 /// exchanged.
-pub(super) fn orders(suspect: &Suspect<'_>) -> Result<Vec<Tried>, SinkError> {
-    let (count, d) = (suspect.evidence.residual.by_node.len(), suspect.problem.dimension());
-    let first: Vec<usize> = descending(&suspect.evidence.residual.by_node).into_iter().take(WORST).collect();
+pub(super) fn orders(diagnosis: &Diagnosis<'_>) -> Result<Vec<Attempt>, SinkError> {
+    let (count, d) = (diagnosis.evidence.residual.by_node.len(), diagnosis.problem.dimension());
+    let first: Vec<usize> = descending(&diagnosis.evidence.residual.by_node).into_iter().take(WORST).collect();
     let mut told: Vec<(Vec<usize>, String)> = vec![
         ((0..count).rev().collect(), "the displacements are in the opposite order of the nodes".to_string()),
         (
@@ -54,12 +56,12 @@ pub(super) fn orders(suspect: &Suspect<'_>) -> Result<Vec<Tried>, SinkError> {
             told.push((exchanged, format!("the displacements of nodes {} and {} are exchanged", a.min(b), a.max(b))));
         }
     }
-    let tried = told.into_iter().map(|(rows, text)| {
-        suspect.tried_inside(text, |field: &[f64]| {
+    let attempts = told.into_iter().map(|(rows, text)| {
+        diagnosis.attempt_inside(text, |field: &[f64]| {
             rows.iter().flat_map(|&row| &field[d * row..d * (row + 1)]).copied().collect()
         })
     });
-    tried.collect()
+    attempts.collect()
 }
 
 /// Rows that are so many places later.

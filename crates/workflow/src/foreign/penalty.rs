@@ -1,7 +1,7 @@
 //! Contact by a penalty that is too stiff for the steps.
 
+use super::diagnosis::Diagnosis;
 use super::limits::{DRIFT, Excess, by_a_penalty};
-use super::suspect::Suspect;
 use crate::message::{percent, trimmed};
 use percute_core::border::row;
 use percute_core::dynamics::{AnyStiffness, critical_time_step};
@@ -11,12 +11,12 @@ use percute_core::time::is_stable;
 pub(super) const UNSTABLE: &str = "penalty";
 
 /// That the energy drifts by a penalty that is too stiff for the steps.
-pub(super) fn excess(suspect: &Suspect<'_>) -> Option<Excess> {
-    if !by_a_penalty(suspect.found) || suspect.found.energy <= DRIFT {
+pub(super) fn excess(diagnosis: &Diagnosis<'_>) -> Option<Excess> {
+    if !by_a_penalty(diagnosis.found) || diagnosis.found.energy <= DRIFT {
         return None;
     }
-    cause(suspect).map(|_| {
-        let [drift, limit] = [suspect.found.energy, DRIFT].map(percent);
+    cause(diagnosis).map(|_| {
+        let [drift, limit] = [diagnosis.found.energy, DRIFT].map(percent);
         let what = format!("contact is by a penalty, and the energy drifts by {drift} (limit {limit})");
         Excess { what, name: UNSTABLE }
     })
@@ -26,13 +26,13 @@ pub(super) fn excess(suspect: &Suspect<'_>) -> Option<Excess> {
 ///
 /// ω² of the body with the springs is at least (k + n·K n)/m of any node: central differences are unstable above
 /// Δt = 2/ω.
-pub(super) fn cause(suspect: &Suspect<'_>) -> Option<String> {
-    let (problem, contact) = (suspect.problem, &suspect.evidence.contact);
+pub(super) fn cause(diagnosis: &Diagnosis<'_>) -> Option<String> {
+    let (problem, contact) = (diagnosis.problem, &diagnosis.evidence.contact);
     let mass = |at: usize| problem.moved_mass(at);
     let springs = contact.springs().filter(|(_, stiffness)| stiffness.is_finite());
     let (at, stiffness) = springs.max_by(|(a, k), (b, l)| (k / mass(*a)).total_cmp(&(l / mass(*b))))?;
     let node = problem.contact_nodes()[at].node.index();
-    let (times, own) = (suspect.source.times(), own_stiffness(suspect, at));
+    let (times, own) = (diagnosis.source.times(), own_stiffness(diagnosis, at));
     let (step, mass) = (times.longest_step(), mass(at));
     let stable = 2.0 * (mass / (stiffness + own)).sqrt();
     // Steps above that of the body alone are unstable with any contact.
@@ -57,8 +57,8 @@ pub(super) fn cause(suspect: &Suspect<'_>) -> Option<String> {
 }
 
 /// n·K n of a node at a plane (N/m); 0 of two nodes, whose relative motion both share.
-fn own_stiffness(suspect: &Suspect<'_>, at: usize) -> f64 {
-    let problem = suspect.problem;
+fn own_stiffness(diagnosis: &Diagnosis<'_>, at: usize) -> f64 {
+    let problem = diagnosis.problem;
     let contact = &problem.contact_nodes()[at];
     let (obstacle, node) = (problem.obstacle(contact.obstacle), contact.node.index());
     if !obstacle.is_plane() {

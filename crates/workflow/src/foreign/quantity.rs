@@ -6,28 +6,28 @@ use crate::message::times;
 const AGREE: f64 = 0.02;
 
 /// A quantity, the factor that its numbers need, and the unit in which they are.
-const UNITS: [(Quantity, f64, &str); 16] = [
-    (Quantity::Length, 1e-3, "mm"),
-    (Quantity::Length, 1e-2, "cm"),
-    (Quantity::Length, 1e-6, "µm"),
-    (Quantity::Time, 1e-3, "ms"),
-    (Quantity::Time, 1e-6, "µs"),
-    (Quantity::Velocity, 1e-3, "mm/s"),
-    (Quantity::Velocity, 1e-2, "cm/s"),
-    (Quantity::Modulus, 1e3, "kPa"),
-    (Quantity::Modulus, 1e6, "MPa"),
-    (Quantity::Modulus, 1e9, "GPa"),
-    (Quantity::Density, 1e3, "g/cm³"),
-    (Quantity::Density, 1e9, "kg/mm³"),
-    (Quantity::Density, 1e12, "t/mm³"),
-    (Quantity::Force, 1e3, "kN"),
-    (Quantity::Force, 1e-3, "mN"),
-    (Quantity::Force, 1e6, "MN"),
+const UNITS: [(ScaledQuantity, f64, &str); 16] = [
+    (ScaledQuantity::Length, 1e-3, "mm"),
+    (ScaledQuantity::Length, 1e-2, "cm"),
+    (ScaledQuantity::Length, 1e-6, "µm"),
+    (ScaledQuantity::Time, 1e-3, "ms"),
+    (ScaledQuantity::Time, 1e-6, "µs"),
+    (ScaledQuantity::Velocity, 1e-3, "mm/s"),
+    (ScaledQuantity::Velocity, 1e-2, "cm/s"),
+    (ScaledQuantity::Modulus, 1e3, "kPa"),
+    (ScaledQuantity::Modulus, 1e6, "MPa"),
+    (ScaledQuantity::Modulus, 1e9, "GPa"),
+    (ScaledQuantity::Density, 1e3, "g/cm³"),
+    (ScaledQuantity::Density, 1e9, "kg/mm³"),
+    (ScaledQuantity::Density, 1e12, "t/mm³"),
+    (ScaledQuantity::Force, 1e3, "kN"),
+    (ScaledQuantity::Force, 1e-3, "mN"),
+    (ScaledQuantity::Force, 1e6, "MN"),
 ];
 
 /// What a factor belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
+pub(super) enum ScaledQuantity {
     Length,
     Time,
     Velocity,
@@ -36,7 +36,7 @@ pub(super) enum Quantity {
     Force,
 }
 
-impl Quantity {
+impl ScaledQuantity {
     /// The hint that a factor gives, in brackets; nothing for any other factor.
     pub(super) fn hint(self, factor: f64) -> String {
         if let Some((.., unit)) = UNITS.iter().find(|(quantity, value, _)| *quantity == self && agree(factor, *value)) {
@@ -50,11 +50,11 @@ impl Quantity {
 
 /// Whether a factor of lengths is that of a unit.
 pub(super) fn of_unit(factor: f64) -> bool {
-    Quantity::Length.hint(factor).contains("given in")
+    ScaledQuantity::Length.hint(factor).contains("given in")
 }
 
 /// The factor that numbers need, with the unit that it hints at.
-pub(super) fn should(factor: f64, quantity: Quantity) -> String {
+pub(super) fn should(factor: f64, quantity: ScaledQuantity) -> String {
     format!("should be {} as large{}", times(factor), quantity.hint(factor))
 }
 

@@ -1,6 +1,6 @@
 //! Displacements that are rounded to a few digits, as in a text file.
 
-use super::suspect::Suspect;
+use super::diagnosis::Diagnosis;
 use crate::message::percent;
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::SinkError;
@@ -12,10 +12,10 @@ const INSTANTS: usize = 16;
 const VALUES: usize = 2000;
 
 /// The number of digits, if their rounding is as large as the residual.
-pub(super) fn rounded(suspect: &Suspect<'_>) -> Result<Option<String>, SinkError> {
+pub(super) fn rounded(diagnosis: &Diagnosis<'_>) -> Result<Option<String>, SinkError> {
     let (mut digits, mut largest) = (1, 0.0_f64);
-    let every = suspect.source.count().div_ceil(INSTANTS).max(1);
-    suspect.source.replay(&mut |step| {
+    let every = diagnosis.source.count().div_ceil(INSTANTS).max(1);
+    diagnosis.source.replay(&mut |step| {
         if step.index.is_multiple_of(every) && digits <= MOST_DIGITS {
             for &value in step.displacement.iter().take(VALUES) {
                 largest = largest.max(value.abs());
@@ -29,13 +29,13 @@ pub(super) fn rounded(suspect: &Suspect<'_>) -> Result<Option<String>, SinkError
     if digits > MOST_DIGITS || largest == 0.0 {
         return Ok(None);
     }
-    let (times, critical) = (suspect.source.times(), critical_time_step(suspect.problem));
+    let (times, critical) = (diagnosis.source.times(), critical_time_step(diagnosis.problem));
     let shortest = (0..times.step_count()).map(|n| times.step(n)).fold(f64::INFINITY, f64::min);
     // Half of the last digit of the largest displacement, in the second difference and in the forces inside.
     let half = 0.5 * 10f64.powi(largest.log10().floor() as i32 + 1 - digits as i32);
-    let mass = suspect.problem.mass().iter().fold(0.0_f64, |most, mass| most.max(*mass));
+    let mass = diagnosis.problem.mass().iter().fold(0.0_f64, |most, mass| most.max(*mass));
     let force = 4.0 * half * mass * (1.0 / (shortest * shortest) + 1.0 / (critical * critical));
-    let residual = &suspect.evidence.residual;
+    let residual = &diagnosis.evidence.residual;
     let effect = residual.relative() * force / residual.worst.size;
     Ok((force >= residual.worst.size).then(|| {
         format!(

@@ -4,10 +4,10 @@
 //! steps of the solver a + w T² a'' to leading order, with w = (1 − 1/k²)/12. Away from the planes M a are forces that
 //! the displacements give, and T² a'' is their second difference.
 
+use super::attempt::{FALL, ROUNDING, falls};
 use super::balance::Balance;
+use super::diagnosis::Diagnosis;
 use super::samples::missing;
-use super::suspect::Suspect;
-use super::tried::{FALL, ROUNDING, falls};
 use super::window::windows;
 use percute_core::border::Vector;
 use percute_core::history::SinkError;
@@ -21,12 +21,12 @@ const WEIGHTS: [f64; 2] = [0.8 / 16.0, 1.2 / 12.0];
 const EQUAL: f64 = 1e-2;
 
 /// That the instants are samples, if the residual away from the planes is that of samples.
-pub(super) fn skipped(suspect: &Suspect<'_>) -> Result<Option<String>, SinkError> {
-    let given = suspect.evidence.given;
+pub(super) fn skipped(diagnosis: &Diagnosis<'_>) -> Result<Option<String>, SinkError> {
+    let given = diagnosis.evidence.given;
     if given[1] {
         return Ok(None);
     }
-    let [size, rest, both, curvature] = products(suspect)?;
+    let [size, rest, both, curvature] = products(diagnosis)?;
     let (weight, before) = (both / curvature, (rest / size).sqrt());
     let left = before * (1.0 - both * both / (rest * curvature)).max(0.0).sqrt();
     let fits = (WEIGHTS[0]..=WEIGHTS[1]).contains(&weight) && before > ROUNDING && left <= FALL * before;
@@ -63,13 +63,13 @@ fn away(problem: &AnyProblem) -> Vec<usize> {
 
 /// Sums of squares of the terms and of the residual, its scalar product with the second difference of the forces, and
 /// the sum of squares of this (N²), away from the planes.
-fn products(suspect: &Suspect<'_>) -> Result<[f64; 4], SinkError> {
-    let (problem, grid) = (suspect.problem, suspect.source.times());
+fn products(diagnosis: &Diagnosis<'_>) -> Result<[f64; 4], SinkError> {
+    let (problem, grid) = (diagnosis.problem, diagnosis.source.times());
     let (balance, away) = (Balance::new(problem, grid), away(problem));
     let rest = vec![[0.0; 3]; problem.mesh().node_count()];
     let mut held: Vec<Forces> = Vec::new();
     let mut sums = [0.0; 4];
-    windows(suspect.source, suspect.problem.dimension(), &mut |window| {
+    windows(diagnosis.source, diagnosis.problem.dimension(), &mut |window| {
         let n = window.now.index;
         let motion = balance.motion(window).filter(|_| n > 0 && equal(grid, n));
         let terms = balance.terms(window.now, motion.as_ref().map_or(&rest, |motion| &motion.acceleration));

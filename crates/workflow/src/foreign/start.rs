@@ -2,13 +2,13 @@
 
 use super::limits::{BALANCE, PLACE};
 use super::widest;
-use crate::through::{Take, Through};
+use crate::step_filter::{StepFilter, Take};
 use percute_core::history::{Step, StepSource};
 use percute_core::problem::AnyProblem;
 
 /// A history that starts exactly as its problem states: what the limits of consistency let pass is within them.
 pub(crate) fn started<'s>(problem: &'s AnyProblem, source: &'s dyn StepSource) -> impl StepSource + 's {
-    Through::new(source, move |step: &Step<'_>, take: &mut Take<'_>| {
+    StepFilter::new(source, move |step: &Step<'_>, take: &mut Take<'_>| {
         if step.index > 0 {
             return take(step);
         }

@@ -1,11 +1,11 @@
 //! Contact forces against those that the balance needs at the surface: the order of their rows, their normal and
 //! tangential parts, their axes.
 
+use super::attempt::Attempt;
 use super::axes::{READINGS, read};
 use super::balance::{Balance, dot};
+use super::diagnosis::Diagnosis;
 use super::interface_balance::groups;
-use super::suspect::Suspect;
-use super::tried::Tried;
 use super::window::windows;
 use crate::message::times;
 use percute_core::border::Vector;
@@ -20,7 +20,7 @@ const NONE: f64 = 1e-6;
 const NAMED: usize = 4;
 
 /// Sums over all instants, of squares and scalar products of given and needed forces (N²).
-struct Needed {
+struct NeededForces {
     count: usize,
     given: Vec<f64>,
     needed: Vec<f64>,
@@ -32,7 +32,7 @@ struct Needed {
     read: [f64; READINGS.len()],
 }
 
-impl Needed {
+impl NeededForces {
     /// The square of what rows leave that hold the forces of these others.
     fn left(&self, of: &[usize]) -> f64 {
         let product = |(row, &at): (usize, &usize)| self.both[row * self.count + at];
@@ -60,25 +60,25 @@ impl Needed {
 }
 
 /// Other orders of the rows of contact forces, other normal and tangential parts, and other axes.
-pub(super) fn tried(suspect: &Suspect<'_>) -> Result<Vec<Tried>, SinkError> {
-    let count = suspect.problem.contact_nodes().len();
-    if count > MOST || !suspect.has_forces() {
+pub(super) fn attempt(diagnosis: &Diagnosis<'_>) -> Result<Vec<Attempt>, SinkError> {
+    let count = diagnosis.problem.contact_nodes().len();
+    if count > MOST || !diagnosis.has_forces() {
         return Ok(Vec::new());
     }
-    let needed = needed(suspect)?;
-    let [rest, size] = suspect.evidence.residual.squares();
+    let needed = needed(diagnosis)?;
+    let [rest, size] = diagnosis.evidence.residual.squares();
     let own = needed.left(&(0..count).collect::<Vec<_>>());
-    let tried = |text: String, left: f64| Tried {
+    let attempt = |text: String, left: f64| Attempt {
         text,
-        before: suspect.residual(),
+        before: diagnosis.residual(),
         left: ((rest - own + left).max(0.0) / size).sqrt(),
     };
-    let nodes: Vec<usize> = suspect.problem.contact_nodes().iter().map(|contact| contact.node.index()).collect();
-    let parts = sides(suspect.problem, &needed).into_iter().chain(Part::of_each().into_iter().zip(needed.parts));
-    let parts = parts.filter_map(|(part, products)| part.tried(products, own));
-    let mut all: Vec<Tried> = parts.map(|(text, left)| tried(text, left)).collect();
-    all.extend(READINGS.iter().zip(needed.read).map(|(text, both)| tried(text.to_string(), needed.without(both))));
-    all.extend(known(&nodes).into_iter().map(|(text, of)| tried(text, needed.left(&of))));
+    let nodes: Vec<usize> = diagnosis.problem.contact_nodes().iter().map(|contact| contact.node.index()).collect();
+    let parts = sides(diagnosis.problem, &needed).into_iter().chain(Part::of_each().into_iter().zip(needed.parts));
+    let parts = parts.filter_map(|(part, products)| part.attempt(products, own));
+    let mut all: Vec<Attempt> = parts.map(|(text, left)| attempt(text, left)).collect();
+    all.extend(READINGS.iter().zip(needed.read).map(|(text, both)| attempt(text.to_string(), needed.without(both))));
+    all.extend(known(&nodes).into_iter().map(|(text, of)| attempt(text, needed.left(&of))));
     let of = needed.nearest();
     let moved = (0..count).filter(|&row| of[row] != row && needed.given[row] > 0.0).take(NAMED);
     let told: Vec<_> =
@@ -86,7 +86,7 @@ pub(super) fn tried(suspect: &Suspect<'_>) -> Result<Vec<Tried>, SinkError> {
     if !told.is_empty() {
         let text =
             format!("the rows of the contact forces are in another order than `contact_nodes`: {}", told.join(", "));
-        all.push(tried(text, needed.left(&of)));
+        all.push(attempt(text, needed.left(&of)));
     }
     Ok(all)
 }
@@ -141,7 +141,7 @@ impl Part {
     }
 
     /// Forces whose part is left out, or needs a factor, with the square of what is left.
-    fn tried(&self, [given, wanted, both]: [f64; 3], own: f64) -> Option<(String, f64)> {
+    fn attempt(&self, [given, wanted, both]: [f64; 3], own: f64) -> Option<(String, f64)> {
         let (Self { forces, none, sign }, misfit) = (self, given + wanted - 2.0 * both);
         if misfit <= 0.0 {
             return None;
@@ -160,7 +160,7 @@ impl Part {
 }
 
 /// The forces on each side of a non-matching interface, with their sums: given, needed, and their product.
-fn sides(problem: &AnyProblem, needed: &Needed) -> Vec<(Part, [f64; 3])> {
+fn sides(problem: &AnyProblem, needed: &NeededForces) -> Vec<(Part, [f64; 3])> {
     let of_side = |(group, side): (&String, &Vec<usize>)| {
         let sums = side.iter().fold([0.0; 3], |[given, wanted, both], &row| {
             let product = needed.both[row * needed.count + row];
@@ -175,11 +175,11 @@ fn sides(problem: &AnyProblem, needed: &Needed) -> Vec<(Part, [f64; 3])> {
     (0..problem.non_matching_count()).flat_map(of_both).collect()
 }
 
-fn needed(suspect: &Suspect<'_>) -> Result<Needed, SinkError> {
-    let problem = suspect.problem;
-    let balance = Balance::new(problem, suspect.source.times());
+fn needed(diagnosis: &Diagnosis<'_>) -> Result<NeededForces, SinkError> {
+    let problem = diagnosis.problem;
+    let balance = Balance::new(problem, diagnosis.source.times());
     let count = problem.contact_nodes().len();
-    let mut sums = Needed {
+    let mut sums = NeededForces {
         count,
         given: vec![0.0; count],
         needed: vec![0.0; count],
@@ -187,7 +187,7 @@ fn needed(suspect: &Suspect<'_>) -> Result<Needed, SinkError> {
         parts: [[0.0; 3]; 2],
         read: [0.0; READINGS.len()],
     };
-    windows(suspect.source, problem.dimension(), &mut |window| {
+    windows(diagnosis.source, problem.dimension(), &mut |window| {
         let now = window.now;
         let derived = if now.index > 0 { balance.motion(window).map(|motion| motion.acceleration) } else { None };
         let Some(used) = now.acceleration.as_ref().or(derived.as_ref()) else { return Ok(()) };
@@ -229,7 +229,7 @@ mod tests {
         let both = vec![0.0, 0.0, 25.0, 0.0, 0.0, 0.0, 9.0, 0.0, 0.0];
         let (given, wanted) = (vec![25.0, 0.0, 9.0], vec![9.0, 0.0, 25.0]);
         let (parts, read) = ([[0.0; 3]; 2], [0.0; READINGS.len()]);
-        let needed = Needed { count: 3, given, needed: wanted, both, parts, read };
+        let needed = NeededForces { count: 3, given, needed: wanted, both, parts, read };
         assert_eq!(needed.nearest(), [2, 1, 0]);
         assert_eq!(needed.left(&[2, 1, 0]), 0.0);
         assert_eq!(needed.left(&[0, 1, 2]), 68.0);

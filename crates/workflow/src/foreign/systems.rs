@@ -3,13 +3,13 @@
 //! Lengths, times and forces in units L, T and F that fit each other leave the balance as it is if all arrays are in
 //! them. Of arrays in such units beside a problem in SI units, each term has a factor of its own.
 
+use super::attempt::{Attempt, FALL};
 use super::complete::{Completed, Derived, Lacks};
+use super::diagnosis::Diagnosis;
 use super::limits::exceeded;
 use super::measure::measure;
 use super::residual::{INERTIA, REACTION, STIFFNESS};
 use super::samples::Samples;
-use super::suspect::Suspect;
-use super::tried::{FALL, Tried};
 use crate::message::trimmed;
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{SinkError, Step, StepSource};
@@ -112,16 +112,16 @@ impl StepSource for Scaled<'_> {
 }
 
 /// The systems in which the arrays fit the problem in all, if they do not as they are.
-pub(super) fn whole(suspect: &Suspect<'_>) -> Result<Option<String>, SinkError> {
-    let (given, forces) = (suspect.evidence.given, suspect.has_forces());
+pub(super) fn whole(diagnosis: &Diagnosis<'_>) -> Result<Option<String>, SinkError> {
+    let (given, forces) = (diagnosis.evidence.given, diagnosis.has_forces());
     for inverse in [false, true] {
         let mut fit = Vec::new();
         for system in SYSTEMS.map(|system| if inverse { system.inverse() } else { system }) {
             // One array in another unit is no other system.
-            if system.factors(given, forces).len() < 2 || !balances(suspect, system) {
+            if system.factors(given, forces).len() < 2 || !balances(diagnosis, system) {
                 continue;
             }
-            if let Some(left) = left(suspect, system)? {
+            if let Some(left) = left(diagnosis, system)? {
                 fit.push((system, left));
             }
         }
@@ -129,28 +129,28 @@ pub(super) fn whole(suspect: &Suspect<'_>) -> Result<Option<String>, SinkError> 
             // Without forces, systems with the same lengths and times are the same.
             let names: Vec<&str> = fit.iter().map(|(system, _)| system.name).collect();
             let text = told(*first, &names.join(" or "), inverse, &first.factors(given, forces));
-            let tried = Tried { text, before: suspect.residual(), left: *left };
+            let attempt = Attempt { text, before: diagnosis.residual(), left: *left };
             // Where the initial velocity alone contradicts the problem, there is no residual to fall.
-            return Ok(Some(if tried.explains() { tried.told() } else { tried.text }));
+            return Ok(Some(if attempt.explains() { attempt.told() } else { attempt.text }));
         }
     }
     Ok(None)
 }
 
 /// Whether the factors of all terms leave little of a residual inside the body.
-fn balances(suspect: &Suspect<'_>, system: System) -> bool {
+fn balances(diagnosis: &Diagnosis<'_>, system: System) -> bool {
     let mut factors = [1.0; 4];
     (factors[INERTIA], factors[STIFFNESS], factors[REACTION]) = (system.acceleration(), system.length, system.force);
-    suspect.evidence.residual.inside_with(factors) <= FALL
+    diagnosis.evidence.residual.inside_with(factors) <= FALL
 }
 
 /// The norm of the residual in SI units, if nothing contradicts the problem then.
-fn left(suspect: &Suspect<'_>, system: System) -> Result<Option<f64>, SinkError> {
-    let (problem, source) = (suspect.problem, suspect.source);
+fn left(diagnosis: &Diagnosis<'_>, system: System) -> Result<Option<f64>, SinkError> {
+    let (problem, source) = (diagnosis.problem, diagnosis.source);
     // What was derived in the units that are given is derived again, also if that was nothing.
-    let silent = !suspect.evidence.contact.forced.contains(&true);
+    let silent = !diagnosis.evidence.contact.forced.contains(&true);
     let [reaction, touching] =
-        [Derived::Reaction, Derived::Touching].map(|part| silent || suspect.derived.contains(&part));
+        [Derived::Reaction, Derived::Touching].map(|part| silent || diagnosis.derived.contains(&part));
     let instants = source.times().instants().iter().map(|t| system.time * t).collect();
     let Ok(times) = TimeGrid::from_instants(instants) else { return Ok(None) };
     let scaled = Scaled { source, times, system, without_forces: reaction };

@@ -3,7 +3,7 @@
 //! The integrals are trapezoidal sums from t_0 on: errors of samples far apart do not add up there, as those of single
 //! steps do.
 
-use super::quantity::{Quantity, agree, should};
+use super::quantity::{ScaledQuantity, agree, should};
 use super::units::{displaced, steps};
 use super::{Contradiction, ratio};
 use crate::message::times;
@@ -127,7 +127,7 @@ impl Travel {
     fn cause(&self) -> String {
         let factor = known(self.way[0]);
         let near = |a: Option<f64>| a.is_some_and(|a| (a - 1.0).abs() <= self.limit());
-        let velocities = format!("the velocities {}", should(factor, Quantity::Velocity));
+        let velocities = format!("the velocities {}", should(factor, ScaledQuantity::Velocity));
         if near(self.start.map(|start| start * factor)) {
             return velocities;
         }

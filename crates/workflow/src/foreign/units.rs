@@ -1,11 +1,11 @@
 //! Quantities in other units, or simply wrong: factors of the terms of the balance, and the start.
 
+use super::attempt::{Attempt, FALL};
 use super::complete::Derived;
 use super::limits::BALANCE;
 use super::measure::Evidence;
-use super::quantity::{Quantity, agree, of_unit, should};
+use super::quantity::{ScaledQuantity, agree, of_unit, should};
 use super::residual::{INERTIA, LOAD, REACTION, STIFFNESS};
-use super::tried::{FALL, Tried};
 use crate::message::times;
 use percute_core::material::{Elastic, Law};
 use percute_core::problem::AnyProblem;
@@ -43,7 +43,7 @@ impl Context {
 }
 
 /// Factors of one term that leave the least residual.
-pub(super) fn one_term(problem: &AnyProblem, evidence: &Evidence<'_>, derived: &[Derived]) -> Vec<Tried> {
+pub(super) fn one_term(problem: &AnyProblem, evidence: &Evidence<'_>, derived: &[Derived]) -> Vec<Attempt> {
     let mut residual = evidence.residual.clone();
     let silent = evidence.silent();
     if silent {
@@ -63,11 +63,11 @@ pub(super) fn one_term(problem: &AnyProblem, evidence: &Evidence<'_>, derived: &
         one(STIFFNESS).filter(|(factor, _)| *factor > 0.0 && !open).map(|(factor, left)| (young(factor), left)),
         one(LOAD).map(|(factor, left)| (load(factor, context), left)),
     ];
-    named.into_iter().flatten().map(|(text, left)| Tried { text, before, left }).collect()
+    named.into_iter().flatten().map(|(text, left)| Attempt { text, before, left }).collect()
 }
 
 /// Factors of two terms, over the stiffness: lengths in another unit, or another modulus and another density.
-pub(super) fn two_terms(problem: &AnyProblem, evidence: &Evidence<'_>) -> Option<Tried> {
+pub(super) fn two_terms(problem: &AnyProblem, evidence: &Evidence<'_>) -> Option<Attempt> {
     let residual = &evidence.residual;
     let factors = residual.fit(&[INERTIA, REACTION])?;
     let (of_m, of_r) = (factors[INERTIA], factors[REACTION]);
@@ -75,24 +75,24 @@ pub(super) fn two_terms(problem: &AnyProblem, evidence: &Evidence<'_>) -> Option
         (false, _) => return None,
         // The mass of a plane body grows by the square of lengths, the stiffness does not.
         (true, Some(speed)) if agree(of_m * of_r * of_r, 1.0) && problem.dimension() == 2 && agree(speed, of_r) => {
-            format!("mesh and displacements {}", should(1.0 / of_r, Quantity::Length))
+            format!("mesh and displacements {}", should(1.0 / of_r, ScaledQuantity::Length))
         }
         (true, Some(speed)) if agree(of_m * of_r * of_r, 1.0) && problem.dimension() == 2 && agree(speed, 1.0) => {
-            format!("{ALL_LENGTHS} {}", should(1.0 / of_r, Quantity::Length))
+            format!("{ALL_LENGTHS} {}", should(1.0 / of_r, ScaledQuantity::Length))
         }
         (true, Some(speed))
             if agree(of_m, of_r * of_r) && problem.dimension() == 1 && agree(speed, 1.0) && of_unit(of_r) =>
         {
-            format!("the mesh {}", should(of_r, Quantity::Length))
+            format!("the mesh {}", should(of_r, ScaledQuantity::Length))
         }
         _ if residual_is_of_materials(problem, of_m, of_r) => format!(
             "`young` and `density` are not those of the history: `young` {}, and `density` {}",
-            should(1.0 / of_r, Quantity::Modulus),
-            should(of_m / of_r, Quantity::Density)
+            should(1.0 / of_r, ScaledQuantity::Modulus),
+            should(of_m / of_r, ScaledQuantity::Density)
         ),
         _ => return None,
     };
-    Some(Tried { text, before: residual.norm([1.0; 4]), left: residual.norm(factors) })
+    Some(Attempt { text, before: residual.norm([1.0; 4]), left: residual.norm(factors) })
 }
 
 /// Whether both factors are no rounding, and no loads tell otherwise.
@@ -112,7 +112,7 @@ pub(super) fn displacements(evidence: &Evidence<'_>) -> Option<String> {
     // The displacements as they are must miss the planes.
     let fits = |path: &f64| agree(path * speed, 1.0) && (path * speed - 1.0).abs() <= FALL * (path - 1.0).abs();
     let whole = paths.iter().all(fits);
-    let hint = Quantity::Length.hint(1.0 / speed);
+    let hint = ScaledQuantity::Length.hint(1.0 / speed);
     // Missing forces of the first step change the velocity, too.
     let whole = whole && (!hint.is_empty() || !silent);
     match () {
@@ -142,16 +142,16 @@ fn force(factor: f64, context: Context) -> String {
         () => "",
     };
     let other = if context.thickness.is_some() && !half && factor > 0.0 {
-        format!(", or `thickness` {}{}", times(1.0 / factor), Quantity::Length.hint(1.0 / factor))
+        format!(", or `thickness` {}{}", times(1.0 / factor), ScaledQuantity::Length.hint(1.0 / factor))
     } else {
         String::new()
     };
-    format!("the contact forces {}{hint}{other}", should(factor, Quantity::Force))
+    format!("the contact forces {}{hint}{other}", should(factor, ScaledQuantity::Force))
 }
 
 /// The factor that the steps need.
 pub(super) fn steps(factor: f64) -> String {
-    format!("the steps should be {} as long{}", times(factor), Quantity::Time.hint(factor))
+    format!("the steps should be {} as long{}", times(factor), ScaledQuantity::Time.hint(factor))
 }
 
 /// A factor of the displacements.
@@ -159,14 +159,14 @@ pub(super) fn displaced(factor: f64) -> String {
     if agree(factor, -1.0) {
         return "the sign of the displacements is wrong".to_string();
     }
-    format!("the displacements {}", should(1.0 / factor, Quantity::Length))
+    format!("the displacements {}", should(1.0 / factor, ScaledQuantity::Length))
 }
 
 fn load(factor: f64, context: Context) -> String {
     if of_displacements(factor, context.speed) {
         return displaced(factor);
     }
-    format!("the loads {}", should(factor, Quantity::Force))
+    format!("the loads {}", should(factor, ScaledQuantity::Force))
 }
 
 /// Whether forces need the factor that the displacements have by the start.
@@ -175,7 +175,7 @@ fn of_displacements(factor: f64, speed: Option<f64>) -> bool {
 }
 
 fn young(factor: f64) -> String {
-    format!("`young` is not that of the history: it {}", should(factor, Quantity::Modulus))
+    format!("`young` is not that of the history: it {}", should(factor, ScaledQuantity::Modulus))
 }
 
 /// Another mass, or other times: the velocity at the start tells which. Without given contact forces, another modulus
@@ -187,8 +187,8 @@ fn mass(factor: f64, context: Context) -> String {
         return text;
     }
     let time = steps(1.0 / scale);
-    let density = format!("it {}", should(factor, Quantity::Density));
-    let modulus = format!("`young` {}", should(1.0 / factor, Quantity::Modulus));
+    let density = format!("it {}", should(factor, ScaledQuantity::Density));
+    let modulus = format!("`young` {}", should(1.0 / factor, ScaledQuantity::Modulus));
     let plain = |text: String, certain: bool| match lengths(scale, context).or_else(|| mesh_alone(scale, context)) {
         None => text,
         Some(lengths) if certain => format!("{lengths}. Or {text}"),
@@ -204,7 +204,7 @@ fn mass(factor: f64, context: Context) -> String {
             let both = if agree(factor, 1e6) { " (`young` given in MPa and `density` in t/mm³?)" } else { "" };
             let text = format!(
                 "`density` or `young` is not that of the history: the density {}, or {modulus}{both}",
-                should(factor, Quantity::Density)
+                should(factor, ScaledQuantity::Density)
             );
             plain(text, context.solid)
         }
@@ -213,7 +213,7 @@ fn mass(factor: f64, context: Context) -> String {
         }
         () => format!(
             "`density` or `time` is not that of the history: the density {}, or {time}",
-            should(factor, Quantity::Density)
+            should(factor, ScaledQuantity::Density)
         ),
     }
 }
@@ -221,13 +221,13 @@ fn mass(factor: f64, context: Context) -> String {
 /// A mesh and planes in another unit than the displacements, by the way to the plane.
 fn mesh(scale: f64, context: Context) -> Option<String> {
     let far = context.path.is_some_and(|path| agree(path * scale, 1.0));
-    (of_unit(scale) && far).then(|| format!("mesh and planes {}", should(scale, Quantity::Length)))
+    (of_unit(scale) && far).then(|| format!("mesh and planes {}", should(scale, ScaledQuantity::Length)))
 }
 
 /// A mesh in another unit than all the rest: in the balance of a plane body, only the mass depends on its lengths.
 fn mesh_alone(scale: f64, context: Context) -> Option<String> {
     let only = context.dimension == 2 && context.speed.is_some_and(|speed| agree(speed, 1.0));
-    (of_unit(scale) && only).then(|| format!("the mesh {}", should(scale, Quantity::Length)))
+    (of_unit(scale) && only).then(|| format!("the mesh {}", should(scale, ScaledQuantity::Length)))
 }
 
 /// All lengths in another unit, or all but v₀, which have the effect of another mass where no contact force is given.
@@ -242,7 +242,7 @@ fn lengths(scale: f64, context: Context) -> Option<String> {
         () if agree(speed * scale, 1.0) => "mesh, planes and displacements",
         () => return None,
     };
-    Some(format!("{which} {}", should(scale, Quantity::Length)))
+    Some(format!("{which} {}", should(scale, ScaledQuantity::Length)))
 }
 
 /// Whether a material has the density and the wave speed of a solid.

@@ -1,7 +1,7 @@
 //! Given velocities against those of the displacements, at t_n and at other instants.
 
+use super::attempt::{FALL, falls};
 use super::balance::Motion;
-use super::tried::{FALL, falls};
 use super::window::Window;
 use super::{take_in, widest};
 use crate::message::percent;

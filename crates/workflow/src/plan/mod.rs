@@ -20,7 +20,7 @@ pub use exponents::Exponents;
 pub use next_mesh::NextMesh;
 pub use recommendation::Recommendation;
 pub use size_field::SizeField;
-pub(crate) use wanted::Wanted;
+pub(crate) use wanted::PlannedSizes;
 
 use cheapest::{Sizing, smallest};
 use serde::Serialize;

@@ -1,6 +1,6 @@
 //! The sizes of a plan at the nodes of a mesh, for mesh generators.
 
-use super::{Basis, Branch, Plan, Wanted};
+use super::{Basis, Branch, Plan, PlannedSizes};
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::mesh::{Mesh, MeshError};
 
@@ -31,7 +31,7 @@ impl SizeField {
             let size = plan.ratio.first().copied().unwrap_or(1.0) * (squares / basis.size.len() as f64).sqrt();
             return Ok(Self { mesh: run.clone(), size: vec![size; run.node_count()] });
         }
-        let wanted = Wanted::new(run, basis, plan);
+        let wanted = PlannedSizes::new(run, basis, plan);
         let mut mesh = run.clone();
         for _ in 0..ROUNDS {
             let chosen = wanted.too_large(&mesh, COARSE);

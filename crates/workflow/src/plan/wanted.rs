@@ -16,7 +16,7 @@ const TOWARDS: f64 = 0.9;
 /// It is constant in each element of the mesh of a run. In a graded mesh, the elements that touch keep their size, but
 /// towards nodes that touch it falls to that which is planned there.
 #[derive(Clone, Debug)]
-pub(crate) struct Wanted<'m> {
+pub(crate) struct PlannedSizes<'m> {
     mesh: &'m Mesh,
     locator: Locator<'m>,
     size: Vec<f64>,
@@ -24,7 +24,7 @@ pub(crate) struct Wanted<'m> {
     near: BTreeMap<ElementId, Vec<(NodeId, f64)>>,
 }
 
-impl<'m> Wanted<'m> {
+impl<'m> PlannedSizes<'m> {
     /// Of a plan for the mesh of a run.
     pub(crate) fn new(mesh: &'m Mesh, basis: &Basis, plan: &Plan) -> Self {
         let planned: Vec<f64> = plan.ratio.iter().zip(&basis.size).map(|(r, h)| r * h).collect();

@@ -7,7 +7,7 @@ use super::linearity::Linearity;
 use super::symptoms::auxiliary_contact_energy;
 use super::varying_steps::varying_steps;
 use super::verdict::NarrowContact;
-use super::warnings::{Facts, Warning, few_samples, reported};
+use super::warnings::{Warning, WarningFacts, few_samples, reported};
 use super::{
     ADMISSIBLE, ContactReport, FORMAT, Findings, Impacts, LargestResidual, NonMatchingReport, ObstacleSummary,
     ProblemSummary, Rebound, Report, SourceReport, Subject, Verdict, Versions, WorstElement, meaning, verdict,
@@ -95,7 +95,7 @@ fn judged(
     let contact_energy = contact_energy(&simulation.balance, checked);
     let rebound = rebound_of(problem, findings);
     let rebounded = rebound.as_ref();
-    let beside = verdict::Beside {
+    let beside = verdict::FurtherFacts {
         options,
         courant,
         drift,
@@ -137,7 +137,7 @@ fn warnings(
     let Subject { times, checked, critical_step, unended, .. } = *subject;
     let foreseen = foreseen(subject, estimate);
     let flat = FlatElements::new(subject.problem, &estimate.by_element);
-    let facts = Facts {
+    let facts = WarningFacts {
         problem: &problem_summary(subject),
         checked,
         plausibility_warnings: &foreseen,

@@ -86,7 +86,7 @@ impl Impacts {
 
 /// What acts on a body beside contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Beside {
+enum OtherLoad {
     Nothing,
     /// Fixed supports alone.
     Fixed,
@@ -95,15 +95,15 @@ enum Beside {
 }
 
 /// What acts on each body beside contact.
-fn beside_contact(problem: &AnyProblem, of_node: &[usize], bodies: usize) -> Vec<Beside> {
-    let mut beside = vec![Beside::Nothing; bodies];
+fn beside_contact(problem: &AnyProblem, of_node: &[usize], bodies: usize) -> Vec<OtherLoad> {
+    let mut beside = vec![OtherLoad::Nothing; bodies];
     for held in problem.prescribed().iter().filter(|held| held.motion.is_none()) {
-        beside[of_node[held.node.index()]] = Beside::Fixed;
+        beside[of_node[held.node.index()]] = OtherLoad::Fixed;
     }
     let moved = problem.prescribed().iter().filter(|held| held.motion.is_some()).map(|held| held.node);
     let pulled = problem.face_loads().into_iter().map(|load| problem.mesh().face(load.face).nodes[0]);
     let weighed = problem.body_loads().iter().flat_map(|load| load.nodal_volume.iter().map(|(node, _)| *node));
-    moved.chain(pulled).chain(weighed).for_each(|node| beside[of_node[node.index()]] = Beside::Other);
+    moved.chain(pulled).chain(weighed).for_each(|node| beside[of_node[node.index()]] = OtherLoad::Other);
     beside
 }
 
@@ -117,7 +117,7 @@ struct Centres<'c> {
     start: Vec<Vector>,
     after: Vec<Option<Vector>>,
     /// What else acts on each body.
-    beside: Vec<Beside>,
+    beside: Vec<OtherLoad>,
 }
 
 impl<'c> Centres<'c> {
@@ -142,7 +142,7 @@ impl<'c> Centres<'c> {
             let body = of_node[point.node.index()];
             (0..3).for_each(|c| after[body][c] += summary.impulse[c] / mass[body]);
         }
-        let known = |(velocity, beside): (Vector, &Beside)| (*beside == Beside::Nothing).then_some(velocity);
+        let known = |(velocity, beside): (Vector, &OtherLoad)| (*beside == OtherLoad::Nothing).then_some(velocity);
         let after = after.into_iter().zip(&beside).map(known).collect();
         Self { contact, of_obstacle, mass, start, after, beside }
     }
@@ -151,7 +151,7 @@ impl<'c> Centres<'c> {
     /// obstacle acts on some of them and on others together.
     fn at(&self, obstacle: usize, n: usize) -> Option<Vector> {
         let bodies = &self.of_obstacle[obstacle];
-        if bodies.iter().all(|&body| self.beside[body] == Beside::Fixed) {
+        if bodies.iter().all(|&body| self.beside[body] == OtherLoad::Fixed) {
             // What holds it has no velocity.
             return Some([0.0; 3]);
         }
@@ -170,13 +170,13 @@ impl<'c> Centres<'c> {
 
     /// Whether contact alone changes the velocity of all bodies of an obstacle.
     fn moved_by_contact(&self, obstacle: usize) -> bool {
-        self.of_obstacle[obstacle].iter().all(|&body| self.beside[body] == Beside::Nothing)
+        self.of_obstacle[obstacle].iter().all(|&body| self.beside[body] == OtherLoad::Nothing)
     }
 
     /// Whether the velocities of the bodies of two obstacles are known: contact alone changes them, or one side is
     /// held.
     fn are_known(&self, sides: [usize; 2]) -> bool {
-        let held = |side: usize| self.of_obstacle[side].iter().all(|&body| self.beside[body] == Beside::Fixed);
+        let held = |side: usize| self.of_obstacle[side].iter().all(|&body| self.beside[body] == OtherLoad::Fixed);
         let [first, second] = sides.map(|side| self.moved_by_contact(side));
         first && (second || held(sides[1])) || second && held(sides[0])
     }

@@ -2,7 +2,7 @@
 
 use super::flat::FlatElements;
 use super::linearity::{Linearity, STRAIN, Turned, growth};
-use super::warnings::{Facts, Warning};
+use super::warnings::{Warning, WarningFacts};
 use crate::deformation::Extreme;
 use crate::foreign::{Checked, by_a_penalty};
 use crate::message::{percent, short, trimmed};
@@ -63,7 +63,7 @@ fn symptom(
 }
 
 /// Those of a result.
-pub(super) fn symptoms(facts: &Facts<'_>) -> impl Iterator<Item = Symptom> {
+pub(super) fn symptoms(facts: &WarningFacts<'_>) -> impl Iterator<Item = Symptom> {
     let all = [
         drift(facts.drift, facts.steps_vary),
         given(facts.contact_energy),
@@ -150,7 +150,7 @@ fn relative_error(relative: [f64; 2]) -> Option<Symptom> {
     symptom("relative_error", format!("relative error [22] {shown}, near its ceiling of 71 %"), figure, remedy)
 }
 
-fn flat_elements(facts: &Facts<'_>) -> Option<Symptom> {
+fn flat_elements(facts: &WarningFacts<'_>) -> Option<Symptom> {
     let FlatElements { count, flattest, share, step_without } = facts.flat?;
     let each = |&(element, angle, own): &(usize, f64, f64)| {
         format!("element {element} ({}°, {})", trimmed(angle, 4), percent(own))
@@ -171,7 +171,7 @@ fn flat_elements(facts: &Facts<'_>) -> Option<Symptom> {
     symptom("flat_elements", format!("nearly flat elements have {share} of the estimate"), figure, remedy)
 }
 
-fn impulse_ratio(facts: &Facts<'_>) -> Option<Symptom> {
+fn impulse_ratio(facts: &WarningFacts<'_>) -> Option<Symptom> {
     let [least, most] = IMPULSE_RATIO;
     // A node with a contact of its own touches at other instants in the admissible fields than in the simulation.
     let kept =
@@ -202,7 +202,7 @@ fn impulse_ratio(facts: &Facts<'_>) -> Option<Symptom> {
     symptom("impulse_ratio", format!("only {shown} of the contact impulse in the admissible force"), figure, advice)
 }
 
-fn no_contact(facts: &Facts<'_>) -> Option<Symptom> {
+fn no_contact(facts: &WarningFacts<'_>) -> Option<Symptom> {
     let foreseen =
         facts.plausibility_warnings.iter().any(|plausibility_warning| plausibility_warning.name == "never_touches");
     if facts.problem.obstacles.is_empty() || facts.touches || foreseen {

@@ -28,7 +28,7 @@ pub struct Warning {
 }
 
 /// What the warnings look at.
-pub(super) struct Facts<'a> {
+pub(super) struct WarningFacts<'a> {
     pub(super) checked: Option<&'a Checked>,
     pub(super) problem: &'a ProblemSummary,
     pub(super) plausibility_warnings: &'a [PlausibilityWarning],
@@ -102,7 +102,7 @@ fn warning(name: &'static str, brief: impl Into<String>, message: impl Into<Stri
     Some(Warning { name, brief: brief.into(), message: message.into() })
 }
 
-pub(super) fn not_admissible(facts: &Facts<'_>) -> Option<Warning> {
+pub(super) fn not_admissible(facts: &WarningFacts<'_>) -> Option<Warning> {
     let LargestResidual { name, value, admissible } = facts.residual;
     if *admissible {
         return None;
@@ -115,7 +115,7 @@ pub(super) fn not_admissible(facts: &Facts<'_>) -> Option<Warning> {
     warning("not_admissible", format!("residual {name} too large: do not trust the error"), message)
 }
 
-pub(super) fn narrow_contact(facts: &Facts<'_>) -> Option<Warning> {
+pub(super) fn narrow_contact(facts: &WarningFacts<'_>) -> Option<Warning> {
     let NarrowContact { half_width, edge, needed } = facts.narrow?;
     let [half_width, edge, needed] = [half_width, edge, needed].map(|x| short(x, 2));
     let message = format!(
@@ -130,7 +130,7 @@ pub(super) fn narrow_contact(facts: &Facts<'_>) -> Option<Warning> {
     )
 }
 
-pub(super) fn touches_again(facts: &Facts<'_>) -> Option<Warning> {
+pub(super) fn touches_again(facts: &WarningFacts<'_>) -> Option<Warning> {
     let NextTouch { node, plane, time } = facts.touches_again?;
     let time = trimmed(time, 4);
     let brief = format!("node {node} would reach plane_{plane} at {time} s");
@@ -142,12 +142,12 @@ pub(super) fn touches_again(facts: &Facts<'_>) -> Option<Warning> {
     warning("touches_again", brief, message)
 }
 
-pub(super) fn last_instant(facts: &Facts<'_>) -> Option<Warning> {
+pub(super) fn last_instant(facts: &WarningFacts<'_>) -> Option<Warning> {
     let message = left_out(facts.checked?.left_out?);
     warning("last_instant", "the last instant of the history is left out", message)
 }
 
-pub(super) fn samples(facts: &Facts<'_>) -> Option<Warning> {
+pub(super) fn samples(facts: &WarningFacts<'_>) -> Option<Warning> {
     let samples = facts.checked?.samples?;
     warning(
         "samples",
@@ -156,7 +156,7 @@ pub(super) fn samples(facts: &Facts<'_>) -> Option<Warning> {
     )
 }
 
-pub(super) fn shifted(facts: &Facts<'_>) -> Option<Warning> {
+pub(super) fn shifted(facts: &WarningFacts<'_>) -> Option<Warning> {
     let cause = facts.checked?.shifted.as_ref()?;
     let message = format!(
         "the balance of the history is within its limit, but {cause}; the estimate counts this shift as an error of \
@@ -186,7 +186,7 @@ pub fn left_out(time: f64) -> String {
     )
 }
 
-pub(super) fn resampled(facts: &Facts<'_>) -> Option<Warning> {
+pub(super) fn resampled(facts: &WarningFacts<'_>) -> Option<Warning> {
     let error = facts.problem.resampling_error;
     if error <= RESAMPLED {
         return None;
@@ -198,7 +198,7 @@ pub(super) fn resampled(facts: &Facts<'_>) -> Option<Warning> {
     warning("resampled", format!("tables in time differ by up to {error} between steps"), message)
 }
 
-pub(super) fn reoriented(facts: &Facts<'_>) -> Option<Warning> {
+pub(super) fn reoriented(facts: &WarningFacts<'_>) -> Option<Warning> {
     let count = facts.problem.reoriented_elements;
     let elements = counted(count, "element");
     let were = if count == 1 { "was" } else { "were" };

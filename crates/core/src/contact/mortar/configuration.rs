@@ -21,7 +21,7 @@ pub struct ContactConfiguration<'a, const D: usize> {
 
 /// A node of a non-matching interface.
 #[derive(Clone, Copy, Debug)]
-enum Place {
+enum SideNode {
     Slave(usize),
     Master(usize),
 }
@@ -71,14 +71,14 @@ impl<'a, const D: usize> ContactConfiguration<'a, D> {
             place,
             (|node| eta(non_matching.slave(), node), |node| eta(non_matching.master(), node)),
         );
-        if matches!(place, Place::Slave(_)) { gap } else { -gap }
+        if matches!(place, SideNode::Slave(_)) { gap } else { -gap }
     }
 
     /// How far the condition of a node gives way (m) under the forces of all conditions (N), while a multiplier sets
     /// in: its gap is not less than minus this.
     #[must_use]
     pub fn give(&self, at: usize, forces: &[[f64; D]]) -> f64 {
-        let Some((non_matching, coupling, Place::Slave(node))) = self.place(at) else { return 0.0 };
+        let Some((non_matching, coupling, SideNode::Slave(node))) = self.place(at) else { return 0.0 };
         let multiplier = |k: usize| {
             let press = dot(&forces[non_matching.slave().position(k)], non_matching.frame().normal());
             if coupling.is_active(k) { press / coupling.weight(k) } else { 0.0 }
@@ -94,15 +94,15 @@ impl<'a, const D: usize> ContactConfiguration<'a, D> {
         let (slave, master) = (non_matching.slave(), non_matching.master());
         let eta = |side: &Side, node: usize| non_matching.eta(self.surface, side, node, displacement);
         let gap = match place {
-            Place::Slave(node) => {
+            SideNode::Slave(node) => {
                 let (places, xi) = (coupling.places(slave.part_of(node)), slave.xi()[node]);
                 if aside(places, master.edges(), xi) > 0.0 {
                     return 0.0;
                 }
                 eta(slave, node) - interpolated(places, xi, |node| eta(master, node))
             }
-            Place::Master(_) if !faces(non_matching, coupling, place) => return 0.0,
-            Place::Master(_) => {
+            SideNode::Master(_) if !faces(non_matching, coupling, place) => return 0.0,
+            SideNode::Master(_) => {
                 -difference(non_matching, coupling, place, (|node| eta(slave, node), |node| eta(master, node)))
             }
         };
@@ -114,7 +114,7 @@ impl<'a, const D: usize> ContactConfiguration<'a, D> {
     #[must_use]
     pub fn is_at_end(&self, at: usize) -> bool {
         self.place(at).is_some_and(|(non_matching, coupling, place)| {
-            let Place::Slave(node) = place else { return false };
+            let SideNode::Slave(node) = place else { return false };
             !faces(non_matching, coupling, place) || is_corner_at_end(non_matching.slave(), coupling, node)
         })
     }
@@ -125,7 +125,7 @@ impl<'a, const D: usize> ContactConfiguration<'a, D> {
         match self.place(at) {
             None => true,
             Some((non_matching, coupling, place)) => {
-                matches!(place, Place::Slave(_)) && faces(non_matching, coupling, place)
+                matches!(place, SideNode::Slave(_)) && faces(non_matching, coupling, place)
             }
         }
     }
@@ -157,11 +157,11 @@ impl<'a, const D: usize> ContactConfiguration<'a, D> {
         self.surface.nodes()[side.position(node)].node.index()
     }
 
-    fn place(&self, at: usize) -> Option<(&'a NonMatchingSurfaces<D>, &Coupling, Place)> {
+    fn place(&self, at: usize) -> Option<(&'a NonMatchingSurfaces<D>, &Coupling, SideNode)> {
         let index = self.surface.non_matching_of(at)?;
         let non_matching = &self.surface.non_matching()[index];
-        let slave = non_matching.slave().node_at(at).map(Place::Slave);
-        let place = slave.or_else(|| non_matching.master().node_at(at).map(Place::Master))?;
+        let slave = non_matching.slave().node_at(at).map(SideNode::Slave);
+        let place = slave.or_else(|| non_matching.master().node_at(at).map(SideNode::Master))?;
         Some((non_matching, &self.couplings[index], place))
     }
 }
@@ -187,10 +187,10 @@ fn is_corner_at_end(slave: &Side, coupling: &Coupling, node: usize) -> bool {
 }
 
 /// Whether a node faces the other surface.
-fn faces<const D: usize>(non_matching: &NonMatchingSurfaces<D>, coupling: &Coupling, place: Place) -> bool {
+fn faces<const D: usize>(non_matching: &NonMatchingSurfaces<D>, coupling: &Coupling, place: SideNode) -> bool {
     match place {
-        Place::Slave(node) => coupling.is_active(node),
-        Place::Master(node) => {
+        SideNode::Slave(node) => coupling.is_active(node),
+        SideNode::Master(node) => {
             let slave = non_matching.slave();
             (0..slave.parts().len()).any(|part| beside(slave, part, coupling.places(part)[node]) <= 0.0)
         }
@@ -201,18 +201,18 @@ fn faces<const D: usize>(non_matching: &NonMatchingSurfaces<D>, coupling: &Coupl
 fn difference<const D: usize>(
     non_matching: &NonMatchingSurfaces<D>,
     coupling: &Coupling,
-    place: Place,
+    place: SideNode,
     (slave, master): (impl Fn(usize) -> f64, impl Fn(usize) -> f64),
 ) -> f64 {
     match place {
-        Place::Slave(node) if coupling.is_active(node) => {
+        SideNode::Slave(node) if coupling.is_active(node) => {
             coupling.difference(node, slave, master) / coupling.weight(node)
         }
-        Place::Slave(node) => {
+        SideNode::Slave(node) => {
             let places = coupling.places(non_matching.slave().part_of(node));
             slave(node) - interpolated(places, non_matching.slave().xi()[node], master)
         }
-        Place::Master(node) => {
+        SideNode::Master(node) => {
             // The body that it faces, or is nearest to.
             let side = non_matching.slave();
             let away = |part: &usize| beside(side, *part, coupling.places(*part)[node]);

@@ -37,13 +37,13 @@ pub(crate) struct NonMatchingContact {
     limit: Vec<f64>,
     /// b of the normal and of the tangential part, for each multiplier.
     right: Vec<[f64; 2]>,
-    sides: [State; 2],
+    sides: [SideState; 2],
     touches: bool,
 }
 
 /// One side at a step, node by node.
 #[derive(Clone, Debug)]
-struct State {
+struct SideState {
     /// The nodes of the mesh.
     nodes: Vec<usize>,
     /// 1/m (1/kg), for forces along n and along t.
@@ -59,7 +59,7 @@ struct State {
     force: Vec<[f64; 2]>,
 }
 
-impl State {
+impl SideState {
     fn new<const D: usize>(surface: &ContactSurface<D>, side: &Side, inverse_mass: &[f64]) -> Self {
         let slots = || (0..side.len()).map(|node| &surface.nodes()[side.position(node)]);
         let nodes: Vec<usize> = slots().map(|contact| contact.node.index()).collect();
@@ -108,7 +108,8 @@ impl NonMatchingContact {
     /// Makes room for the surfaces of an index, with 1/m of all nodes (1/kg).
     pub(crate) fn new<const D: usize>(surface: &ContactSurface<D>, index: usize, inverse_mass: &[f64]) -> Self {
         let non_matching = &surface.non_matching()[index];
-        let sides = [non_matching.slave(), non_matching.master()].map(|side| State::new(surface, side, inverse_mass));
+        let sides =
+            [non_matching.slave(), non_matching.master()].map(|side| SideState::new(surface, side, inverse_mass));
         let guided = sides.iter().any(|side| side.guided.contains(&true));
         Self {
             index,

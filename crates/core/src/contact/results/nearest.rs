@@ -47,13 +47,13 @@ impl Nearest {
 
 /// The gaps of the last two instants, as long as nothing has touched.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Gaps {
+pub(super) struct LastGaps {
     touched: bool,
     now: Option<(f64, Vec<f64>)>,
     before: Option<(f64, Vec<f64>)>,
 }
 
-impl Gaps {
+impl LastGaps {
     /// Takes in the gaps (m) at an instant (s), unless something touches then or has touched before.
     pub(super) fn advance(&mut self, time: f64, touches: bool, gaps: impl Iterator<Item = f64>) {
         self.touched |= touches;
@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn the_first_gap_to_close_need_not_be_the_least() {
-        let mut gaps = Gaps::default();
+        let mut gaps = LastGaps::default();
         gaps.advance(0.0, false, [3.0, 8.0, f64::INFINITY].into_iter());
         assert_eq!(gaps.nearest(), Some(Nearest { at: 0, gap: 3.0, touch: None }));
         gaps.advance(1.0, false, [2.5, 4.0, 0.5].into_iter());

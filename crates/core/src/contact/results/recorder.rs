@@ -1,7 +1,7 @@
 //! Contact results of the steps of a run or a history.
 
 use super::averaged::Averages;
-use super::nearest::Gaps;
+use super::nearest::LastGaps;
 use super::resultant::{Share, Sum};
 use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
 use crate::border::padded;
@@ -96,7 +96,7 @@ struct Recorder<'p, const D: usize, const N: usize> {
     /// The shortest edge of each node that may touch another body (m); infinite at rigid obstacles, and on a bar.
     shortest: Vec<f64>,
     leaning: Leaning<'p, D>,
-    gaps: Gaps,
+    gaps: LastGaps,
     averages: Averages,
     results: ContactResults,
 }
@@ -131,7 +131,7 @@ impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
         };
         let (laws, now) = (TangentialLaw::of_surface(problem), vec![start; results.nodes.len()]);
         let configuration = problem.surface().configuration(problem.initial_displacement());
-        let (shortest, gaps, averages) = (shortest_edges(problem), Gaps::default(), Averages::new(problem));
+        let (shortest, gaps, averages) = (shortest_edges(problem), LastGaps::default(), Averages::new(problem));
         let leaning = Leaning::new(problem.surface(), problem.mesh(), problem.on_lines_of_symmetry());
         Self { problem, times, laws, now, configuration, shortest, leaning, gaps, averages, results }
     }

@@ -1,6 +1,6 @@
 //! How two bodies lie to each other, and how they meet if nothing else acts on them.
 
-use super::outline::{Outline, Vector};
+use super::outline::{Outline, PlaneVector};
 use crate::contact::CORNER;
 use crate::problem::alignment::unit;
 
@@ -13,10 +13,10 @@ pub(super) const ROUNDING: f64 = 1e-9;
 #[derive(Debug, PartialEq)]
 pub(super) struct Approach {
     /// Unit normal from the first body to the second one along which they are furthest apart, and how far (m).
-    pub(super) normal: Vector,
+    pub(super) normal: PlaneVector,
     pub(super) gap: f64,
     /// The normal where they meet, and when (s), if their velocities at the start bring them together.
-    pub(super) meeting: Option<(Vector, f64)>,
+    pub(super) meeting: Option<(PlaneVector, f64)>,
     /// Of halves, the direction across which their line of symmetry stands.
     pub(super) across: Option<usize>,
 }
@@ -65,13 +65,13 @@ pub(super) fn approach(first: &Outline, second: &Outline) -> Option<Approach> {
 struct Directions<'o> {
     bodies: [&'o Outline; 2],
     /// Those of the edges of the first body, then those of the second.
-    normals: Vec<Vector>,
+    normals: Vec<PlaneVector>,
     /// How many the first body has.
     edges: usize,
     /// Of halves, the direction across which their line of symmetry stands.
     across: Option<usize>,
     /// Velocity of the second body against the first one (m/s).
-    relative: Vector,
+    relative: PlaneVector,
     /// Shorter lengths are rounding (m).
     tolerance: f64,
 }
@@ -99,13 +99,13 @@ impl<'o> Directions<'o> {
     }
 
     /// How far the bodies are apart along a direction (m).
-    fn gap(&self, n: &Vector) -> f64 {
+    fn gap(&self, n: &PlaneVector) -> f64 {
         let [first, second] = self.bodies.map(|body| body.hull.iter().map(|p| dot(p, n)));
         second.fold(f64::INFINITY, f64::min) - first.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// The direction of an edge where the other body faces it, after some time (s).
-    fn normal_of(&self, k: usize, time: f64) -> Vector {
+    fn normal_of(&self, k: usize, time: f64) -> PlaneVector {
         if self.across.is_some() {
             return self.normals[k];
         }
@@ -114,10 +114,10 @@ impl<'o> Directions<'o> {
         let (edge, [own, other]) = if is_of_first { (k, [first, second]) } else { (k - self.edges, [second, first]) };
         let sign = if is_of_first { 1.0 } else { -1.0 };
         let places = other.hull.iter().map(|p| std::array::from_fn(|c| p[c] + sign * time * self.relative[c]));
-        let places: Vec<Vector> = places.collect();
-        let reach = |p: &Vector| sign * dot(p, &self.normals[k]);
+        let places: Vec<PlaneVector> = places.collect();
+        let reach = |p: &PlaneVector| sign * dot(p, &self.normals[k]);
         let least = places.iter().map(reach).fold(f64::INFINITY, f64::min);
-        let nearest: Vec<Vector> = places.into_iter().filter(|p| reach(p) <= least + self.tolerance).collect();
+        let nearest: Vec<PlaneVector> = places.into_iter().filter(|p| reach(p) <= least + self.tolerance).collect();
         normal_at(&own.hull, edge, &nearest).map(|x| sign * x)
     }
 }
@@ -129,11 +129,11 @@ const AT_NODE: f64 = 0.05;
 /// The outward normal on an edge of a convex polygon where these places face it. At a node at which it turns by less
 /// than a corner, as a curve, it is midway between both edges; elsewhere it is that of the edge. With a direction in
 /// between, one more edge on one side than on the other would be within 60° of it, and their mean is the normal.
-fn normal_at(polygon: &[Vector], edge: usize, places: &[Vector]) -> Vector {
+fn normal_at(polygon: &[PlaneVector], edge: usize, places: &[PlaneVector]) -> PlaneVector {
     let (normals, count) = (outward(polygon), polygon.len());
     let [start, end] = [polygon[edge], polygon[(edge + 1) % count]];
     let along = [end[0] - start[0], end[1] - start[1]];
-    let part = |place: &Vector| {
+    let part = |place: &PlaneVector| {
         let part = dot(&[place[0] - start[0], place[1] - start[1]], &along) / dot(&along, &along);
         part.clamp(0.0, 1.0)
     };
@@ -148,7 +148,7 @@ fn normal_at(polygon: &[Vector], edge: usize, places: &[Vector]) -> Vector {
 }
 
 /// Outward normals of the edges of a convex polygon.
-fn outward(corners: &[Vector]) -> Vec<Vector> {
+fn outward(corners: &[PlaneVector]) -> Vec<PlaneVector> {
     let normal = |k: usize| {
         let [a, b] = [corners[k], corners[(k + 1) % corners.len()]];
         let (x, y) = (b[0] - a[0], b[1] - a[1]);
@@ -158,17 +158,17 @@ fn outward(corners: &[Vector]) -> Vec<Vector> {
     (0..corners.len()).map(normal).collect()
 }
 
-pub(super) fn dot(a: &Vector, b: &Vector) -> f64 {
+pub(super) fn dot(a: &PlaneVector, b: &PlaneVector) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::symmetry::{Motion, SymmetryLine};
+    use crate::problem::symmetry::{LineMotion, SymmetryLine};
 
     /// A box with this lower left corner and side.
-    fn square(corner: Vector, side: f64, velocity: Vector) -> Outline {
+    fn square(corner: PlaneVector, side: f64, velocity: PlaneVector) -> Outline {
         let [x, y] = corner;
         let hull = vec![[x, y], [x + side, y], [x + side, y + side], [x, y + side]];
         let (name, size) = (String::new(), side * 2.0_f64.sqrt());
@@ -196,7 +196,7 @@ mod tests {
     /// Polygons of 36 and 42 sides meet node on node: a little speed aside does not turn their normal.
     #[test]
     fn normals_of_curves_do_not_jump() {
-        let disc = |sides: u32, height: f64, turn: f64, velocity: Vector| {
+        let disc = |sides: u32, height: f64, turn: f64, velocity: PlaneVector| {
             let corner = |k: u32| (f64::from(k) * std::f64::consts::TAU / f64::from(sides) + turn).sin_cos();
             let hull = (0..sides).map(corner).map(|(sin, cos)| [cos, sin + height]).collect();
             Outline { hull, ..square([0.0, 0.0], 1.0, velocity) }
@@ -213,7 +213,7 @@ mod tests {
     /// Two slopes beside a line of symmetry meet along it, unless they are on different sides of it or on other lines.
     #[test]
     fn halves_meet_along_their_line() {
-        let line = |across: usize, place: f64| SymmetryLine { across, place, motion: Motion::Uniform(0.0) };
+        let line = |across: usize, place: f64| SymmetryLine { across, place, motion: LineMotion::Uniform(0.0) };
         let halves = |at: f64, lines: [Vec<SymmetryLine>; 2]| {
             let [of_first, own] = lines;
             let hull = vec![[at, 0.0], [at + 1.0, 0.0], [at + 1.0, 0.5], [at, 1.0]];
@@ -237,7 +237,7 @@ mod tests {
     /// After an oblique way nodes meet in the same direction, although other gaps are between them at the start.
     #[test]
     fn nodes_of_curves_meet_at_any_speed() {
-        let disc = |at: Vector, velocity: Vector| {
+        let disc = |at: PlaneVector, velocity: PlaneVector| {
             let corner = |k: usize| (k as f64 * std::f64::consts::TAU / 18.0 + std::f64::consts::FRAC_PI_2).sin_cos();
             let hull = (0..18).map(corner).map(|(sin, cos)| [cos + at[0], sin + at[1]]).collect();
             Outline { hull, ..square([0.0, 0.0], 1.0, velocity) }

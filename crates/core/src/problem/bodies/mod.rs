@@ -16,10 +16,10 @@ pub use contact::{Between, Contact};
 use super::Cause;
 use crate::ids::{FaceId, NodeId};
 use approach::{Approach, ROUNDING, approach, dot};
-use outline::{Edge, Outline, Vector};
+use outline::{Edge, Outline, PlaneVector};
 pub(super) use outline::{Start, outlines};
 use std::collections::{BTreeMap, BTreeSet};
-use view::{FacingEdges, View};
+use view::{EdgesInView, View};
 
 /// Surfaces reach beyond what faces the other body at first by this part of the smaller one of the two, and by twice
 /// the way that bodies slide while they touch.
@@ -65,7 +65,7 @@ struct Candidates<'w> {
     at: usize,
     wanted: &'w Wanted,
     /// From the first body to the second one.
-    normal: Vector,
+    normal: PlaneVector,
     /// When they are looked at (s).
     time: f64,
     gap: f64,
@@ -73,7 +73,7 @@ struct Candidates<'w> {
     meets: Option<f64>,
     slide: f64,
     across: Option<usize>,
-    sides: [FacingEdges; 2],
+    sides: [EdgesInView; 2],
 }
 
 /// The surfaces of all wanted pairs; none for a pair that is not named and does not see each other. `held` says which
@@ -89,7 +89,7 @@ pub(super) fn find(
     facing_planes: &BTreeSet<FaceId>,
 ) -> Result<Vec<Found>, (usize, Cause)> {
     let ways = Ways::new(outlines);
-    let held = |edge: &Edge, normal: &Vector| {
+    let held = |edge: &Edge, normal: &PlaneVector| {
         edge.nodes.iter().any(|&node| (0..2).any(|c| held(node)[c] && normal[c].abs() > ROUNDING))
     };
     let mut all = Vec::new();
@@ -135,7 +135,7 @@ fn leave_corners(outlines: &[Outline], all: &mut [Candidates<'_>], facing_planes
         pair.sides[side].seeing.iter().flat_map(|&(at, _)| edges[at].nodes.iter().copied()).collect()
     };
     let meeting = |pair: &&Candidates<'_>| pair.meets.is_some();
-    let taken: Vec<(usize, Vector, BTreeSet<NodeId>)> = all
+    let taken: Vec<(usize, PlaneVector, BTreeSet<NodeId>)> = all
         .iter()
         .filter(meeting)
         .flat_map(|pair| [0, 1].map(|side| (pair.wanted.pair[side], pair.outward(side), nodes(pair, side))))
@@ -156,8 +156,8 @@ fn leave_corners(outlines: &[Outline], all: &mut [Candidates<'_>], facing_planes
 }
 
 /// How far two bodies slide along each other while they touch (m).
-fn slide([first, second]: [&Outline; 2], normal: &Vector) -> f64 {
-    let relative: Vector = std::array::from_fn(|c| second.velocity[c] - first.velocity[c]);
+fn slide([first, second]: [&Outline; 2], normal: &PlaneVector) -> f64 {
+    let relative: PlaneVector = std::array::from_fn(|c| second.velocity[c] - first.velocity[c]);
     dot(&relative, &[-normal[1], normal[0]]).abs() * PASSAGES * (first.passage + second.passage)
 }
 
@@ -189,7 +189,7 @@ impl Candidates<'_> {
     }
 
     /// The direction from a side to the other one.
-    fn outward(&self, side: usize) -> Vector {
+    fn outward(&self, side: usize) -> PlaneVector {
         if side == 0 { self.normal } else { self.normal.map(|x| -x) }
     }
 
@@ -352,7 +352,7 @@ impl Ways {
     }
 
     /// The direction and the time (s) at which to look at two bodies; none if no straight line separates them.
-    fn view(&self, [a, b]: [usize; 2]) -> Option<(Vector, f64, &Approach)> {
+    fn view(&self, [a, b]: [usize; 2]) -> Option<(PlaneVector, f64, &Approach)> {
         let way = self.of_pair.get(&[a.min(b), a.max(b)])?.as_ref()?;
         let reliable = |time: f64| [a, b].iter().all(|&body| time <= (1.0 + ROUNDING) * self.first[body]);
         let (normal, time) = way.meeting.filter(|(_, time)| reliable(*time)).unwrap_or((way.normal, 0.0));

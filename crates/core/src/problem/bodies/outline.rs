@@ -5,16 +5,16 @@ use crate::mesh::Mesh;
 use crate::problem::symmetry::{SymmetryLine, common_lines, distinct};
 
 /// A point or a vector of the plane.
-pub(in crate::problem) type Vector = [f64; 2];
+pub(in crate::problem) type PlaneVector = [f64; 2];
 
 /// An outer edge, or an end of a bar.
 pub(in crate::problem) struct Edge {
     pub(in crate::problem) face: FaceId,
     pub(in crate::problem) nodes: Vec<NodeId>,
     /// Where it ends at the start (m).
-    pub(in crate::problem) ends: [Vector; 2],
+    pub(in crate::problem) ends: [PlaneVector; 2],
     /// Outward unit normal.
-    pub(in crate::problem) normal: Vector,
+    pub(in crate::problem) normal: PlaneVector,
     /// Whether neither a support nor a load is on it.
     pub(in crate::problem) free: bool,
 }
@@ -24,11 +24,11 @@ pub(in crate::problem) struct Outline {
     pub(in crate::problem) name: String,
     pub(in crate::problem) edges: Vec<Edge>,
     /// Corners of its convex hull, counterclockwise.
-    pub(in crate::problem) hull: Vec<Vector>,
+    pub(in crate::problem) hull: Vec<PlaneVector>,
     /// The lines of symmetry that it meets.
     pub(in crate::problem) lines: Vec<SymmetryLine>,
     /// Velocity of the centre of mass at the start (m/s).
-    pub(in crate::problem) velocity: Vector,
+    pub(in crate::problem) velocity: PlaneVector,
     /// The largest distance of two of its points (m).
     pub(in crate::problem) size: f64,
     /// How long a wave takes from end to end (s).
@@ -46,7 +46,7 @@ impl Outline {
     }
 
     /// The place of a point after a time (s).
-    pub(in crate::problem) fn moved(&self, point: &Vector, time: f64) -> Vector {
+    pub(in crate::problem) fn moved(&self, point: &PlaneVector, time: f64) -> PlaneVector {
         std::array::from_fn(|c| point[c] + self.velocity[c] * time)
     }
 }
@@ -91,7 +91,7 @@ pub(in crate::problem) fn outlines<const D: usize>(
     }
     let outline = |(body, (name, edges)): (usize, (String, Vec<Edge>))| {
         let hull = hull(edges.iter().flat_map(|edge| edge.ends).collect());
-        let apart = |a: &Vector| hull.iter().map(|b| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
+        let apart = |a: &PlaneVector| hull.iter().map(|b| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
         let size = hull.iter().map(apart).fold(0.0, f64::max);
         let slowest = edges.iter().map(|edge| wave_speed(edge.face)).fold(f64::INFINITY, f64::min);
         let velocity = momentum[body].map(|p| p / mass[body]);
@@ -107,7 +107,7 @@ fn lines(edges: &[Edge], line_of: impl Fn(FaceId) -> Option<SymmetryLine>) -> Ve
     distinct(on_line.map(|(line, end)| SymmetryLine { place: end[line.across], ..line }))
 }
 
-fn in_plane<const D: usize>(vector: &[f64; D]) -> Vector {
+fn in_plane<const D: usize>(vector: &[f64; D]) -> PlaneVector {
     [vector[0], vector.get(1).copied().unwrap_or(0.0)]
 }
 
@@ -115,15 +115,15 @@ fn in_plane<const D: usize>(vector: &[f64; D]) -> Vector {
 const STRAIGHT: f64 = 1e-9;
 
 /// The corners of the convex hull of some points, counterclockwise.
-fn hull(mut points: Vec<Vector>) -> Vec<Vector> {
+fn hull(mut points: Vec<PlaneVector>) -> Vec<PlaneVector> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     points.dedup();
-    let turns = |a: &Vector, b: &Vector, c: &Vector| {
+    let turns = |a: &PlaneVector, b: &PlaneVector, c: &PlaneVector| {
         let ([x, y], [v, w]) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
         x * w - y * v > STRAIGHT * x.hypot(y) * v.hypot(w)
     };
-    let half = |points: &mut dyn Iterator<Item = &Vector>| {
-        let mut chain: Vec<Vector> = Vec::new();
+    let half = |points: &mut dyn Iterator<Item = &PlaneVector>| {
+        let mut chain: Vec<PlaneVector> = Vec::new();
         for point in points {
             while let [.., a, b] = chain.as_slice()
                 && !turns(a, b, point)

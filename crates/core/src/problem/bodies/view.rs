@@ -1,7 +1,7 @@
 //! The edges of two bodies that see each other.
 
 use super::approach::dot;
-use super::outline::{Edge, Outline, Vector};
+use super::outline::{Edge, Outline, PlaneVector};
 use crate::ids::FaceId;
 use crate::problem::alignment::FOUND;
 
@@ -13,18 +13,18 @@ pub(super) struct View<'o> {
     outlines: &'o [Outline],
     time: f64,
     /// From the first body to the second one.
-    normal: Vector,
+    normal: PlaneVector,
 }
 
 /// An edge in such a view: where it lies across (ξ) and along (η) the direction (m).
 #[derive(Clone, Copy)]
-struct Seen {
+struct SeenEdge {
     /// Ascending in ξ.
     xi: [f64; 2],
     eta: [f64; 2],
 }
 
-impl Seen {
+impl SeenEdge {
     /// η at a ξ that the edge has between its ends, or at one of them.
     fn eta_at(&self, xi: f64) -> Option<f64> {
         let [low, high] = self.xi;
@@ -38,7 +38,7 @@ impl Seen {
 
 /// The edges of one body that face another one.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct FacingEdges {
+pub(super) struct EdgesInView {
     /// Those that see it, as places in the outline, ascending, each with how far it is (m).
     pub(super) seeing: Vec<(usize, f64)>,
     /// Those beside it, with nothing in front, each with its distance across (m).
@@ -46,14 +46,14 @@ pub(super) struct FacingEdges {
 }
 
 impl<'o> View<'o> {
-    pub(super) fn new(outlines: &'o [Outline], time: f64, normal: Vector) -> Self {
+    pub(super) fn new(outlines: &'o [Outline], time: f64, normal: PlaneVector) -> Self {
         Self { outlines, time, normal }
     }
 
     /// The edges of each of two bodies that face the other one; those with a node that is held across are left out.
-    pub(super) fn facing(&self, pair: [usize; 2], held: impl Fn(&Edge, &Vector) -> bool) -> [FacingEdges; 2] {
+    pub(super) fn facing(&self, pair: [usize; 2], held: impl Fn(&Edge, &PlaneVector) -> bool) -> [EdgesInView; 2] {
         let towards = [self.normal, self.normal.map(|x| -x)];
-        let sides: [Vec<(usize, Seen)>; 2] = std::array::from_fn(|k| {
+        let sides: [Vec<(usize, SeenEdge)>; 2] = std::array::from_fn(|k| {
             let edges = self.outlines[pair[k]].edges.iter().enumerate();
             let faces = edges.filter(|(_, edge)| dot(&edge.normal, &towards[k]) >= FOUND);
             faces.map(|(at, edge)| (at, self.seen(pair[k], edge, &towards[k]))).collect()
@@ -63,7 +63,7 @@ impl<'o> View<'o> {
                 // The other side is seen in the opposite direction.
                 [low.min(-seen.xi[1]), high.max(-seen.xi[0])]
             });
-            let mut facing = FacingEdges::default();
+            let mut facing = EdgesInView::default();
             for (at, seen) in &sides[k] {
                 let edge = &self.outlines[pair[k]].edges[*at];
                 if !edge.free || held(edge, &self.normal) {
@@ -91,7 +91,7 @@ impl<'o> View<'o> {
     }
 
     /// Of the edges that see each other, the two that are nearest; of several at a corner, the most opposite ones.
-    pub(super) fn nearest(&self, pair: [usize; 2], sides: &[FacingEdges; 2]) -> Option<[FaceId; 2]> {
+    pub(super) fn nearest(&self, pair: [usize; 2], sides: &[EdgesInView; 2]) -> Option<[FaceId; 2]> {
         let edges = pair.map(|body| &self.outlines[body].edges);
         // All along the direction from the first body to the second one.
         let seen = [0, 1].map(|k| {
@@ -121,18 +121,24 @@ impl<'o> View<'o> {
         best.map(|(_, _, faces)| faces)
     }
 
-    fn seen(&self, body: usize, edge: &Edge, towards: &Vector) -> Seen {
+    fn seen(&self, body: usize, edge: &Edge, towards: &PlaneVector) -> SeenEdge {
         let along = [-towards[1], towards[0]];
         let mut ends = edge.ends.map(|end| {
             let place = self.outlines[body].moved(&end, self.time);
             [dot(&place, &along), dot(&place, towards)]
         });
         ends.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        Seen { xi: ends.map(|end| end[0]), eta: ends.map(|end| end[1]) }
+        SeenEdge { xi: ends.map(|end| end[0]), eta: ends.map(|end| end[1]) }
     }
 
     /// The body that is next in front of a point of an edge, and how far (m).
-    fn in_front(&self, (own, at): (usize, usize), seen: &Seen, xi: f64, towards: &Vector) -> Option<(usize, f64)> {
+    fn in_front(
+        &self,
+        (own, at): (usize, usize),
+        seen: &SeenEdge,
+        xi: f64,
+        towards: &PlaneVector,
+    ) -> Option<(usize, f64)> {
         let eta = seen.eta_at(xi)?;
         let mut nearest: Option<(usize, f64)> = None;
         for (body, outline) in self.outlines.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! What is possible, but more likely a slip: a mixture of units, a body that never touches, a run that is too short.
 
-mod held;
+mod edge_exclusion;
 mod motion;
 mod moved;
 mod spin;
@@ -48,7 +48,8 @@ fn all<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid
     });
     let others =
         motion::plausibility_warnings(problem, times).into_iter().chain(time::plausibility_warnings(problem, times));
-    let others = others.chain(held::plausibility_warnings(problem)).chain(spin::plausibility_warnings(problem, times));
+    let others =
+        others.chain(edge_exclusion::plausibility_warnings(problem)).chain(spin::plausibility_warnings(problem, times));
     all.extend(
         others.filter(|plausibility_warning| {
             !mixed || !["supersonic", "single_step"].contains(&plausibility_warning.name)

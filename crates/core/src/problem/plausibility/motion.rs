@@ -104,7 +104,7 @@ struct Flight<const D: usize> {
 }
 
 /// The flight of each body, if nothing strains them; `None` if that cannot be told beforehand.
-fn flights<const D: usize, const N: usize>(problem: &Problem<D, N>, bodies: &Bodies) -> Option<Vec<Flight<D>>> {
+fn flights<const D: usize, const N: usize>(problem: &Problem<D, N>, bodies: &SeparateBodies) -> Option<Vec<Flight<D>>> {
     let velocity = bodies.uniform(problem.initial_velocity())?;
     bodies.uniform(problem.initial_displacement())?;
     let steady = |motion: &crate::load::Table| motion.value().iter().all(|v| v == &motion.value()[0]);
@@ -130,13 +130,13 @@ fn flights<const D: usize, const N: usize>(problem: &Problem<D, N>, bodies: &Bod
 }
 
 /// The separate bodies of a mesh.
-struct Bodies {
+struct SeparateBodies {
     /// The body of each node, and the nodes of each body.
     of_node: Vec<usize>,
     nodes: Vec<Vec<usize>>,
 }
 
-impl Bodies {
+impl SeparateBodies {
     fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
         let mesh = problem.mesh();
         let of_node = if mesh.parts() == 1 { vec![0; mesh.node_count()] } else { mesh.part_numbers() };
@@ -169,7 +169,7 @@ impl Bodies {
 }
 
 /// The nearest candidate node of a plane or of another body, and when it will touch.
-struct Approach {
+struct Encounter {
     obstacle: usize,
     /// "plane", or "other body".
     what: &'static str,
@@ -184,7 +184,7 @@ struct Approach {
 /// Bodies in flight that reach no plane and no other body before the end, or the first of them from very far. Their
 /// motion after a first touch is not predicted, nor where surfaces face each other that do not do so at the start.
 fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Option<PlausibilityWarning> {
-    let bodies = Bodies::new(problem);
+    let bodies = SeparateBodies::new(problem);
     let flights = flights(problem, &bodies)?;
     let on = |obstacle: usize| {
         let nodes = problem.surface().nodes().iter().filter(move |contact| contact.obstacle == obstacle);
@@ -209,7 +209,7 @@ fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Tim
         // A gap within rounding is closed.
         let gap = if gap <= problem.contact_tolerance() { 0.0 } else { gap };
         let what = if partner.is_some() { "other body" } else { "plane" };
-        Some(Approach { obstacle, what, gap, speed, time: closing_time(gap, speed, push) })
+        Some(Encounter { obstacle, what, gap, speed, time: closing_time(gap, speed, push) })
     };
     let leading = (0..problem.obstacles().len()).filter(|&obstacle| problem.leads_interface(obstacle));
     let (interfaces, planes): (Vec<usize>, Vec<usize>) =
@@ -244,10 +244,10 @@ fn closing_time(gap: f64, speed: f64, push: f64) -> f64 {
 
 fn never<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
-    first: &Approach,
+    first: &Encounter,
     end: f64,
 ) -> Option<PlausibilityWarning> {
-    let Approach { obstacle, what, gap, speed, time } = *first;
+    let Encounter { obstacle, what, gap, speed, time } = *first;
     let place = problem.place_of_obstacle(obstacle);
     let (gap, towards, end) = (short(gap), short(speed), short(end));
     if time.is_finite() {
@@ -289,10 +289,10 @@ fn never<const D: usize, const N: usize>(
 
 fn far<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
-    first: &Approach,
+    first: &Encounter,
     size: f64,
 ) -> Option<PlausibilityWarning> {
-    let Approach { obstacle, what, gap, time, .. } = *first;
+    let Encounter { obstacle, what, gap, time, .. } = *first;
     if gap <= FAR * size {
         return None;
     }

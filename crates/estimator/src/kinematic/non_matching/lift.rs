@@ -1,6 +1,6 @@
 //! Penetration of two surfaces, and the lifts that remove it.
 
-use super::record::Motion;
+use super::record::InterfaceMotion;
 use crate::kinematic::normal_motions::Pair;
 use crate::kinematic::window::least_of_parabola;
 use crate::partition::{Piece, pieces};
@@ -85,7 +85,7 @@ impl Penetration {
     pub(super) fn at<const D: usize>(
         &mut self,
         non_matching: &NonMatchingSurfaces<D>,
-        motion: &Motion,
+        motion: &InterfaceMotion,
         instant: usize,
     ) {
         self.instant = instant;
@@ -101,7 +101,7 @@ impl Penetration {
     pub(super) fn between<const D: usize>(
         &mut self,
         non_matching: &NonMatchingSurfaces<D>,
-        [from, to]: [&Motion; 2],
+        [from, to]: [&InterfaceMotion; 2],
         half: f64,
     ) {
         if from.shifts.iter().zip(&to.shifts).all(|([a, _], [b, _])| (b - a).abs() <= self.tolerance) {
@@ -152,7 +152,7 @@ fn difference(piece: &Piece, field: &[Vec<f64>; 2]) -> [f64; 2] {
 }
 
 /// The motion within a half step of this length (s), after a part of it: velocities are linear.
-fn within(from: &Motion, to: &Motion, half: f64, part: f64) -> Motion {
+fn within(from: &InterfaceMotion, to: &InterfaceMotion, half: f64, part: f64) -> InterfaceMotion {
     let advance =
         |place: f64, [before, after]: [f64; 2]| place + half * part * (before + 0.5 * part * (after - before));
     let side = |k: usize| -> Vec<f64> {
@@ -161,5 +161,5 @@ fn within(from: &Motion, to: &Motion, half: f64, part: f64) -> Motion {
     };
     let shifts = from.shifts.iter().zip(&to.shifts);
     let shifts = shifts.map(|([place, before], [_, after])| [advance(*place, [*before, *after]), *after]).collect();
-    Motion { shifts, speed: Default::default(), eta: [side(0), side(1)] }
+    InterfaceMotion { shifts, speed: Default::default(), eta: [side(0), side(1)] }
 }

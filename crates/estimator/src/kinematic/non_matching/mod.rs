@@ -21,7 +21,7 @@ use path::solve;
 use percute_core::contact::{ContactFace, NonMatchingSurfaces, Side};
 use percute_core::material::Law;
 use percute_core::problem::Problem;
-use record::{Motion, Record};
+use record::{InterfaceMotion, Record};
 use std::ops::Range;
 
 /// Rounds of lifts after which the search ends; a penetration that is left shows in the residuals.
@@ -166,7 +166,7 @@ impl NonMatchingMotion {
         let [own, other] = sides(non_matching).map(|side| stiffness(problem, side));
         let nodes = sides(non_matching).map(Side::len);
         let mut found = Penetration::new(nodes, other / (own + other), problem.contact_tolerance());
-        let mut last: Option<Motion> = None;
+        let mut last: Option<InterfaceMotion> = None;
         for instants in portions(self.record.count()) {
             let motions = change.motions(non_matching, &mut self.record, instants.clone())?;
             for (instant, motion) in instants.zip(motions) {
@@ -324,7 +324,7 @@ impl Changes {
         non_matching: &NonMatchingSurfaces<D>,
         record: &mut Record,
         instants: Range<usize>,
-    ) -> Result<Vec<Motion>, ScratchError> {
+    ) -> Result<Vec<InterfaceMotion>, ScratchError> {
         let mut motions = record.motions(non_matching, instants.clone())?;
         let changes = self.read(0..self.slaves + non_matching.master().len(), instants)?;
         for (j, motion) in motions.iter_mut().enumerate() {

@@ -11,7 +11,7 @@ pub(super) type Target = (Vec<f64>, f64);
 
 /// The motion of all nodes of both surfaces at an instant, those of the slave first.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Motion {
+pub(super) struct InterfaceMotion {
     /// How far each part of the slave has moved against the master along the tangent (m), and how fast it does (m/s).
     pub(super) shifts: Vec<Pair>,
     /// Normal velocity (m/s).
@@ -25,7 +25,7 @@ fn places(shifts: &[Pair]) -> Vec<f64> {
     shifts.iter().map(|[place, _]| *place).collect()
 }
 
-impl Motion {
+impl InterfaceMotion {
     /// How far each part of the slave has moved against the master (m).
     pub(super) fn places(&self) -> Vec<f64> {
         places(&self.shifts)
@@ -180,14 +180,14 @@ impl Record {
         &mut self,
         non_matching: &NonMatchingSurfaces<D>,
         instants: std::ops::Range<usize>,
-    ) -> Result<Vec<Motion>, ScratchError> {
+    ) -> Result<Vec<InterfaceMotion>, ScratchError> {
         let sides = [non_matching.slave(), non_matching.master()];
         let empty = |k: usize| vec![0.0; sides[k].len()];
         let blank = |j: usize| {
             let shifts = self.shifts[j].clone();
-            Motion { shifts, speed: [empty(0), empty(1)], eta: [empty(0), empty(1)] }
+            InterfaceMotion { shifts, speed: [empty(0), empty(1)], eta: [empty(0), empty(1)] }
         };
-        let mut motions: Vec<Motion> = instants.clone().map(blank).collect();
+        let mut motions: Vec<InterfaceMotion> = instants.clone().map(blank).collect();
         let (mut pairs, mut first) = (Vec::new(), 0);
         for (k, side) in sides.into_iter().enumerate() {
             for node in 0..side.len() {

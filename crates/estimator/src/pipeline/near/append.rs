@@ -5,7 +5,7 @@ use super::side_by_side::SideBySide;
 use crate::contact_density::FacePressures;
 use crate::measure::Balanced;
 use crate::pipeline::sampled_levels::SampledLevels;
-use crate::pipeline::sampling::{ElementSampler, SampledStress, Sampling};
+use crate::pipeline::sampling::{ElementSampler, SampledStress, SharedData};
 use crate::pipeline::waiting::{ContactInstant, Waiting, WaitingSample};
 use crate::residual::worse;
 use crate::time_level::{Side, Velocities};
@@ -27,7 +27,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
     /// Appends the intervals between consecutive levels to numbers.
     pub(in crate::pipeline) fn append(
         &mut self,
-        shared: &Sampling<'_, '_, D, N>,
+        shared: &SharedData<'_, '_, D, N>,
         levels: &SampledLevels<'_, D>,
         numbers: &mut Vec<f64>,
     ) {

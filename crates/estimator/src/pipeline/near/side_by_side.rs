@@ -7,7 +7,7 @@ use crate::lanes::{LANES, Lanes, Value, load};
 use crate::measure::{AdmissibleStress, Balanced, NodalBalance, outward};
 use crate::pipeline::sampling::{ElementSampler, SampledStress};
 use crate::simd::{Registers, Task, run_task};
-use crate::stress::{KeptForm, Loading};
+use crate::stress::{ElementForm, Loading};
 use crate::traction::EquilibratedLevels;
 use crate::wide::Wide;
 use std::array::from_fn;
@@ -31,7 +31,7 @@ pub(super) struct SideBySide<const D: usize, const N: usize> {
 impl<const D: usize, const N: usize> SideBySide<D, N> {
     /// Those at levels without a jump; `reached` are the fields at the level before.
     pub(super) fn new(
-        (sampler, form): (&ElementSampler<'_, '_, D, N>, &KeptForm),
+        (sampler, form): (&ElementSampler<'_, '_, D, N>, &ElementForm),
         levels: &EquilibratedLevels<D>,
         reached: Option<&Balanced<D, N>>,
     ) -> Self {
@@ -91,7 +91,7 @@ impl<const D: usize, const N: usize> StressLanes<D, N> {
 /// An element to be worked on.
 struct AtLevels<'a, 's, 'p, const D: usize, const N: usize> {
     sampler: &'a ElementSampler<'s, 'p, D, N>,
-    form: &'a KeptForm,
+    form: &'a ElementForm,
     levels: &'a EquilibratedLevels<D>,
     reached: Option<&'a Balanced<D, N>>,
 }

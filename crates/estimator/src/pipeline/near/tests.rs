@@ -20,7 +20,7 @@ fn checked(track: &ContactMotion) -> Residuals {
     let (problem, times) = impact();
     let equilibration = Equilibration::new(&problem);
     let tracks = vec![track.clone(); problem.surface().nodes().len()];
-    let shared = Sampling {
+    let shared = SharedData {
         problem: &problem,
         times: &times,
         equilibration: &equilibration,

@@ -6,7 +6,7 @@ use crate::contact_density::{CornerSliding, Densities, OffContact, driving_force
 use crate::increment::Increment;
 use crate::nodal_field::NodalField;
 use crate::reconstruction::{self, SurfaceSteps};
-use crate::time_level::{BeforeJump, ForcesBefore, ForcesKnown, Inertia, MotionKnown, Velocities};
+use crate::time_level::{BeforeJump, ForcesBefore, ForcesKnown, KnownInertia, MotionKnown, Velocities};
 
 impl<const D: usize, const N: usize> Preparation<'_, D, N> {
     /// Finds F_DA over the earliest step that lacks it; then ã and ∫ã are known up to its end.
@@ -100,14 +100,14 @@ impl<const D: usize, const N: usize> Preparation<'_, D, N> {
 
     /// ã under these nodal forces of F_DA (N), and the forces but these on the contact surface, where ã depends on
     /// them.
-    fn acceleration(&self, inertia: Inertia<D>, pull: &[[f64; D]]) -> (NodalField<D>, Vec<[f64; D]>) {
+    fn acceleration(&self, inertia: KnownInertia<D>, pull: &[[f64; D]]) -> (NodalField<D>, Vec<[f64; D]>) {
         match inertia {
-            Inertia::Forces(mut force) => {
+            KnownInertia::Forces(mut force) => {
                 let surface_force = self.on_surface(&force);
                 accelerate(self.problem, self.dynamics.inverse_mass(), &mut force, pull);
                 (force, surface_force)
             }
-            Inertia::Acceleration(acceleration) => (acceleration, Vec::new()),
+            KnownInertia::Acceleration(acceleration) => (acceleration, Vec::new()),
         }
     }
 

@@ -23,7 +23,7 @@ use crate::options::{Ablation, Acceleration, Options};
 use crate::pool::Pool;
 use crate::residual::worse;
 use crate::smoothing::{SmoothedStrains, Smoothing};
-use crate::time_level::{ForcesKnown, Inertia, MotionKnown, SplitFields, SurfaceStep};
+use crate::time_level::{ForcesKnown, KnownInertia, MotionKnown, SplitFields, SurfaceStep};
 use crate::traction::{EquilibratedLevels, Equilibration, Then};
 use auxiliary::{AuxiliaryLevel, AuxiliarySolutions, Shares, SimulatedLevel, SplitLevel};
 pub(crate) use concentration::Concentration;
@@ -31,7 +31,7 @@ use concentration::{AuxiliaryForces, Faced, Known};
 use impulse_smoothing::{ImpulseSmoothing, Stopped};
 use moment_correction::MomentCorrection;
 use non_matching::NonMatchingForces;
-use non_matching_motion::NonMatchingMotion;
+use non_matching_motion::AuxiliaryInterfaceMotion;
 use percute_core::contact::{ContactNode, Coupling};
 use percute_core::dynamics::Dynamics;
 use percute_core::history::{State, Step};
@@ -122,7 +122,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         &mut self,
         (n, auxiliary): (usize, &mut AuxiliarySolutions<'p, D, N>),
         stopped: &[Option<Stopped>],
-        around: &Around<'_>,
+        around: &SurfaceInstant<'_>,
         [contact, arresting]: [&mut [[f64; D]]; 2],
     ) {
         let (problem, surface, length) = (self.problem, self.problem.surface(), self.times.step(n));
@@ -147,7 +147,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
                     None => self.auxiliary_forces.release(at),
                 }
             }
-            let mut motion = NonMatchingMotion::new((non_matching, coupling), foreseen.free(), known.contact);
+            let mut motion = AuxiliaryInterfaceMotion::new((non_matching, coupling), foreseen.free(), known.contact);
             self.auxiliary_forces.replace_in_turn(nodes, &mut known, |at, forces| motion.approach(at, forces));
         }
     }
@@ -158,7 +158,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         dynamics: &Dynamics<'_, D, N>,
         state: &State<'_>,
         [contact, sudden]: [Vec<[f64; D]>; 2],
-        around: &Around<'_>,
+        around: &SurfaceInstant<'_>,
         pool: &FieldPool<D>,
     ) -> BalancedFields<D> {
         let (problem, step, inverse_mass) = (self.problem, state.step(), dynamics.inverse_mass());
@@ -172,22 +172,22 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             lumped: pool.copy(&acceleration),
             skew: pool.copy(&skew_acceleration(problem, inverse_mass, &acceleration)),
         });
-        let (inertia, densities) = (Inertia::Acceleration(acceleration), Some(densities));
+        let (inertia, densities) = (KnownInertia::Acceleration(acceleration), Some(densities));
         BalancedFields { displacement, inertia, contact, densities, split, smoothed: false }
     }
 
-    fn around<'a>(&self, gap: &'a [f64], couplings: &'a [Arc<Coupling>]) -> Around<'a> {
+    fn around<'a>(&self, gap: &'a [f64], couplings: &'a [Arc<Coupling>]) -> SurfaceInstant<'a> {
         let surface = self.problem.surface();
         let stands = |at: usize| surface.non_matching_of(at).is_none().then_some(Faced::WHOLE);
         let mut faced: Vec<_> = (0..surface.nodes().len()).map(stands).collect();
         if let Some(concentration) = &self.concentration {
             self.non_matching.add_faced(concentration, couplings, &mut faced);
         }
-        Around { gap, couplings, faced, own: Vec::new() }
+        SurfaceInstant { gap, couplings, faced, own: Vec::new() }
     }
 
     /// The densities of an instant: of the forces of F_DA, and of the reactions of which the normal work is measured.
-    fn level(&self, [acting, sudden]: [&[[f64; D]]; 2], around: &Around<'_>) -> LevelDensities<D> {
+    fn level(&self, [acting, sudden]: [&[[f64; D]]; 2], around: &SurfaceInstant<'_>) -> LevelDensities<D> {
         LevelDensities { acting: self.at(acting, around), sudden: self.at(sudden, around) }
     }
 
@@ -201,7 +201,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     /// Densities at one instant: R_k/ℓ_k at the nodes, whether they touch or are about to, linear along each
     /// face, corrected so that they have the moment of the reactions too. Their resultant is that of the reactions,
     /// and where those are in the cone, so is every mean of two of them.
-    fn at(&self, reaction: &[[f64; D]], around: &Around<'_>) -> Densities<D> {
+    fn at(&self, reaction: &[[f64; D]], around: &SurfaceInstant<'_>) -> Densities<D> {
         let (problem, surface) = (self.problem, self.problem.surface());
         // Reactions of the integrator are in the cone; those of a foreign history need not be.
         let held = |(contact, force): (&ContactNode, &[f64; D])| {
@@ -254,7 +254,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
 }
 
 /// The nodes of the contact surface at an instant.
-struct Around<'a> {
+struct SurfaceInstant<'a> {
     /// Gaps of the simulation (m).
     gap: &'a [f64],
     /// Those of non-matching interfaces.
@@ -329,7 +329,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         auxiliary.advance(dynamics, step.index, &simulated, &pull, level);
         let smoothed = auxiliary.smooths();
         self.auxiliary = Some(auxiliary);
-        let (inertia, densities) = (Inertia::Acceleration(acceleration), Some(densities));
+        let (inertia, densities) = (KnownInertia::Acceleration(acceleration), Some(densities));
         BalancedFields { displacement, inertia, contact, densities, split, smoothed }
     }
 

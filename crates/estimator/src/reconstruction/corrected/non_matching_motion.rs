@@ -7,7 +7,7 @@ use percute_core::contact::{Coupling, NonMatchingSurfaces, Side};
 /// The motion of the auxiliary solution on a non-matching interface, over the next step. Forces move nodes as lumped
 /// masses: those of a slave are on many nodes at once, and the corrections under them are left out.
 #[derive(Debug)]
-pub(super) struct NonMatchingMotion<'a, const D: usize> {
+pub(super) struct AuxiliaryInterfaceMotion<'a, const D: usize> {
     non_matching: &'a NonMatchingSurfaces<D>,
     coupling: &'a Coupling,
     /// That of the nodes of slave and master, at the next instant under `forces`.
@@ -18,7 +18,7 @@ pub(super) struct NonMatchingMotion<'a, const D: usize> {
     asked: usize,
 }
 
-impl<'a, const D: usize> NonMatchingMotion<'a, D> {
+impl<'a, const D: usize> AuxiliaryInterfaceMotion<'a, D> {
     /// From the motions of all contact nodes without a contact force, and the forces on them (N): R_k on slaves.
     pub(super) fn new(
         (non_matching, coupling): (&'a NonMatchingSurfaces<D>, &'a Coupling),
@@ -142,7 +142,7 @@ mod tests {
         }
         let gaps = surface.gaps(&moved);
 
-        let mut non_matching_motion = NonMatchingMotion::new((non_matching, &coupling), &free, &forces);
+        let mut non_matching_motion = AuxiliaryInterfaceMotion::new((non_matching, &coupling), &free, &forces);
         for &k in &active {
             let at = slave.position(k);
             let approach = non_matching_motion.approach(at, &forces);

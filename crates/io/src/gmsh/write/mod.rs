@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// Options for writing a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Format {
+pub struct MeshFormat {
     /// Version of MSH.
     pub version: Version,
     /// Whether numbers are binary instead of text.
@@ -27,7 +27,7 @@ pub struct Format {
 ///
 /// # Errors
 /// A file that cannot be created or exists already, group names that the format does not allow.
-pub fn write(path: &Path, overwrite: Overwrite, mesh: &Mesh, format: Format) -> Result<(), GmshError> {
+pub fn write(path: &Path, overwrite: Overwrite, mesh: &Mesh, format: MeshFormat) -> Result<(), GmshError> {
     let failed = |cause| GmshError { path: path.to_path_buf(), place: None, cause };
     let groups = mesh.face_groups().keys().chain(mesh.element_groups().keys());
     for name in groups {
@@ -39,7 +39,7 @@ pub fn write(path: &Path, overwrite: Overwrite, mesh: &Mesh, format: Format) -> 
 }
 
 /// The bytes of the file.
-fn bytes(mesh: &Mesh, format: Format) -> Vec<u8> {
+fn bytes(mesh: &Mesh, format: MeshFormat) -> Vec<u8> {
     let (mut out, parts) = (Sink::new(format.binary), Parts::of(mesh));
     let version = if format.version == Version::V22 { "2.2" } else { "4.1" };
     out.line("$MeshFormat");

@@ -1,7 +1,7 @@
 //! The facts that a verdict follows from.
 
 use super::onset::Onset;
-use super::touches::{Contact, first_contacts};
+use super::touches::{FirstContact, first_contacts};
 use super::uneven::Uneven;
 use crate::deformation::Deformation;
 use crate::foreign::{Checked, Contradiction, by_a_penalty, is_off_contact, off_contact};
@@ -29,7 +29,7 @@ pub(in crate::report) struct Facts {
     pub(super) reconstruction: Reconstruction,
     /// Γ_DA, if it is not the default.
     pub(super) acceleration: Option<Acceleration>,
-    pub(super) contact: Contact,
+    pub(super) contact: FirstContact,
     /// Normal velocity of the centre of mass before contact over the wave speed; none without contact.
     pub(super) speed_ratio: Option<f64>,
     /// The longest step over the critical one.
@@ -104,7 +104,7 @@ pub(super) struct Expected {
 
 /// What is known beside the problem, the contact results and the estimate.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::report) struct Beside<'a> {
+pub(in crate::report) struct FurtherFacts<'a> {
     pub(in crate::report) options: Options,
     pub(in crate::report) courant: f64,
     /// Drift of the energy balance.
@@ -123,7 +123,7 @@ impl Facts {
         problem: &AnyProblem,
         estimate: &Estimate,
         results: &ContactResults,
-        beside: Beside<'_>,
+        beside: FurtherFacts<'_>,
     ) -> Self {
         let figures = beside.checked.map(|checked| &checked.consistency);
         let most = results.total.iter().map(|resultant| resultant.in_contact).max().unwrap_or(0);
@@ -139,7 +139,7 @@ impl Facts {
             dimension: d,
             reconstruction: beside.options.reconstruction,
             acceleration: other_acceleration(beside.options, d),
-            contact: Contact::new(problem, results),
+            contact: FirstContact::new(problem, results),
             speed_ratio: speed.map(|speed| without_rounding(speed / wave_speed)),
             courant: beside.courant,
             elements_in_contact: if d == 1 { most } else { most.saturating_sub(1).max(most.min(1)) },

@@ -10,7 +10,7 @@ mod text;
 mod touches;
 mod uneven;
 
-pub(super) use facts::{Beside, Facts};
+pub(super) use facts::{Facts, FurtherFacts};
 pub(super) use narrow::NarrowContact;
 pub use touches::Touches;
 

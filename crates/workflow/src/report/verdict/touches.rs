@@ -34,7 +34,7 @@ pub enum Touches {
 
 /// How the body touches, and the mesh there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Contact {
+pub(super) struct FirstContact {
     pub(super) touches: Touches,
     /// Number of separate parts of the surface that touch in the course of time.
     pub(super) zones: usize,
@@ -44,7 +44,7 @@ pub(super) struct Contact {
     pub(super) strikes_flat_slave: bool,
 }
 
-impl Contact {
+impl FirstContact {
     pub(super) fn new(problem: &AnyProblem, results: &ContactResults) -> Self {
         let surface = Surface::new(problem, results);
         let Some(start) = surface.start() else {

@@ -1,10 +1,10 @@
 //! The motion of the auxiliary solution at the contact nodes over the next step, before the contact forces are known.
 
-use super::Fields;
+use super::MotionFields;
 use super::blocks::Blocks;
 use super::lanes::Nodal;
-use super::pairs::{Around, Pair, Pairs};
-use super::patch::{Factors, Near, Operator, Patch};
+use super::pairs::{PairSurroundings, Pairs, TrianglePair};
+use super::patch::{Factors, Near, Patch, PatchOperator};
 use super::response::{Neighbours, Response, dot};
 use super::surface::SurfaceForces;
 use crate::smoothing::Smoothing;
@@ -115,8 +115,8 @@ impl<const D: usize> Mobility<D> {
 #[derive(Clone, Copy, Debug)]
 pub(in crate::reconstruction::corrected) struct Foreseen<'a, const D: usize, const N: usize> {
     pub(super) problem: &'a Problem<D, N>,
-    pub(super) near: &'a NearElements<D>,
-    pub(super) operator: Operator<'a>,
+    pub(super) near: &'a ContactElements<D>,
+    pub(super) operator: PatchOperator<'a>,
     pub(super) factors: Factors,
     /// Δt_n h_n (s²).
     pub(super) square: f64,
@@ -194,9 +194,9 @@ impl<const D: usize, const N: usize> Foreseen<'_, D, N> {
 /// The data of the level before its pass.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BeforePass<'a, const D: usize> {
-    pub(super) operator: Operator<'a>,
+    pub(super) operator: PatchOperator<'a>,
     pub(super) surface: &'a SurfaceForces,
-    pub(super) fields: &'a Fields,
+    pub(super) fields: &'a MotionFields,
     /// F_n (N); empty without loads.
     pub(super) external: &'a [[f64; D]],
     /// The step that the displacement of the fields has still to make (s).
@@ -208,7 +208,7 @@ pub(super) struct BeforePass<'a, const D: usize> {
 
 /// The elements around the contact nodes. They go through the sweeps twice: here and in the pass.
 #[derive(Debug)]
-pub(super) struct NearElements<const D: usize> {
+pub(super) struct ContactElements<const D: usize> {
     patch: Patch,
     neighbours: Neighbours,
     /// The place of each contact node in the patch.
@@ -221,7 +221,7 @@ pub(super) struct NearElements<const D: usize> {
     free: Vec<FreeFlight<D>>,
 }
 
-impl<const D: usize> NearElements<D> {
+impl<const D: usize> ContactElements<D> {
     pub(super) fn new<const N: usize>(
         problem: &Problem<D, N>,
         blocks: &Blocks,
@@ -233,8 +233,10 @@ impl<const D: usize> NearElements<D> {
             let nodes = blocks.nodes(block);
             let (first, first_patch) = (nodes.start as u32, smoothing.patches(&nodes).start as u32);
             all.block(block).iter().zip(all.range(block)).map(move |(pair, k)| Near {
-                pair: Pair { nodes: pair.nodes.map(|n| n + first), ..*pair },
-                around: all.around_pair(k).map(|a| Around { patches: a.patches.map(|p| p + first_patch), ..*a }),
+                pair: TrianglePair { nodes: pair.nodes.map(|n| n + first), ..*pair },
+                around: all
+                    .around_pair(k)
+                    .map(|a| PairSurroundings { patches: a.patches.map(|p| p + first_patch), ..*a }),
                 number: k as u32,
             })
         });
@@ -253,7 +255,12 @@ impl<const D: usize> NearElements<D> {
         }
     }
 
-    fn response<const N: usize>(&self, problem: &Problem<D, N>, operator: Operator<'_>, at: usize) -> &Response<D> {
+    fn response<const N: usize>(
+        &self,
+        problem: &Problem<D, N>,
+        operator: PatchOperator<'_>,
+        at: usize,
+    ) -> &Response<D> {
         self.responses[at].get_or_init(|| {
             let facing = [Some(at), problem.surface().nodes()[at].partner].into_iter().flatten();
             let facing: Vec<(u32, u32)> = facing.map(|at| (self.places[at], at as u32)).collect();
@@ -265,7 +272,7 @@ impl<const D: usize> NearElements<D> {
     pub(super) fn foresee<const N: usize>(&mut self, problem: &Problem<D, N>, before: &BeforePass<'_, D>) {
         let Self { patch, places, free, .. } = self;
         let BeforePass { operator, surface, fields, external, due, factors, steps: [step, length] } = *before;
-        let Operator { laws, weights } = operator;
+        let PatchOperator { laws, weights } = operator;
         let each = patch.nodes.iter().zip(&mut patch.displacement).zip(&mut patch.rate);
         for ((node, displacement), force) in each {
             let i = *node as usize;

@@ -1,6 +1,6 @@
 //! The energy that contact gives to the auxiliary solution.
 
-use super::Fields;
+use super::MotionFields;
 use super::response::dot;
 use super::surface::SurfaceForces;
 use percute_core::problem::Problem;
@@ -39,7 +39,7 @@ pub(super) fn is_driven<const D: usize, const N: usize>(problem: &Problem<D, N>)
 pub(super) fn half_work<const D: usize, const N: usize>(
     problem: &Problem<D, N>,
     surface: &SurfaceForces,
-    fields: &Fields,
+    fields: &MotionFields,
     forces: &[[f64; D]],
     time: f64,
 ) -> f64 {

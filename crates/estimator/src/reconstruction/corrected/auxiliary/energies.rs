@@ -2,10 +2,10 @@
 
 use super::blocks::Blocks;
 use super::lanes::{Nodal, place};
-use super::pairs::{Pair, Pairs};
+use super::pairs::{Pairs, TrianglePair};
 use super::parts::{Part, Plan, StartOf, View, for_all};
 use super::sweeps::{differences, gradient, stress};
-use super::{AuxiliaryLevel, Fields};
+use super::{AuxiliaryLevel, MotionFields};
 use crate::difference::Difference;
 use crate::element::Element;
 use crate::inertia::mass_product;
@@ -35,7 +35,7 @@ impl<'p, const D: usize, const N: usize> Energies<'p, D, N> {
     pub(super) fn measure(
         &self,
         (pairs, blocks, plan): (&Pairs, &Blocks, (&Plan, StartOf<'_>)),
-        fields: &mut Fields,
+        fields: &mut MotionFields,
         simulated: [&[[f64; D]]; 2],
     ) -> Difference {
         let measure = Measure { pairs, blocks, mass: self.problem.mass(), simulated };
@@ -159,7 +159,7 @@ fn difference<const D: usize>(motions: &Nodal, simulated: &[f64; D]) -> Nodal {
 
 /// x·Kx − y·(M − M_c)y of pairs of elements.
 #[inline(always)]
-fn add_elements<R: Registers>(r: R, all: &Pairs, pairs: &[Pair], [x, y]: [&[Nodal]; 2], sums: &mut Sums<R>) {
+fn add_elements<R: Registers>(r: R, all: &Pairs, pairs: &[TrianglePair], [x, y]: [&[Nodal]; 2], sums: &mut Sums<R>) {
     let y = &y[..x.len()];
     let (mut squares, mut products) = (sums.squares, sums.products);
     for pair in pairs {

@@ -54,15 +54,15 @@ use crate::element::Element;
 use crate::simd::run_task;
 use crate::smoothing::Smoothing;
 pub(super) use approach::{Approach, Foreseen, FreeFlight, Mobility};
-use approach::{BeforePass, NearElements};
+use approach::{BeforePass, ContactElements};
 use blocks::Blocks;
 use contact_work::{ContactWork, FreeDirections, half_work, is_driven};
 use energies::Energies;
 use lanes::{FirstPair, Gradient, Nodal};
-use pairs::{Around, Pair, Pairs};
+use pairs::{PairSurroundings, Pairs, TrianglePair};
 use parts::{Part, Plan, Start, StartOf, View, for_all};
 use pass::{Kinetic, PartPass, Pass};
-use patch::{Factors, Operator};
+use patch::{Factors, PatchOperator};
 use percute_core::dynamics::Dynamics;
 use percute_core::problem::Problem;
 use percute_core::ratio;
@@ -86,10 +86,10 @@ pub(super) struct AuxiliarySolutions<'p, const D: usize, const N: usize> {
     plan: Plan,
     pairs: Pairs,
     surface: SurfaceForces,
-    near: NearElements<D>,
+    near: ContactElements<D>,
     weights: Weights,
     energies: Option<Energies<'p, D, N>>,
-    fields: Fields,
+    fields: MotionFields,
     /// F_n (N); empty without loads.
     external: Vec<[f64; D]>,
     /// The step that has to be made from `displacement` before it is that of the present level (s).
@@ -107,7 +107,7 @@ pub(super) struct AuxiliarySolutions<'p, const D: usize, const N: usize> {
 
 /// Fields of all motions.
 #[derive(Debug, Default)]
-struct Fields {
+struct MotionFields {
     /// u_n (m), from the pass of level n to that of the next.
     displacement: Vec<Nodal>,
     /// v_{n+½} (m/s).
@@ -191,7 +191,7 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
     /// About how much memory it takes (bytes).
     pub(super) fn memory(nodes: usize, elements: usize) -> usize {
         let node = 4 * size_of::<Nodal>() + 3 * size_of::<FirstPair>() + size_of::<[f64; D]>() + size_of::<Gradient>();
-        let pair = size_of::<Pair>() + size_of::<Around>() + 2 * size_of::<Gradient>();
+        let pair = size_of::<TrianglePair>() + size_of::<PairSurroundings>() + 2 * size_of::<Gradient>();
         nodes.saturating_mul(node).saturating_add(elements.div_ceil(2).saturating_mul(pair))
     }
 
@@ -215,13 +215,13 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
         blocks: Blocks,
     ) -> Self {
         let pairs = Pairs::new(problem, &blocks, &smoothing, &weights::shares(shares));
-        let (plan, near) = (Plan::new(&blocks), NearElements::new(problem, &blocks, &pairs, &smoothing));
+        let (plan, near) = (Plan::new(&blocks), ContactElements::new(problem, &blocks, &pairs, &smoothing));
         Self {
             problem,
             times,
             near,
             plan,
-            fields: Fields::new(problem, &smoothing, pairs.places(0..blocks.count()).len()),
+            fields: MotionFields::new(problem, &smoothing, pairs.places(0..blocks.count()).len()),
             blocks,
             pairs,
             surface: SurfaceForces::new(problem),
@@ -262,7 +262,7 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
     /// Foresees the motion of the auxiliary solution at all contact nodes until t_{n+1}, after `begin`.
     pub(super) fn foresee(&mut self, n: usize) -> Foreseen<'_, D, N> {
         let Self { problem, times, pairs, surface, near, fields, external, due, weights, .. } = self;
-        let operator = Operator { laws: &pairs.laws, weights };
+        let operator = PatchOperator { laws: &pairs.laws, weights };
         let (factors, steps) = (Factors::new(&weights.at(times, n)), [times.step(n), times.velocity_step(n)]);
         near.foresee(problem, &BeforePass { operator, surface, fields, external, due: *due, factors, steps });
         Foreseen { problem, near, operator, factors, square: steps[0] * steps[1] }
@@ -360,7 +360,7 @@ fn start_of(part: &Part, pairs: &Pairs, smoothing: &Smoothing) -> Start {
     Start { node: part.nodes.start, gradient, patch }
 }
 
-impl Fields {
+impl MotionFields {
     fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, smoothing: &Smoothing, places: usize) -> Self {
         let count = problem.mesh().node_count();
         Self {

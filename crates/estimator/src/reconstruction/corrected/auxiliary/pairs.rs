@@ -15,7 +15,7 @@ use std::ops::Range;
 /// A pair of triangles A and B: A has its nodes 0, 1, 2 and B its nodes 0, 2, 3. A bar is a triangle whose nodes 0 and
 /// 2, or 0 and 3, are one. Without a partner, B has no gradients and no mass.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pair {
+pub(super) struct TrianglePair {
     /// Nodes are counted from the first one of the block.
     pub(super) nodes: [u32; 4],
     /// √V ∇φ, V the volume (m³), at the nodes 1 and 2 of A and 2 and 3 of B; that at node 0 is minus the sum.
@@ -38,7 +38,7 @@ pub(super) struct Moduli {
 /// The elements and patches that the strains of a pair are smoothed with. The gradients of the elements of a pair have
 /// the places 2k and 2k + 1, k its number among all pairs.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Around {
+pub(super) struct PairSurroundings {
     /// The places of the elements beyond the faces of A and of B; those of the elements themselves at the boundary of
     /// a material.
     pub(super) beyond: [[u32; 3]; 2],
@@ -65,9 +65,9 @@ pub(super) struct Laws {
 /// All elements, block by block.
 #[derive(Clone, Debug)]
 pub(super) struct Pairs {
-    pairs: Vec<Pair>,
+    pairs: Vec<TrianglePair>,
     /// Empty where strains stay.
-    around: Vec<Around>,
+    around: Vec<PairSurroundings>,
     /// Where those of each block begin.
     starts: Vec<u32>,
     pub(super) laws: Laws,
@@ -94,7 +94,7 @@ impl Pairs {
                     if let Some(other) = partner {
                         taken[other.index()] = true;
                     }
-                    let mut pair = Pair::new(problem, ElementId::new(e), apart, partner);
+                    let mut pair = TrianglePair::new(problem, ElementId::new(e), apart, partner);
                     pair.nodes = pair.nodes.map(|n| n - first);
                     pairs.push(pair);
                     elements.push([Some(ElementId::new(e)), partner]);
@@ -127,7 +127,7 @@ impl Pairs {
             let first_node = blocks.nodes(block).start;
             for k in self.starts[block] as usize..self.starts[block + 1] as usize {
                 let nodes = self.pairs[k].nodes.map(|n| NodeId::new(n as usize + first_node));
-                let mut around = Around::new(problem, smoothing, elements[k], &places, [2 * k, 2 * k + 1]);
+                let mut around = PairSurroundings::new(problem, smoothing, elements[k], &places, [2 * k, 2 * k + 1]);
                 around.patches = nodes.map(|node| (smoothing.patch(node, self.pairs[k].law as u16) - first) as u32);
                 self.around.push(around);
             }
@@ -136,18 +136,18 @@ impl Pairs {
 
     /// Those of a block.
     #[inline(always)]
-    pub(super) fn block(&self, block: usize) -> &[Pair] {
+    pub(super) fn block(&self, block: usize) -> &[TrianglePair] {
         &self.pairs[self.range(block)]
     }
 
     /// What is around them.
     #[inline(always)]
-    pub(super) fn around(&self, block: usize) -> &[Around] {
+    pub(super) fn around(&self, block: usize) -> &[PairSurroundings] {
         &self.around[self.range(block)]
     }
 
     /// What is around a pair; none where strains stay.
-    pub(super) fn around_pair(&self, number: usize) -> Option<&Around> {
+    pub(super) fn around_pair(&self, number: usize) -> Option<&PairSurroundings> {
         self.around.get(number)
     }
 
@@ -166,7 +166,7 @@ impl Pairs {
     }
 }
 
-impl Around {
+impl PairSurroundings {
     /// What is around a pair whose elements have these places, but for patches.
     fn new<const D: usize, const N: usize>(
         problem: &Problem<D, N>,
@@ -230,7 +230,7 @@ fn partner<const D: usize, const N: usize>(
     found
 }
 
-impl Pair {
+impl TrianglePair {
     /// An element and its partner, which does not have the local node `apart`.
     fn new<const D: usize, const N: usize>(
         problem: &Problem<D, N>,

@@ -6,7 +6,7 @@
 
 use super::blocks::Blocks;
 use super::lanes::{FirstPair, Gradient, Nodal};
-use super::{AuxiliaryLevel, Fields};
+use super::{AuxiliaryLevel, MotionFields};
 use std::array::from_fn;
 use std::ops::Range;
 
@@ -108,8 +108,8 @@ pub(super) struct Start {
 
 impl<'a, const D: usize> View<'a, D> {
     /// That of all nodes and elements.
-    pub(super) fn new(fields: &'a mut Fields, level: AuxiliaryLevel<'a, D>) -> Self {
-        let Fields { displacement, half_step, rate, internal, lumping, gradients, patches } = fields;
+    pub(super) fn new(fields: &'a mut MotionFields, level: AuxiliaryLevel<'a, D>) -> Self {
+        let MotionFields { displacement, half_step, rate, internal, lumping, gradients, patches } = fields;
         let lumping = lumping.each_mut().map(|field| &mut field[..]);
         Self { start: Start::default(), displacement, half_step, rate, internal, lumping, gradients, patches, level }
     }

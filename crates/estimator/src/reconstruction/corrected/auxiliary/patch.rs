@@ -3,7 +3,7 @@
 //! Of the modules that foresee the motion of contact nodes, this one alone knows the operator of the pass.
 
 use super::lanes::{FirstPair, Gradient, Nodal};
-use super::pairs::{Around, Laws, Pair};
+use super::pairs::{Laws, PairSurroundings, TrianglePair};
 use super::sweeps::{add_lumping, subtract_both, subtract_plain_part, subtract_smoothed_part, subtract_stiffness};
 use super::weights::{LevelWeights, Weights};
 use crate::simd::{Registers, Task, run_task};
@@ -24,7 +24,7 @@ const STRAIN_RINGS: usize = 2;
 pub(super) const PARTS: usize = 3;
 
 /// The parts of an acceleration (m/s²).
-pub(super) type Acceleration<const D: usize> = [[f64; D]; PARTS];
+pub(super) type AccelerationParts<const D: usize> = [[f64; D]; PARTS];
 
 /// Factors of the parts, as the pass has them.
 #[derive(Clone, Copy, Debug)]
@@ -37,14 +37,14 @@ impl Factors {
     }
 
     /// The sum of the parts.
-    pub(super) fn sum<const D: usize>(&self, parts: &Acceleration<D>) -> [f64; D] {
+    pub(super) fn sum<const D: usize>(&self, parts: &AccelerationParts<D>) -> [f64; D] {
         from_fn(|c| self.0.iter().zip(parts).map(|(factor, part)| factor * part[c]).sum())
     }
 }
 
 /// The numbers of the operator.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Operator<'a> {
+pub(super) struct PatchOperator<'a> {
     pub(super) laws: &'a Laws,
     pub(super) weights: &'a Weights,
 }
@@ -52,9 +52,9 @@ pub(super) struct Operator<'a> {
 /// A pair of elements of a mesh, with nodes, patches and places counted in the mesh, and its number there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Near {
-    pub(super) pair: Pair,
+    pub(super) pair: TrianglePair,
     /// None where strains stay.
-    pub(super) around: Option<Around>,
+    pub(super) around: Option<PairSurroundings>,
     pub(super) number: u32,
 }
 
@@ -62,7 +62,7 @@ pub(super) struct Near {
 #[derive(Debug)]
 pub(super) struct Patch {
     /// Pairs of elements, their nodes numbered as in `nodes`.
-    pub(super) pairs: Vec<Pair>,
+    pub(super) pairs: Vec<TrianglePair>,
     /// Their nodes in the mesh, or in the patch of which this is a part, ascending.
     pub(super) nodes: Vec<u32>,
     inverse_mass: Vec<f64>,
@@ -82,7 +82,7 @@ pub(super) struct Patch {
 /// The smoothed strains of a patch; empty where strains stay. At its border they lack the elements beyond.
 #[derive(Debug, Default)]
 struct Strains {
-    around: Vec<Around>,
+    around: Vec<PairSurroundings>,
     gradients: Vec<Gradient>,
     patches: Vec<Gradient>,
     /// β/(3V) of each patch (1/m³).
@@ -92,7 +92,7 @@ struct Strains {
 impl Strains {
     /// Those of some pairs, in their order.
     fn new(near: &[Near], smoothing: &Smoothing) -> Self {
-        let mut around: Vec<Around> = near.iter().filter_map(|near| near.around).collect();
+        let mut around: Vec<PairSurroundings> = near.iter().filter_map(|near| near.around).collect();
         let places: BTreeMap<u32, u32> = near.iter().zip(0..).map(|(near, own)| (near.number, own)).collect();
         let mut patches: Vec<u32> = around.iter().flat_map(|around| around.patches).collect();
         patches.sort_unstable();
@@ -140,7 +140,7 @@ impl Patch {
 
     /// From pairs and prescribed components with nodes of any numbers, and the inverse mass and body of each; without
     /// strains.
-    fn of(mut pairs: Vec<Pair>, prescribed: &[(u32, usize)], inertia: impl Fn(u32) -> (f64, u32)) -> Self {
+    fn of(mut pairs: Vec<TrianglePair>, prescribed: &[(u32, usize)], inertia: impl Fn(u32) -> (f64, u32)) -> Self {
         let mut nodes: Vec<u32> = pairs.iter().flat_map(|pair| pair.nodes).collect();
         nodes.sort_unstable();
         nodes.dedup();
@@ -216,7 +216,7 @@ impl Patch {
     }
 
     /// The parts of the acceleration at a place.
-    pub(super) fn acceleration<const D: usize>(&self, weights: &Weights, place: usize) -> Acceleration<D> {
+    pub(super) fn acceleration<const D: usize>(&self, weights: &Weights, place: usize) -> AccelerationParts<D> {
         let internal: [f64; D] = self.internal[place].of(0);
         let mut mass = [0.0; D];
         for (field, factor) in self.lumping.iter().zip(weights.auxiliary(self.bodies[place] as usize)) {
@@ -231,8 +231,8 @@ impl Patch {
     pub(super) fn under_unit_forces<const D: usize>(
         &mut self,
         place: usize,
-        operator: Operator<'_>,
-    ) -> Vec<[Acceleration<D>; D]> {
+        operator: PatchOperator<'_>,
+    ) -> Vec<[AccelerationParts<D>; D]> {
         let mut moved = vec![[[[0.0; D]; PARTS]; D]; self.nodes.len()];
         for here in 0..D {
             if self.prescribed.contains(&(place as u32, here)) {
@@ -252,7 +252,7 @@ impl Patch {
 /// Internal forces.
 struct Forces<'a> {
     laws: &'a Laws,
-    pairs: &'a [Pair],
+    pairs: &'a [TrianglePair],
     displacement: &'a [Nodal],
     forces: &'a mut [Nodal],
     strains: Option<&'a mut Strains>,
@@ -281,7 +281,7 @@ impl Task for Forces<'_> {
 /// −Kã and (M − M_c)ã.
 struct Once<'a> {
     laws: &'a Laws,
-    pairs: &'a [Pair],
+    pairs: &'a [TrianglePair],
     rate: &'a [Nodal],
     internal: &'a mut [Nodal],
     once: &'a mut [FirstPair],
@@ -298,7 +298,7 @@ impl Task for Once<'_> {
 
 /// (M − M_c) of a lumping difference.
 struct Again<'a> {
-    pairs: &'a [Pair],
+    pairs: &'a [TrianglePair],
     before: &'a [FirstPair],
     after: &'a mut [FirstPair],
 }

@@ -1,11 +1,11 @@
 //! How contact nodes move under contact forces.
 
-use super::patch::{Acceleration, Factors, Operator, PARTS, Patch, RINGS};
+use super::patch::{AccelerationParts, Factors, PARTS, Patch, PatchOperator, RINGS};
 use std::collections::BTreeSet;
 
 /// The parts of the accelerations of a node under unit forces on another one (1/kg): by component of the acceleration,
 /// part and component of the force.
-type Compliance<const D: usize> = [Acceleration<D>; D];
+type Compliance<const D: usize> = [AccelerationParts<D>; D];
 
 /// The pairs of a patch around each of its nodes.
 #[derive(Debug)]
@@ -54,7 +54,7 @@ impl<const D: usize> Response<D> {
     /// the contact surface. `contacts` has the places and positions of all contact nodes whose forces count, ascending.
     pub(super) fn new(
         (patch, neighbours): (&Patch, &Neighbours),
-        operator: Operator<'_>,
+        operator: PatchOperator<'_>,
         facing: &[(u32, u32)],
         contacts: &[(u32, u32)],
     ) -> Self {

@@ -7,7 +7,7 @@
 
 use super::parts::{Part, View, for_all};
 use super::pass::{PartPass, Pass};
-use super::{AuxiliaryLevel, AuxiliarySolutions, Fields, Nodal, start_of};
+use super::{AuxiliaryLevel, AuxiliarySolutions, MotionFields, Nodal, start_of};
 use crate::simd::run_task;
 use percute_core::dynamics::{critical_time_step, element_time_step, rough_field};
 
@@ -44,7 +44,7 @@ impl<const D: usize, const N: usize> AuxiliarySolutions<'_, D, N> {
     /// Whether rough displacements stay as large as they are in steps of this length (s).
     fn is_stable(&self, step: f64) -> bool {
         let count = self.problem.mesh().node_count();
-        let mut fields = Fields::new(self.problem, &self.smoothing, self.fields.gradients.len());
+        let mut fields = MotionFields::new(self.problem, &self.smoothing, self.fields.gradients.len());
         for (u, rough) in fields.displacement.iter_mut().zip(rough_field(self.problem)) {
             *u = Nodal::new([rough, [0.0; D], [0.0; D], [0.0; D]]);
         }

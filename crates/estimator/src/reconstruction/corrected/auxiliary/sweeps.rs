@@ -1,7 +1,7 @@
 //! Sweeps over pairs of elements, for all motions together.
 
 use super::lanes::{FirstPair, Gradient, Nodal};
-use super::pairs::{Around, Laws, Moduli, Pair};
+use super::pairs::{Laws, Moduli, PairSurroundings, TrianglePair};
 use crate::simd::Registers;
 
 /// A gradient or a stress, column by column.
@@ -9,7 +9,13 @@ pub(super) type Columns<R> = [<R as Registers>::Eight; 2];
 
 /// Subtracts K x from `to` (N).
 #[inline(always)]
-pub(super) fn subtract_stiffness<R: Registers>(r: R, laws: &[Moduli], pairs: &[Pair], x: &[Nodal], to: &mut [Nodal]) {
+pub(super) fn subtract_stiffness<R: Registers>(
+    r: R,
+    laws: &[Moduli],
+    pairs: &[TrianglePair],
+    x: &[Nodal],
+    to: &mut [Nodal],
+) {
     let to = &mut to[..x.len()];
     for pair in pairs {
         subtract(r, laws, pair, differences(r, pair, x), to);
@@ -22,7 +28,7 @@ pub(super) fn subtract_stiffness<R: Registers>(r: R, laws: &[Moduli], pairs: &[P
 pub(super) fn subtract_plain_part<R: Registers>(
     r: R,
     laws: &Laws,
-    (pairs, around): (&[Pair], &[Around]),
+    (pairs, around): (&[TrianglePair], &[PairSurroundings]),
     x: &[Nodal],
     to: &mut [Nodal],
     (gradients, patches): (&mut [Gradient], &mut [Gradient]),
@@ -57,7 +63,7 @@ fn kept<R: Registers>(r: R, [along, across]: Columns<R>, root: f64) -> R::Eight 
 pub(super) fn subtract_smoothed_part<R: Registers>(
     r: R,
     laws: &Laws,
-    (pairs, around): (&[Pair], &[Around]),
+    (pairs, around): (&[TrianglePair], &[PairSurroundings]),
     (gradients, start): (&[Gradient], usize),
     (own, patches): (&[Gradient], &[Gradient]),
     to: &mut [Nodal],
@@ -82,7 +88,7 @@ pub(super) fn subtract_smoothed_part<R: Registers>(
 #[inline(always)]
 fn smoothed<R: Registers>(
     r: R,
-    around: &Around,
+    around: &PairSurroundings,
     which: usize,
     (own, nodes): (R::Eight, R::Eight),
     (gradients, start): (&[Gradient], usize),
@@ -100,7 +106,7 @@ fn smoothed<R: Registers>(
 pub(super) fn subtract_both<R: Registers>(
     r: R,
     laws: &[Moduli],
-    pairs: &[Pair],
+    pairs: &[TrianglePair],
     x: &[Nodal],
     to: &mut [Nodal],
     lumping: &mut [FirstPair],
@@ -116,7 +122,7 @@ pub(super) fn subtract_both<R: Registers>(
 
 /// Adds (M − M_c) x to `to`.
 #[inline(always)]
-pub(super) fn add_lumping<R: Registers>(r: R, pairs: &[Pair], x: &[FirstPair], to: &mut [FirstPair]) {
+pub(super) fn add_lumping<R: Registers>(r: R, pairs: &[TrianglePair], x: &[FirstPair], to: &mut [FirstPair]) {
     let to = &mut to[..x.len()];
     for pair in pairs {
         let [n0, n1, n2, n3] = places(pair);
@@ -127,14 +133,14 @@ pub(super) fn add_lumping<R: Registers>(r: R, pairs: &[Pair], x: &[FirstPair], t
 }
 
 #[inline(always)]
-pub(super) fn places(pair: &Pair) -> [usize; 4] {
+pub(super) fn places(pair: &TrianglePair) -> [usize; 4] {
     let [a, b, c, d] = pair.nodes;
     [a as usize, b as usize, c as usize, d as usize]
 }
 
 /// Differences of the values at the nodes 1, 2, 3 with that at node 0: a translation leaves no rounding.
 #[inline(always)]
-pub(super) fn differences<R: Registers>(r: R, pair: &Pair, x: &[Nodal]) -> [R::Eight; 3] {
+pub(super) fn differences<R: Registers>(r: R, pair: &TrianglePair, x: &[Nodal]) -> [R::Eight; 3] {
     let [n0, n1, n2, n3] = places(pair);
     let base = r.load(&x[n0].0);
     [r.sub(r.load(&x[n1].0), base), r.sub(r.load(&x[n2].0), base), r.sub(r.load(&x[n3].0), base)]
@@ -186,7 +192,7 @@ fn forces<R: Registers>(r: R, [first, last]: [[f64; 2]; 2], [along, across]: Col
 }
 
 #[inline(always)]
-fn subtract<R: Registers>(r: R, laws: &[Moduli], pair: &Pair, [a, b, c]: [R::Eight; 3], to: &mut [Nodal]) {
+fn subtract<R: Registers>(r: R, laws: &[Moduli], pair: &TrianglePair, [a, b, c]: [R::Eight; 3], to: &mut [Nodal]) {
     let (moduli, [g, h, i, k]) = (&laws[pair.law as usize], pair.gradients);
     let (first, last) = (gradient(r, &[g, h], [a, b]), gradient(r, &[i, k], [b, c]));
     subtract_stresses(r, pair, [stress(r, moduli, &first), stress(r, moduli, &last)], to);
@@ -194,7 +200,7 @@ fn subtract<R: Registers>(r: R, laws: &[Moduli], pair: &Pair, [a, b, c]: [R::Eig
 
 /// Subtracts the forces of stresses of A and B.
 #[inline(always)]
-fn subtract_stresses<R: Registers>(r: R, pair: &Pair, [a, b]: [Columns<R>; 2], to: &mut [Nodal]) {
+fn subtract_stresses<R: Registers>(r: R, pair: &TrianglePair, [a, b]: [Columns<R>; 2], to: &mut [Nodal]) {
     let [g, h, i, k] = pair.gradients;
     let [first, mine] = forces(r, [g, h], a);
     let [other, last] = forces(r, [i, k], b);
@@ -210,7 +216,7 @@ fn subtract_stresses<R: Registers>(r: R, pair: &Pair, [a, b]: [Columns<R>; 2], t
 
 /// The same for the first pair of motions.
 #[inline(always)]
-fn subtract_first_stresses<R: Registers>(r: R, pair: &Pair, stresses: [[R::Four; 2]; 2], to: &mut [Nodal]) {
+fn subtract_first_stresses<R: Registers>(r: R, pair: &TrianglePair, stresses: [[R::Four; 2]; 2], to: &mut [Nodal]) {
     let [g, h, i, k] = pair.gradients;
     let [a, b] = stresses;
     let (first, shared) = (force_of_first(r, a, g), r.add4(force_of_first(r, a, h), force_of_first(r, b, i)));
@@ -240,7 +246,7 @@ fn add_to_first<R: Registers>(r: R, to: &mut Nodal, change: R::Four) {
 /// Adds the nodal forces of the skew part of the stress that lumping the mass is for a motion w of elements of a plane
 /// body: τ = ρ/4 Σ w_i ⊗ d_i, d_i from the centroid, gives |E|(τ − τᵀ)/2 ∇φ_i. Both d_i and ∇φ_i are edges turned.
 #[inline(always)]
-pub(super) fn add_skew<const D: usize>(laws: &Laws, pairs: &[Pair], w: &[[f64; D]], to: &mut [[f64; D]]) {
+pub(super) fn add_skew<const D: usize>(laws: &Laws, pairs: &[TrianglePair], w: &[[f64; D]], to: &mut [[f64; D]]) {
     let to = &mut to[..w.len()];
     let y = D - 1;
     for pair in pairs {
@@ -275,7 +281,7 @@ pub(super) fn add_skew<const D: usize>(laws: &Laws, pairs: &[Pair], w: &[[f64; D
 
 /// A triangle gives m/(D+2) times the distance to the mean of its nodes, here less the value at node 0.
 #[inline(always)]
-fn lump<R: Registers>(r: R, pair: &Pair, [a, b, c]: [R::Four; 3], to: &mut [FirstPair]) {
+fn lump<R: Registers>(r: R, pair: &TrianglePair, [a, b, c]: [R::Four; 3], to: &mut [FirstPair]) {
     let [share, other] = pair.shares;
     let mean = r.mul4(r.add4(a, b), r.splat4(share * (1.0 / 3.0)));
     let other_mean = r.mul4(r.add4(b, c), r.splat4(other * (1.0 / 3.0)));

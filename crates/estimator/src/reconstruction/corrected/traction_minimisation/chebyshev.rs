@@ -28,9 +28,9 @@ const ORDER: [usize; PRODUCTS + 1] = [0, 4, 2, 1, 3];
 /// The steps x⁺ = αx + βb + γAx: with the root r of each, x + (b − Ax)/r from x = 0. The first product is with the
 /// slopes −b, of which the first step is a part.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Steps([[f64; 3]; PRODUCTS]);
+pub(super) struct ChebyshevSteps([[f64; 3]; PRODUCTS]);
 
-impl Steps {
+impl ChebyshevSteps {
     /// For a spectrum up to `highest`; the roots are those of the Chebyshev polynomial.
     pub(super) fn new(highest: f64) -> Self {
         let (middle, half) = (0.5 * (1.0 + LOWEST) * highest, 0.5 * (1.0 - LOWEST) * highest);
@@ -78,7 +78,7 @@ pub(super) const STAGES: usize = 3 + 3 * PRODUCTS;
 
 impl Operator {
     /// Works on a block. In the end, the change is the one that reduces the energy of the slopes.
-    pub(super) fn work(&self, stage: usize, steps: &Steps, block: &Block, arrays: &mut Arrays<'_>) {
+    pub(super) fn work(&self, stage: usize, steps: &ChebyshevSteps, block: &Block, arrays: &mut Arrays<'_>) {
         const LAST: usize = STAGES - 1;
         match stage {
             0 => dispatch(
@@ -186,7 +186,7 @@ impl Operator {
     }
 
     /// One of the three stages of a step with a product.
-    fn step(&self, product: usize, stage: usize, steps: &Steps, block: &Block, arrays: &mut Arrays<'_>) {
+    fn step(&self, product: usize, stage: usize, steps: &ChebyshevSteps, block: &Block, arrays: &mut Arrays<'_>) {
         let Arrays { slopes, change, nodes, edges: [t, v] } = arrays;
         let (from, to): (&[_], &mut [_]) = match (PRODUCTS - product) % 2 {
             1 => (change.nodes, nodes),

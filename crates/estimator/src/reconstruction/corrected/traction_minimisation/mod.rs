@@ -29,7 +29,7 @@ use crate::stress::{EnergyForms, hooke};
 use crate::time_level::ForcesKnown;
 use crate::traction::{EquilibratedLevels, Equilibration, Smoothed, Then};
 use crate::wide::Wide;
-use chebyshev::{Arrays, Steps};
+use chebyshev::{Arrays, ChebyshevSteps};
 use energy::{moment_slope, product_slope};
 use modes::{Modes, ModesPart, Numbers};
 use operator::Operator;
@@ -52,7 +52,7 @@ pub(in crate::reconstruction) struct TractionMinimisation {
     numbers: Numbers,
     operator: Operator,
     wavefront: Wavefront,
-    steps: Steps,
+    steps: ChebyshevSteps,
     spaces: Pool<Workspace>,
     #[cfg(test)]
     largest_eigenvalue: f64,
@@ -98,7 +98,7 @@ impl TractionMinimisation {
             numbers,
             operator,
             wavefront,
-            steps: Steps::new(MARGIN * largest_eigenvalue),
+            steps: ChebyshevSteps::new(MARGIN * largest_eigenvalue),
             spaces,
             #[cfg(test)]
             largest_eigenvalue,

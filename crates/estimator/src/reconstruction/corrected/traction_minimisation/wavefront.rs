@@ -4,7 +4,7 @@
 //! stages is then as free as the mesh permits, and the numbers do not depend on it. Each thread has a segment of the
 //! blocks, in which it works as far as the blocks of its own permit; the rest, around the ends of segments, comes last.
 
-use super::chebyshev::{Arrays, STAGES, Steps};
+use super::chebyshev::{Arrays, ChebyshevSteps, STAGES};
 use super::modes::Numbers;
 use super::operator::{Block, Operator};
 use percute_core::ids::NodeId;
@@ -32,7 +32,7 @@ pub(super) struct Wavefront {
 pub(super) struct Work<'a> {
     pub(super) numbers: &'a Numbers,
     pub(super) operator: &'a Operator,
-    pub(super) steps: &'a Steps,
+    pub(super) steps: &'a ChebyshevSteps,
     /// Once it is up, blocks are left as they are.
     pub(super) stop: &'a StopFlag,
 }

@@ -24,7 +24,7 @@ use std::sync::Arc;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// An estimate, with what it is the estimate of.
-pub(crate) struct Made {
+pub(crate) struct BuiltEstimate {
     pub(crate) problem: AnyProblem,
     /// The instants planned.
     pub(crate) times: TimeGrid,
@@ -60,7 +60,7 @@ pub(crate) enum ReportSource {
     Before(String),
 }
 
-impl Made {
+impl BuiltEstimate {
     /// An estimate from its state.
     pub(crate) fn restored(py: Python<'_>, problem: &AnyProblem, state: &[u8]) -> PyResult<Self> {
         let refused =
@@ -187,8 +187,8 @@ impl Made {
         history: Option<&Arc<Run>>,
     ) -> PyResult<()> {
         let contact = self.contact_steps(py, history)?;
-        let made = self.clone();
-        let work = move |_| made.save(&path, overwrite, &name, contact.as_deref());
+        let built = self.clone();
+        let work = move |_| built.save(&path, overwrite, &name, contact.as_deref());
         bridge::blocking(py, None, work)?.map_err(|error| errors::failure(py, &error))
     }
 }

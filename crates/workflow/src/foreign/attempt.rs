@@ -13,13 +13,13 @@ pub(super) const ROUNDING: f64 = 1e-6;
 
 /// A change with the norm of the residual before and after it.
 #[derive(Clone, Debug)]
-pub(super) struct Tried {
+pub(super) struct Attempt {
     pub(super) text: String,
     pub(super) before: f64,
     pub(super) left: f64,
 }
 
-impl Tried {
+impl Attempt {
     /// Whether it leaves little of the residual.
     pub(super) fn explains(&self) -> bool {
         self.left <= FALL * self.before
@@ -47,26 +47,26 @@ pub(super) fn falls(before: f64, left: f64) -> String {
 }
 
 /// The change that explains the residual; of equally good ones the first.
-pub(super) fn best(tried: Vec<Tried>) -> Option<Tried> {
-    let least = tried.iter().map(Tried::share).fold(f64::INFINITY, f64::min);
-    tried.into_iter().find(|one| one.explains() && one.share() <= (AS_GOOD * least).max(ALL))
+pub(super) fn best(attempts: Vec<Attempt>) -> Option<Attempt> {
+    let least = attempts.iter().map(Attempt::share).fold(f64::INFINITY, f64::min);
+    attempts.into_iter().find(|one| one.explains() && one.share() <= (AS_GOOD * least).max(ALL))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn tried(text: &str, left: f64) -> Tried {
-        Tried { text: text.to_string(), before: 1.0, left }
+    fn attempt(text: &str, left: f64) -> Attempt {
+        Attempt { text: text.to_string(), before: 1.0, left }
     }
 
     #[test]
     fn the_simplest_of_equally_good_changes_is_named() {
-        let named = |all: Vec<Tried>| best(all).map(|one| one.text);
-        assert_eq!(named(vec![tried("one", 0.15), tried("two", 0.1)]), Some("one".to_string()));
-        assert_eq!(named(vec![tried("one", 0.15), tried("two", 0.01)]), Some("two".to_string()));
-        assert_eq!(named(vec![tried("one", 5e-4), tried("two", 0.0)]), Some("one".to_string()));
-        assert_eq!(named(vec![tried("one", 0.5), tried("two", 0.3)]), None);
-        assert!(tried("one", 1e-9).told().ends_with("from 100 % to less than 1e-4 %"));
+        let named = |all: Vec<Attempt>| best(all).map(|one| one.text);
+        assert_eq!(named(vec![attempt("one", 0.15), attempt("two", 0.1)]), Some("one".to_string()));
+        assert_eq!(named(vec![attempt("one", 0.15), attempt("two", 0.01)]), Some("two".to_string()));
+        assert_eq!(named(vec![attempt("one", 5e-4), attempt("two", 0.0)]), Some("one".to_string()));
+        assert_eq!(named(vec![attempt("one", 0.5), attempt("two", 0.3)]), None);
+        assert!(attempt("one", 1e-9).told().ends_with("from 100 % to less than 1e-4 %"));
     }
 }

@@ -15,9 +15,9 @@ const PAUSE: Duration = Duration::from_millis(5);
 /// process that was forked meanwhile, and this one might then find its own file in use. For the same
 /// reason HDF5 takes no locks of its own here.
 #[derive(Debug)]
-pub(crate) struct Held(File);
+pub(crate) struct LockedFile(File);
 
-impl Held {
+impl LockedFile {
     /// Others may read.
     pub(crate) fn shared(file: File) -> Result<Self, FileCause> {
         for _ in 1..ASKED {
@@ -63,7 +63,7 @@ fn taken(lock: Result<(), TryLockError>) -> Result<(), FileCause> {
     }
 }
 
-impl Drop for Held {
+impl Drop for LockedFile {
     fn drop(&mut self) {
         unlock(&self.0);
     }

@@ -1,13 +1,13 @@
 //! Long steps at whose ends alone the balance fails: instants were lost there.
 
+use super::attempt::Attempt;
+use super::diagnosis::Diagnosis;
 use super::long_steps::LongSteps;
-use super::suspect::Suspect;
-use super::tried::Tried;
 use crate::message::{numbered, times, trimmed};
 
 /// Instants that were lost in long steps.
-pub(super) fn tried(suspect: &Suspect<'_>) -> Option<Tried> {
-    let (grid, residual) = (suspect.source.times(), &suspect.evidence.residual);
+pub(super) fn attempt(diagnosis: &Diagnosis<'_>) -> Option<Attempt> {
+    let (grid, residual) = (diagnosis.source.times(), &diagnosis.evidence.residual);
     let (long, sizes) = (LongSteps::of(grid, residual.by_instant.len()), &residual.largest_at);
     let level = long.level(sizes);
     let (lost, lengths): (Vec<usize>, Vec<f64>) =
@@ -31,6 +31,6 @@ pub(super) fn tried(suspect: &Suspect<'_>) -> Option<Tried> {
         residual.by_instant.iter().enumerate().filter(|(n, _)| of(*n)).map(|(_, square)| square).sum()
     };
     let (others, all) = (share(&|n| !lost.iter().any(|&step| n == step || n == step + 1)), share(&|_| true));
-    let before = suspect.residual();
-    Some(Tried { text, before, left: before * (others / all).sqrt() })
+    let before = diagnosis.residual();
+    Some(Attempt { text, before, left: before * (others / all).sqrt() })
 }

@@ -1,4 +1,4 @@
-//! An edge beside a contact that a support keeps out of it.
+//! An edge next to a contact that a support excludes from it.
 
 use super::{PlausibilityWarning, plausibility_warning};
 use crate::contact::{dot, tangent};

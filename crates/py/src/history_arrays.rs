@@ -11,7 +11,7 @@ use percute_workflow::foreign::{Completed, Lacks, Origin};
 use pyo3::prelude::*;
 
 /// Arrays of a history, of all instants.
-pub(crate) struct Given<'a> {
+pub(crate) struct HistoryArrays<'a> {
     pub(crate) count: usize,
     pub(crate) displacement: &'a [f64],
     pub(crate) reaction: Option<&'a [f64]>,
@@ -19,7 +19,7 @@ pub(crate) struct Given<'a> {
     pub(crate) motion: [Option<&'a [f64]>; 2],
 }
 
-impl Given<'_> {
+impl HistoryArrays<'_> {
     /// The history, of percute or of another program.
     pub(crate) fn run(
         &self,

@@ -1,4 +1,4 @@
-//! The form of an element that is kept.
+//! The form of a single element.
 
 use super::{COLUMNS, EnergyForm, EnergyForms, FluctuationForm, LOADS, ReferenceMap, coordinates};
 use crate::lanes::Value;
@@ -9,20 +9,20 @@ use percute_core::problem::Problem;
 
 /// The form of one element.
 #[derive(Clone, Debug)]
-pub(crate) enum KeptForm {
+pub(crate) enum ElementForm {
     Bar(BarStress),
-    Triangle(Box<KeptTriangle>),
+    Triangle(Box<TriangleForm>),
 }
 
 /// The form of one triangle.
 #[derive(Clone, Debug)]
-pub(crate) struct KeptTriangle {
+pub(crate) struct TriangleForm {
     map: ReferenceMap,
     /// L; above the diagonal, 0.
     factor: [[f64; LOADS]; LOADS],
 }
 
-impl KeptForm {
+impl ElementForm {
     /// That of an element, which it shares with no other.
     pub(crate) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, id: ElementId) -> Self {
         let points = problem.mesh().corners::<D, N>(id);
@@ -30,7 +30,7 @@ impl KeptForm {
         let [lane, ..] = forms.prepare(problem, std::iter::once((id, points)));
         match forms.of(problem, id, &points, lane) {
             EnergyForm::Bar(map) => Self::Bar(map),
-            EnergyForm::Triangle(form) => Self::Triangle(Box::new(KeptTriangle {
+            EnergyForm::Triangle(form) => Self::Triangle(Box::new(TriangleForm {
                 map: form.map,
                 factor: form.factors.each_ref().map(|row| row.each_ref().map(|entry| entry.0[lane])),
             })),
@@ -39,11 +39,11 @@ impl KeptForm {
 
     /// Memory of one (bytes).
     pub(crate) const fn memory() -> usize {
-        size_of::<KeptTriangle>()
+        size_of::<TriangleForm>()
     }
 }
 
-impl FluctuationForm for KeptForm {
+impl FluctuationForm for ElementForm {
     #[inline(always)]
     fn fluctuation<T: Value, const D: usize, const N: usize>(
         &self,
@@ -59,7 +59,7 @@ impl FluctuationForm for KeptForm {
     }
 }
 
-impl KeptTriangle {
+impl TriangleForm {
     /// The products of some columns of L with loads, as those of a form in a lane.
     #[inline(always)]
     fn columns<const FIRST: usize, T: Value>(&self, loads: &[T; LOADS]) -> [T; COLUMNS] {
@@ -96,7 +96,7 @@ mod tests {
             let loading =
                 Loading { traction: [(); 3].map(|()| [vector(), vector()]), volume: [(); 3].map(|()| vector()) };
             let made = forms.of(&problem, *id, &points(id), lane).fluctuation(&loading);
-            let kept = KeptForm::new(&problem, *id).fluctuation(&loading);
+            let kept = ElementForm::new(&problem, *id).fluctuation(&loading);
             assert!(made.energy() > 0.0);
             assert_eq!((made.edges, made.nodes), (kept.edges, kept.nodes), "{id:?}");
         }
