@@ -216,8 +216,8 @@ def section_of(section: Section, found: list[tuple[Case, Found]]) -> None:
         f"contains the index of the mean error on the best mesh in {held} of {len(found)} cases. In {coarse} cases the true error moves by more than "
         f"{100 * SETTLED:.0f} % between the references: it is then larger than the table says, and the index smaller.",
         "More than four runs are needed where the first error is above 100 %. The first plan then refines more than the place of the contact, and expects too "
-        "much of it. The disc on the plate ends with a doubt: where several nodes of a fine mesh touch those of another body, the estimate of the third "
-        "run is too large, which percute notices, and it returns the run before.",
+        "much of it. The adaptation of the disc on the plate ends because the estimate is not trusted: where several nodes of a fine mesh touch those of "
+        "another body, the estimate of the third run is too large, and the result is the run before.",
         _table(found),
     )
 

@@ -166,7 +166,7 @@ def _references(results: Iterable[Result]) -> Table:
 def _runs(results: Iterable[Result]) -> Table:
     columns = [Column("case"), Column("reconstruction"), Column("elements"), Column("steps")]
     columns += [Column("e sup", "J^½", "[15]"), Column("e mean", "J^½", "[16]"), Column("ε sup", "", "[22]"), Column("ε mean", "", "[22]")]
-    columns += [Column("impulse kept"), Column("contact part at the sup", "%", digits=3), Column("e_ref sup", "J^½"), Column("e_ref mean", "J^½")]
+    columns += [Column("impulse ratio"), Column("contact part at the sup", "%", digits=3), Column("e_ref sup", "J^½"), Column("e_ref mean", "J^½")]
     columns += [Column(name, digits=3) for name in VERDICT]
     caption = "All runs: estimate, relative error, the part of the contact impulse that the admissible force keeps, and true error."
     table = Table("effectivity-runs", caption, columns, on_page=False)

@@ -120,7 +120,7 @@ def _micrometres(speed: float) -> str:
 
 def _table(results: Iterable[tuple[Run, Result]]) -> Table:
     columns = [Column("case"), Column("speed across the plane", "m/s", digits=3), Column("mesh"), Column("elements"), Column("T", "µs", digits=3)]
-    columns += [Column("touches from", "µs", digits=3), Column("until", "µs", digits=3), Column("impulse kept", digits=3)]
+    columns += [Column("touches from", "µs", digits=3), Column("until", "µs", digits=3), Column("impulse ratio", digits=3)]
     columns += [Column("sup", digits=3), Column("mean", digits=3), Column("time of the sup", "µs", digits=3)]
     columns += [Column(f"{part} part at the sup", "%", digits=3) for part in ("contact", "kinetic", "elastic")]
     columns += [Column(name, digits=3) for name in VERDICT]

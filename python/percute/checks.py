@@ -137,7 +137,7 @@ def vtkhdf(name: str, value: object) -> str:
     """Give the name of a history or an estimate file."""
     file = new_file(name, value)
     if not file.lower().endswith(".vtkhdf"):
-        raise wrong(name, value, "a name that ends in .vtkhdf, by which ParaView knows the format; `History.export` writes .vtu")
+        raise wrong(name, value, "a name that ends in .vtkhdf, from which ParaView recognises it; `History.export` writes .vtu")
     return file
 
 

@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from percute._percute import unit
+from percute._percute import contact_name, unit
 from percute.mesh import Mesh
 from percute.words import counted
 
@@ -118,7 +118,8 @@ class ContactResults:
         """The name of each obstacle that counts: each plane, and the first side of each interface of bodies."""
         planes = sum(surface is None for surface in self.surfaces)
         sides = range(planes, len(self.surfaces), 2)
-        return {k: f"plane {k}" for k in range(planes)} | {k: f"{self.surfaces[k]} with {self.surfaces[k + 1]}" for k in sides}
+        names = {k: contact_name(self.surfaces[k] or "", self.surfaces[k + 1] or "") for k in sides}
+        return {k: f"plane {k}" for k in range(planes)} | names
 
     @cached_property
     def density(self) -> NDArray[np.float64]:

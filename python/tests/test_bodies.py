@@ -359,7 +359,7 @@ def test_pictures_and_tables_name_the_surfaces() -> None:
     history = pc.simulate(blocks(), end=10e-6, courant=0.9)
     assert history.contact.surfaces == ("anvil.top", "hammer.bottom")
     axes = history.contact.plot("pressure")
-    assert [each.get_title() for each in axes] == ["", "anvil.top with hammer.bottom"]
+    assert [each.get_title() for each in axes] == ["", "anvil.top and hammer.bottom"]
     assert "1 contact" in repr(history.problem)
 
 

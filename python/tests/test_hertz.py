@@ -55,7 +55,7 @@ def test_all_reconstructions_are_admissible(reconstruction: str, study: Any) -> 
 def test_reconstructions_differ_by_the_kept_impulse(study: Any) -> None:
     """`published` drops the forces at the ends of a moving contact: about 2 % of the force of an ellipse over fifteen edges."""
     published, consistent, corrected = (study.estimates[name] for name in ("published", "consistent", "corrected"))
-    # All reactions are in the cone: nothing is cut off. While a node touches alone it has a force of its own, whose impulse differs
+    # All reactions are in the cone: nothing is cut off. While a node touches alone it has an auxiliary contact force, whose impulse differs
     # (measured 3e-6).
     assert abs(corrected.impulse_ratio - 1.0) < 1e-4
     assert abs(consistent.impulse_ratio - 1.0) < 0.005

@@ -143,7 +143,7 @@ def test_the_estimate_of_a_corner_beside_the_end_of_a_plate(angle: float) -> Non
 @pytest.mark.filterwarnings("ignore:.*density:percute.InputWarning")
 @pytest.mark.parametrize(("angle", "speed"), [(10.0, 0.2), (28.0, 2.0)])
 def test_a_corner_on_a_stiff_plate_is_one_on_a_plane(angle: float, speed: float) -> None:
-    """A plate that is a million times stiffer and denser does not move. Its node that strikes has a contact of its own, as on a plane."""
+    """A plate that is a million times stiffer and denser does not move. Its node that strikes has an auxiliary contact force, as on a plane."""
     law = pc.Elastic(**ALUMINIUM, plane="stress")
     mesh = pc.Mesh.rectangle(0.04, 0.025, nx=16, ny=12)
     cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
@@ -158,7 +158,7 @@ def test_a_corner_on_a_stiff_plate_is_one_on_a_plane(angle: float, speed: float)
     step = 0.9 * alone.critical_time_step
     steps = np.full(int(14e-6 / step), step)
     expected, found = (pc.estimate(pc.simulate(problem, steps=steps), every=1) for problem in (alone, on_plate))
-    # Measured: 0.9 % and 0.2 %; without a contact of its own 26 to 54 %.
+    # Measured: 0.9 % and 0.2 %; without its auxiliary contact force 26 to 54 %.
     assert found.sup == pytest.approx(expected.sup, rel=0.02) and found.mean == pytest.approx(expected.mean, rel=0.01)
     own = [json.loads(estimate.to_json())["isolated_contact_nodes"] for estimate in (expected, found)]
     assert own == [1, 1]
@@ -166,7 +166,7 @@ def test_a_corner_on_a_stiff_plate_is_one_on_a_plane(angle: float, speed: float)
 
 @pytest.mark.parametrize("angle", [3.0, 29.0])
 def test_the_estimate_of_a_slow_corner(angle: float) -> None:
-    """The reference has elements of 64 µm at the corner: a coarser one does not resolve the contact. Without a contact of its own the index is 1.7 and 2.2."""
+    """The reference has elements of 64 µm at the corner: a coarser one does not resolve the contact. Without its auxiliary contact force the index is 1.7 and 2.2."""
     problem = tilted(angle)
     history = pc.simulate(problem(0.2, 0), end=14e-6, courant=0.9)
     estimate = pc.estimate(history, every=1)

@@ -121,7 +121,7 @@ def test_contact_that_gives_energy_has_low_trust(pair: ends.Pair, gives: bool) -
 @pytest.mark.parametrize("matching", [True, False])
 @pytest.mark.parametrize(("slope", "ranged"), [(9.0, True), (16.0, False)])
 def test_chevrons_that_lean_together_have_no_range(slope: float, ranged: bool, matching: bool) -> None:
-    """The surfaces of both bodies touch where they lean away from the normal, as pairs of nodes or sliding."""
+    """The surfaces of both bodies touch where they are inclined to the normal, as pairs of nodes or sliding."""
 
     def body(name: str, up: float, speed: float) -> pc.Body:
         flat = pc.Mesh.rectangle(0.02, 0.01, nx=6, ny=3)

@@ -1,5 +1,6 @@
 //! The JSON document of an estimate, read by its keys. Documents of earlier versions lack some of them.
 
+use percute_core::contact::contact_name;
 use percute_workflow::report::units_of;
 use serde_json::Value;
 use thiserror::Error;
@@ -72,17 +73,23 @@ impl Document {
         self.list("problem.obstacles").iter().map(counts).collect()
     }
 
-    /// The names of the obstacles that count, with their places among all: "plane 0", or "anvil.top with
-    /// hammer.bottom".
+    /// The names of the obstacles that count, with their places among all: "plane 0", or "disc and
+    /// plate".
     pub(crate) fn names_of_obstacles(&self) -> Vec<(usize, String)> {
         let obstacles = self.list("problem.obstacles");
-        let group = |k: usize| obstacles.get(k).and_then(|obstacle| obstacle["group"].as_str()).unwrap_or_default();
         let name = |k: usize| match obstacles[k]["point"].is_null() {
-            true => format!("{} with {}", group(k), group(k + 1)),
+            true => contact_name(self.groups(k)),
             false => format!("plane {k}"),
         };
         let counted = self.counted_obstacles();
         (0..obstacles.len()).filter(|&k| counted[k]).map(|k| (k, name(k))).collect()
+    }
+
+    /// The groups of an interface whose first side is this obstacle.
+    pub(crate) fn groups(&self, obstacle: usize) -> [&str; 2] {
+        let obstacles = self.list("problem.obstacles");
+        [obstacle, obstacle + 1]
+            .map(|k| obstacles.get(k).and_then(|obstacle| obstacle["group"].as_str()).unwrap_or_default())
     }
 
     /// Whether bodies may touch each other.

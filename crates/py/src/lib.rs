@@ -88,6 +88,12 @@ mod _percute {
         percute_workflow::message::hint(given, known.iter().map(String::as_str))
     }
 
+    /// The name of the interface of two groups of edges.
+    #[pyfunction]
+    fn contact_name(first: &str, second: &str) -> String {
+        percute_core::contact::contact_name([first, second])
+    }
+
     /// Runs the command `percute` with these arguments, the program's name first, as the process's own: it prints to
     /// standard output and error and takes Ctrl-C over. Returns the exit code. `itself` is the command with which
     /// processes of its own are started.

@@ -32,7 +32,7 @@ pub fn check_endings(outputs: &[Option<OutputFile<'_>>]) -> Result<(), Failure> 
     match outputs.iter().flatten().find(|output| !is_vtkhdf_name(output.file)) {
         None => Ok(()),
         Some(OutputFile { what, file }) => Err(Failure::Argument(format!(
-            "{what} {}: the name must end in .vtkhdf, by which ParaView knows the format; `percute export` writes .vtu",
+            "{what} {}: the name must end in .vtkhdf, from which ParaView recognises it; `percute export` writes .vtu",
             file.display()
         ))),
     }

@@ -7,12 +7,12 @@ use percute_core::time::TimeGrid;
 pub(crate) type Take<'t> = dyn FnMut(&Step<'_>) -> Result<(), SinkError> + 't;
 
 /// A history whose steps go through a function, which hands them on.
-pub(crate) struct Through<'s, F> {
+pub(crate) struct StepFilter<'s, F> {
     source: &'s dyn StepSource,
     with: F,
 }
 
-impl<'s, F> Through<'s, F>
+impl<'s, F> StepFilter<'s, F>
 where
     F: Fn(&Step<'_>, &mut Take<'_>) -> Result<(), SinkError>,
 {
@@ -21,7 +21,7 @@ where
     }
 }
 
-impl<F> StepSource for Through<'_, F>
+impl<F> StepSource for StepFilter<'_, F>
 where
     F: Fn(&Step<'_>, &mut Take<'_>) -> Result<(), SinkError>,
 {

@@ -61,3 +61,46 @@ impl Interface {
         self.law
     }
 }
+
+/// In the name of a group of edges that is found: one body "facing" or "towards" another one.
+pub(crate) const RELATIONS: [&str; 2] = ["facing", "towards"];
+
+/// The names of the two sides of an interface: their groups, or their bodies where the groups were found.
+#[must_use]
+pub fn side_names(groups: [&str; 2]) -> [String; 2] {
+    [0, 1].map(|side| {
+        let [own, other] = [groups[side], groups[1 - side]];
+        let found = RELATIONS.iter().find_map(|relation| own.split_once(&format!(" {relation} ")));
+        // The other group begins with the name of the other body: "plate", "plate.top" or "plate towards disc".
+        let named = found.filter(|(_, body)| {
+            other.strip_prefix(body).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', ' ']))
+        });
+        named.map_or(own, |(body, _)| body).to_string()
+    })
+}
+
+/// The name of an interface: "disc and plate".
+#[must_use]
+pub fn contact_name(groups: [&str; 2]) -> String {
+    let sides = side_names(groups);
+    let joint = if sides.iter().any(|side| side.contains(" and ")) { " with " } else { " and " };
+    sides.join(joint)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::contact_name;
+
+    #[test]
+    fn contacts_have_the_names_of_bodies_or_groups() {
+        for (groups, name) in [
+            (["disc towards plate", "plate towards disc"], "disc and plate"),
+            (["a facing b", "b.bottom"], "a and b.bottom"),
+            (["a and b towards c", "c towards a and b"], "a and b with c"),
+            (["upper.bottom", "lower.top"], "upper.bottom and lower.top"),
+            (["edges facing up", "plate"], "edges facing up and plate"),
+        ] {
+            assert_eq!(contact_name(groups), name);
+        }
+    }
+}

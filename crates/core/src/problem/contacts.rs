@@ -5,7 +5,7 @@ use super::facing_edges::FacingEdges;
 use super::joined::{Member, Proposal, Source, joined, listed};
 use super::sides::Bodies;
 use super::{Cause, InputError, Place};
-use crate::contact::{Interface, ObstacleError};
+use crate::contact::{Interface, ObstacleError, RELATIONS};
 use crate::ids::{FaceId, NodeId};
 use crate::material::Law;
 use crate::mesh::Mesh;
@@ -144,7 +144,7 @@ impl Surfaces {
     /// The names of both surfaces, if they face each other: those of groups of the mesh, if there are such, else of new
     /// ones.
     fn groups_of(&mut self, mesh: &Mesh, names: &[String], found: &Found, matching: bool) -> Option<[String; 2]> {
-        let relation = if matching { "facing" } else { "towards" };
+        let relation = RELATIONS[usize::from(!matching)];
         let mut sides = found.seeing.clone();
         if !matching {
             sides.iter_mut().zip(&found.beside).for_each(|(side, beside)| side.extend(beside));
@@ -179,7 +179,8 @@ impl Surfaces {
                     }
                 }
             }
-            let relation = if others.is_empty() { String::new() } else { format!(" towards {}", listed(&others)) };
+            let relation =
+                if others.is_empty() { String::new() } else { format!(" {} {}", RELATIONS[1], listed(&others)) };
             self.group(mesh, listed(&own) + &relation, faces[usize::from(!is_common)].clone())
         };
         // The sides stay in the order of the first contact.

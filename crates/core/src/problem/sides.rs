@@ -80,7 +80,7 @@ impl<const D: usize> Bodies<'_, D> {
         if all { Ok(sides) } else { Err(Cause::PlanesDiffer) }
     }
 
-    /// The mean outward unit normals of two sides. Rounding of places does not lean them across a support.
+    /// The mean outward unit normals of two sides. Rounding of places does not tilt them across a support.
     pub(super) fn outward(&self, sides: &[InterfaceSide<D>; 2]) -> [[f64; D]; 2] {
         let fixed = |c: usize| sides.iter().flat_map(|side| &side.nodes).any(|node| self.fixed[node.index()][c]);
         let fixed: [bool; D] = std::array::from_fn(fixed);

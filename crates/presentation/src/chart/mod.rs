@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn a_long_legend_has_rows() {
-        let names = ["all contacts", "plane 0", "lower.top with middle.bottom", "middle.top with upper.bottom"];
+        let names = ["all contacts", "plane 0", "lower.top and middle.bottom", "middle.top and upper.bottom"];
         let legend = Legend::new(names.into_iter());
         assert_eq!((legend.further(), Legend::new(names.into_iter().take(3)).further()), (ROW, 0.0));
         for (name, [x, _]) in legend.names {

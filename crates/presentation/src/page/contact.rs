@@ -7,6 +7,7 @@ use super::html::{
 use crate::chart::{Line, OverTime, space_time};
 use crate::document::{Document, numbers};
 use crate::scale::vector_quantity;
+use percute_core::contact::{contact_name, side_names};
 use serde_json::Value;
 
 pub(super) fn section_of(contents: &Contents<'_>) -> String {
@@ -34,10 +35,10 @@ fn facts(document: &Document) -> String {
     row("at node", number(value("contact.averaged_peak.node")));
     let shown = |impulse: &Value| together(&vector_quantity(&numbers(impulse), document.unit("N s"), 5));
     if document.has_interfaces() {
-        for (k, name) in document.names_of_obstacles() {
+        for (k, _) in document.names_of_obstacles() {
             let impulse =
                 document.list("contact.obstacles").get(k).and_then(|over_time| over_time["impulse"].as_array());
-            let (first, second) = name.split_once(" with ").unwrap_or(("the bodies", &name));
+            let [first, second] = side_names(document.groups(k));
             if let Some(impulse) = impulse.and_then(|impulse| impulse.last()) {
                 row(&format!("impulse on {first}, from {second}"), shown(impulse));
             }
@@ -135,8 +136,7 @@ fn impacts(document: &Document) -> String {
     let mut interfaces = Table::new(&titles);
     let mut reasons = Vec::new();
     for each in document.list("impacts.interfaces") {
-        let name = each["groups"].as_array().into_iter().flatten().filter_map(Value::as_str).collect::<Vec<_>>();
-        let name = name.join(" with ");
+        let name = contact_name([0, 1].map(|side| each["groups"][side].as_str().unwrap_or_default()));
         let of = |key: &str, unit: &str| quantity(each[key].as_f64(), unit);
         let restitution = number(each["restitution"].as_f64());
         let [before, after] = ["normal_before", "normal_after"].map(|key| of(key, "m/s"));

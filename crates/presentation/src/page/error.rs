@@ -101,7 +101,7 @@ pub(super) fn sources(document: &Document) -> String {
         "#share of e_mean^2",
         "",
         &format!("#at the sup ({joule})"),
-        &format!("#mean, half size ({joule})"),
+        &format!("#mean, halved elements ({joule})"),
     ]);
     for (name, meaning) in SOURCES {
         let mean = value("mean", name);

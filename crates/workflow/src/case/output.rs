@@ -13,7 +13,7 @@ use std::path::PathBuf;
 const INSTANTS: usize = 50;
 
 /// The ending of histories and estimate files.
-const VTKHDF: &str = "a name that ends in .vtkhdf, by which ParaView knows the format (`percute export` writes .vtu)";
+const VTKHDF: &str = "a name that ends in .vtkhdf, from which ParaView recognises it (`percute export` writes .vtu)";
 
 /// What is missing where a key applies to a file that no run makes.
 const HISTORY: &str = "applies to the file of the history; name one in [output], as in history = \"block.vtkhdf\", or \

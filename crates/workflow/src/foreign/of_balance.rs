@@ -6,7 +6,7 @@ use super::diagnosis::Diagnosis;
 use super::holding::{MOST, holding};
 use super::limits::BALANCE;
 use super::residual::Residual;
-use super::{instants, lost, mass, moduli, orders, planes, rounded, skipped, surface, units};
+use super::{instants, mass, missing_instants, moduli, orders, planes, rounded, skipped, surface, units};
 use crate::message::{numbered, percent, trimmed};
 use crate::step_filter::StepFilter;
 use percute_core::dynamics::critical_time_step;

@@ -1,7 +1,7 @@
 //! What a case is about: materials, and planes and other bodies with their gaps, so that a slip shows before the run.
 
 use crate::message::{counted, trimmed};
-use percute_core::contact::Interface;
+use percute_core::contact::{Interface, contact_name, side_names};
 use percute_core::material::Law;
 use percute_core::problem::AnyProblem;
 use serde::Serialize;
@@ -84,11 +84,15 @@ impl PlaneInfo {
             Some([first, second]) => {
                 let nodes = match self.matching {
                     Some(false) => {
-                        format!("{} of \"{first}\" may touch, non-matching", counted(self.contact_nodes, "node"))
+                        format!(
+                            "{} of {} may touch, non-matching",
+                            counted(self.contact_nodes, "node"),
+                            side_names([first, second])[0]
+                        )
                     }
                     _ => format!("{} of nodes may touch", counted(self.contact_nodes, "pair")),
                 };
-                ("contact", format!("\"{first}\" with \"{second}\": gap {gap} m{when}, {nodes}"))
+                ("contact", format!("{}: gap {gap} m{when}, {nodes}", contact_name([first, second])))
             }
         }
     }

@@ -1,4 +1,4 @@
-//! What half the error takes.
+//! The refinement for half the error.
 
 use super::{Basis, Branch, Plan};
 use serde::Serialize;

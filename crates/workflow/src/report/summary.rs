@@ -3,6 +3,7 @@
 use super::{ADMISSIBLE, InterfaceRebound, NearestNode, ProblemSummary, Rebound, Report, SOURCES, meaning};
 use crate::foreign::Consistency;
 use crate::message::{counted, percent, printable, short, trimmed, whole_percent};
+use percute_core::contact::contact_name;
 use percute_core::dynamics::Balance;
 use percute_core::units::Units;
 use percute_estimator::Sampling;
@@ -282,7 +283,7 @@ fn in_contact(time: f64, span: f64) -> String {
 fn impacts(report: &Report) -> Vec<(&'static str, String)> {
     let interfaces = report.impacts.as_ref().map_or(&[][..], |impacts| &impacts.interfaces);
     let line = |interface: &InterfaceRebound| {
-        let [first, second] = &interface.groups;
+        let name = contact_name(interface.groups.each_ref().map(String::as_str));
         let time = in_contact(interface.time_in_contact, interface.span);
         let [before, after] = [interface.normal_before, interface.normal_after].map(|v| v.map(|v| trimmed(v, 4)));
         let told = match (before, after, interface.restitution) {
@@ -292,7 +293,7 @@ fn impacts(report: &Report) -> Vec<(&'static str, String)> {
             }
             _ => format!("no restitution: {}", interface.no_restitution.unwrap_or_default()),
         };
-        ("rebound", format!("{first} with {second}: {told}"))
+        ("rebound", format!("{name}: {told}"))
     };
     let most = if interfaces.len() > 2 { 1 } else { 2 };
     let more = (interfaces.len() > most).then(|| ("", format!("and {} more interfaces", interfaces.len() - most)));

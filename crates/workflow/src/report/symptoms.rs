@@ -25,7 +25,7 @@ pub(crate) const SLIP: f64 = 0.1;
 /// Nodes of non-matching interfaces that are deeper in the other body, over their edge, are outside of the evidence:
 /// there, up to 200 m/s, corners and curves are at most 0.021 of it inside.
 pub(crate) const PENETRATION: f64 = 0.05;
-/// Surfaces that touch and lean together by more than this (degrees) face each other along another direction than their
+/// Surfaces in contact with a larger common inclination (degrees) face each other along another direction than their
 /// normal. Between chevrons of aluminium of 5, 15 and 30°, without friction, the motion differs by 2, 9 and 24 % from
 /// that with a contact for each slope.
 pub(crate) const INCLINATION: f64 = 10.0;
@@ -173,7 +173,7 @@ fn flat_elements(facts: &WarningFacts<'_>) -> Option<Symptom> {
 
 fn impulse_ratio(facts: &WarningFacts<'_>) -> Option<Symptom> {
     let [least, most] = IMPULSE_RATIO;
-    // A node with a contact of its own touches at other instants in the admissible fields than in the simulation.
+    // An isolated contact node touches at other instants in the admissible fields than in the simulation.
     let kept =
         facts.impulse_ratio.filter(|kept| facts.isolated_contact_nodes == 0 && !(least..=most).contains(kept))?;
     let shown = percent(kept);

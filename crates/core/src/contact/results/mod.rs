@@ -46,9 +46,8 @@ pub struct ContactResults {
     /// Whether a node of a slave that has touched is at the end of its master: it faces nothing, or is a corner that
     /// faces so little of its edge that its gap is a mean, or that is beyond the end by less than 1e-3 of its edge.
     pub at_surface_end: bool,
-    /// The largest angle by which surfaces of two bodies lean together from the normal of their contact where forces
-    /// act, or by which a side leans on which a corner of the slave acts (rad): forces have the direction of the
-    /// normal.
+    /// The largest inclination (rad) of surfaces of two bodies to the normal of their contact where forces act, or of a
+    /// side on which a corner of the slave acts: forces have the direction of the normal.
     pub inclination: f64,
     /// The largest force, averaged over the time in which a wave crosses the struck element; none without force.
     pub averaged_peak: Option<AveragedPeak>,

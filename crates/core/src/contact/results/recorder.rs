@@ -7,7 +7,7 @@ use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
 use crate::border::padded;
 use crate::contact::coulomb::{Coulomb, Status, dissipation};
 use crate::contact::frame::{Frame, dot};
-use crate::contact::leaning::Leaning;
+use crate::contact::inclination::Inclination;
 use crate::contact::mortar::{ContactConfiguration, LEAST_PART, NonMatchingSurfaces};
 use crate::history::{SinkError, State, StateSink, Step, StepCheck, StepSource};
 use crate::on_problem;
@@ -95,7 +95,7 @@ struct Recorder<'p, const D: usize, const N: usize> {
     configuration: ContactConfiguration<'p, D>,
     /// The shortest edge of each node that may touch another body (m); infinite at rigid obstacles, and on a bar.
     shortest: Vec<f64>,
-    leaning: Leaning<'p, D>,
+    inclination: Inclination<'p, D>,
     gaps: LastGaps,
     averages: Averages,
     results: ContactResults,
@@ -132,8 +132,8 @@ impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
         let (laws, now) = (TangentialLaw::of_surface(problem), vec![start; results.nodes.len()]);
         let configuration = problem.surface().configuration(problem.initial_displacement());
         let (shortest, gaps, averages) = (shortest_edges(problem), LastGaps::default(), Averages::new(problem));
-        let leaning = Leaning::new(problem.surface(), problem.mesh(), problem.on_lines_of_symmetry());
-        Self { problem, times, laws, now, configuration, shortest, leaning, gaps, averages, results }
+        let inclination = Inclination::new(problem.surface(), problem.mesh(), problem.on_lines_of_symmetry());
+        Self { problem, times, laws, now, configuration, shortest, inclination, gaps, averages, results }
     }
 
     /// The normal force of each obstacle (N) up to which its nodes are free.
@@ -156,7 +156,7 @@ impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
     /// The inclination of surfaces where forces act (rad), so far.
     fn inclination(&self) -> f64 {
         let acts = |at: usize| self.now[at].status != Status::Free;
-        self.leaning.largest(self.results.inclination, acts, |non_matching| self.configuration.shifts(non_matching))
+        self.inclination.largest(self.results.inclination, acts, |non_matching| self.configuration.shifts(non_matching))
     }
 
     /// Records one node, which is free up to this normal force (N); returns its share of the resultants.

@@ -2,7 +2,7 @@
 
 use super::setup::{Blocks, GAP, steps};
 use crate::solution::run::{aluminium, fixed, run};
-use percute_core::contact::{Interface, Leaning, Obstacle};
+use percute_core::contact::{Inclination, Interface, Obstacle};
 use percute_core::dynamics::{SimulationError, check_start};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
@@ -32,9 +32,9 @@ fn wrong_groups_are_refused() {
 }
 
 /// Two bodies of 20 mm that face each other along a surface of this height above its level, with supports across x;
-/// `leans` is the slope of their sides.
-fn facing(height: impl Fn(f64) -> [f64; 2], leans: f64, supports: &[&str]) -> Result<TriangleProblem, InputError> {
-    let place = |side: usize, [x, y]: [f64; 2]| [x + leans * y, y + height(x)[side]];
+/// `tilt` is the slope of their sides.
+fn facing(height: impl Fn(f64) -> [f64; 2], tilt: f64, supports: &[&str]) -> Result<TriangleProblem, InputError> {
+    let place = |side: usize, [x, y]: [f64; 2]| [x + tilt * y, y + height(x)[side]];
     placed(place, supports)
 }
 
@@ -89,16 +89,16 @@ fn slopes_of_a_cell_count_at_their_own_line() {
     assert_eq!(cause(facing(|x| [upper(x), lower(x)], 0.0, &lines)), None);
 }
 
-/// Two chevrons lean together by the smaller angle, as non-matching interfaces and as pairs; a chevron on a level
+/// The inclination of two chevrons is the smaller angle, of non-matching interfaces and as pairs; a chevron on a level
 /// surface does not, nor do two that open. Edges of which one node touches do not count, and corners do.
 #[test]
 fn chevrons_lean_together() {
     let slope = |problem: &TriangleProblem, ends: bool| {
         let (surface, mesh) = (problem.surface(), problem.mesh());
         let apex = |at: usize| (mesh.points_in::<2>()[surface.nodes()[at].node.index()][0] - 0.01).abs() < 1e-9;
-        let leaning = |inside: bool| Leaning::new(surface, mesh, vec![inside; surface.nodes().len()]);
-        assert_eq!(leaning(true).largest(0.0, apex, |_| &[0.0]), 0.0);
-        leaning(!ends).largest(0.0, |_| true, |_| &[0.0]).to_degrees()
+        let inclination = |inside: bool| Inclination::new(surface, mesh, vec![inside; surface.nodes().len()]);
+        assert_eq!(inclination(true).largest(0.0, apex, |_| &[0.0]), 0.0);
+        inclination(!ends).largest(0.0, |_| true, |_| &[0.0]).to_degrees()
     };
     let degrees = |height: fn(f64) -> [f64; 2]| {
         let angle = slope(&facing(height, 0.0, &[]).unwrap(), false);
@@ -119,8 +119,8 @@ fn chevrons_lean_together() {
     );
 }
 
-/// Surfaces lean together where they are: of two zigzags of four edges, the third one of the upper surface is on the
-/// first one of the lower surface after a way to the left.
+/// The inclination is that of surfaces where they are: of two zigzags of four edges, the third one of the upper surface
+/// is on the first one of the lower surface after a way to the left.
 #[test]
 fn surfaces_lean_together_where_they_are() {
     let problem = facing(|x| [0.3 * ((x + 0.005) % 0.01 - 0.005).abs(); 2], 0.0, &[]).unwrap();
@@ -128,20 +128,20 @@ fn surfaces_lean_together_where_they_are() {
     let is_upper = |at: usize| surface.nodes()[at].node.index() < 25;
     let left =
         if is_upper(non_matching.slave().position(0)) { -non_matching.tangent()[0] } else { non_matching.tangent()[0] };
-    let leaning = Leaning::new(surface, problem.mesh(), vec![true; surface.nodes().len()]);
+    let inclination = Inclination::new(surface, problem.mesh(), vec![true; surface.nodes().len()]);
     let acts = |at: usize| {
         let from = if is_upper(at) { 0.0099 } else { -0.0001 };
         (from..from + 0.0052).contains(&surface.point(at)[0])
     };
-    let lean = |least: f64, way: f64| {
+    let largest = |least: f64, way: f64| {
         let shifts = [way * left];
-        leaning.largest(least, acts, |_| &shifts)
+        inclination.largest(least, acts, |_| &shifts)
     };
     let angle = 0.3_f64.atan();
-    assert_eq!([lean(0.0, 0.0), lean(0.0, -0.01), lean(0.0, 0.005)], [0.0; 3]);
+    assert_eq!([largest(0.0, 0.0), largest(0.0, -0.01), largest(0.0, 0.005)], [0.0; 3]);
     // Rounding of an arctangent.
-    assert!((lean(0.0, 0.01) - angle).abs() < 1e-14 && (lean(0.1, 0.01) - angle).abs() < 1e-14);
-    assert_eq!([lean(0.4, 0.01), leaning.largest(0.2, |_| false, |_| &[0.0])], [0.4, 0.2]);
+    assert!((largest(0.0, 0.01) - angle).abs() < 1e-14 && (largest(0.1, 0.01) - angle).abs() < 1e-14);
+    assert_eq!([largest(0.4, 0.01), inclination.largest(0.2, |_| false, |_| &[0.0])], [0.4, 0.2]);
 }
 
 #[test]

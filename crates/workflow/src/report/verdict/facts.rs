@@ -95,7 +95,7 @@ pub(in crate::report) struct Facts {
 /// What changes the mean error.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expected {
-    /// How half the error is had.
+    /// The refinement for half the error.
     pub(super) recommendation: Recommendation,
     /// Whether the layer at a front is a larger source than dispersion.
     pub(super) front: bool,
@@ -167,7 +167,7 @@ impl Facts {
             contact_energy: beside.contact_energy,
             auxiliary_contact_energy: auxiliary_contact_energy(estimate, beside.checked),
             admissible: beside.admissible,
-            // A node with a contact of its own touches at other instants in the admissible fields.
+            // An isolated contact node touches at other instants in the admissible fields.
             impulse_ratio: estimate.impulse_ratio.filter(|_| estimate.isolated_contact_nodes == 0),
             expected: expected(problem, estimate, results),
             inconsistent: beside.checked.and_then(|checked| checked.contradiction.clone()),

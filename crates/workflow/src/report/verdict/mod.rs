@@ -80,7 +80,7 @@ pub struct Verdict {
     pub reasons: Vec<String>,
     /// Strains and rotations that are not small.
     pub not_small: Vec<String>,
-    /// How half the error is had; none without sources, or where they do not separate.
+    /// The refinement for half the error; none without sources, or where they do not separate.
     pub recommendation: Option<Recommendation>,
     /// The elements of bad shape with the largest parts of the squared mean error, if such elements matter.
     pub poor_elements: Vec<PoorElement>,

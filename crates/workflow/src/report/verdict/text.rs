@@ -179,7 +179,7 @@ fn recommendation(facts: &Facts, reasons: &[String]) -> String {
     format!("{cut}{way}; {steps} {step}.")
 }
 
-/// The way to half the mean error.
+/// The refinement for half the mean error.
 fn way(expected: &Expected, error: f64) -> String {
     let (half, recommendation) = (percent(0.5 * error), &expected.recommendation);
     let times = |factor: Option<f64>| factor.map_or_else(|| "many".to_string(), |factor| short(factor, 2));

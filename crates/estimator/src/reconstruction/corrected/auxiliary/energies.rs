@@ -68,7 +68,7 @@ impl<'p, const D: usize, const N: usize> Energies<'p, D, N> {
     }
 }
 
-/// Sums up, number by number, the squares of the differences of the simulation, the half-size and the half-step
+/// Sums up, number by number, the squares of the differences of the simulation, the halved-elements and halved-step
 /// solution from the auxiliary solution and of the contact difference: twice their energies (J). The second sum has the
 /// products of the first and the last of these, and others.
 #[derive(Clone, Copy)]
@@ -143,8 +143,8 @@ impl<const D: usize> Measure<'_, D> {
     }
 }
 
-/// The differences of the simulation, the half-size and the half-step solution from the auxiliary solution, and the
-/// contact difference.
+/// The differences of the simulation, the halved-elements and the halved-step solution from the auxiliary solution, and
+/// the contact difference.
 #[inline(always)]
 fn difference<const D: usize>(motions: &Nodal, simulated: &[f64; D]) -> Nodal {
     let mut difference = *motions;

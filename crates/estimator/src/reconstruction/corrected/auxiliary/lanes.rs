@@ -3,7 +3,8 @@
 use crate::simd::{Eight, Four};
 use std::array::from_fn;
 
-/// The motions: the auxiliary solution, the half-size solution, the half-step solution and the contact difference.
+/// The motions: the auxiliary solution, the halved-elements solution, the halved-step solution and the contact
+/// difference.
 pub(super) const MOTIONS: usize = 4;
 
 /// A vector of each motion: the first two motions are the first pair. In one dimension, second components are 0.

@@ -20,9 +20,9 @@
 //!
 //! Three more motions tell the sources of the difference of simulation and auxiliary solution apart:
 //!
-//! - The *half-size solution* is an auxiliary solution with three quarters of all corrections: the leading dispersion
-//!   that is left is that of elements and steps half as long.
-//! - The *half-step solution* has the reactions of the simulation, its lumped mass, and three quarters of the
+//! - The *halved-elements solution* is an auxiliary solution with three quarters of all corrections: the leading
+//!   dispersion that is left is that of elements and steps half as long.
+//! - The *halved-step solution* has the reactions of the simulation, its lumped mass, and three quarters of the
 //!   correction of the central differences: it moves like a simulation with steps half as long.
 //! - The *contact difference* is the motion from rest, by the scheme of the simulation, under the difference of its
 //!   reactions and the nodal forces of F_DA.

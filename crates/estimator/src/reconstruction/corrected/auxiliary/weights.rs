@@ -23,7 +23,7 @@ impl Shares {
 /// The corrections that elements and steps, or steps alone, half as long need no more: errors are of second order.
 const QUARTERS: f64 = 0.75;
 
-/// Those of the half-size solution, the half-step solution and the contact difference.
+/// Those of the halved-elements solution, the halved-step solution and the contact difference.
 const BESIDE: [Shares; 3] =
     [Shares { space: QUARTERS, time: QUARTERS }, Shares { space: 0.0, time: QUARTERS }, Shares::NONE];
 

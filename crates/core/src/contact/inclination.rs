@@ -1,4 +1,4 @@
-//! By how much surfaces that touch face each other along another direction than the normal of their contact.
+//! The inclination of surfaces in contact to the common normal of their contact.
 
 use super::mortar::{NonMatchingSurfaces, Side};
 use super::surface::ContactSurface;
@@ -6,11 +6,11 @@ use super::{dot, tangent};
 use crate::mesh::Mesh;
 use std::collections::BTreeMap;
 
-/// By how much the edges of surfaces of two bodies lean away from the normal of their contact, in the undeformed mesh.
+/// The inclination of the edges of two bodies to the normal of their contact, in the undeformed mesh.
 #[derive(Clone, Debug)]
-pub struct Leaning<'s, const D: usize> {
+pub struct Inclination<'s, const D: usize> {
     surface: &'s ContactSurface<D>,
-    /// Edges of pairs that lean together, by the positions of their nodes, and by which angle (rad).
+    /// Edges of pairs inclined to the same side, by the positions of their nodes, each with its angle (rad).
     pairs: Vec<([usize; D], f64)>,
     non_matching: Vec<Slopes>,
     /// Whether each node is inside a surface although it is at its end, as on a line of symmetry.
@@ -22,14 +22,14 @@ pub struct Leaning<'s, const D: usize> {
 struct Slopes {
     slave: Vec<f64>,
     master: Vec<f64>,
-    /// The largest angle of the master: neither edges nor corners lean by more.
+    /// The largest angle of the master: no edge and no corner has a larger one.
     largest: f64,
 }
 
 /// Smaller angles (rad) are rounding of a normal.
 const LEVEL: f64 = 1e-9;
 
-impl<'s, const D: usize> Leaning<'s, D> {
+impl<'s, const D: usize> Inclination<'s, D> {
     /// Of all contacts between bodies. Nodes `inside` a surface, by their positions, are no corners.
     #[must_use]
     pub fn new(surface: &'s ContactSurface<D>, mesh: &Mesh, inside: Vec<bool>) -> Self {
@@ -42,15 +42,15 @@ impl<'s, const D: usize> Leaning<'s, D> {
         Self { surface, pairs, non_matching, inside }
     }
 
-    /// The largest angle (rad) by which surfaces lean where they are at an instant, or `least` if that is larger: the
-    /// angle by which two edges lean to the same side, with forces on all of their nodes, and that of an edge at which
-    /// a force acts on a corner of the slave. `acts` says whether a force acts on a node. `shifts` has how far
+    /// The largest inclination (rad) of the surfaces at an instant, or `least` if that is larger: the common angle of
+    /// two edges inclined to the same side, with forces on all of their nodes, and the angle of an edge at which a
+    /// force acts on a corner of the slave. `acts` says whether a force acts on a node. `shifts` has how far
     /// the parts of the slave are along the tangent against the master (m), of non-matching interfaces, by their
     /// number.
     #[must_use]
     pub fn largest<'a>(&self, least: f64, acts: impl Fn(usize) -> bool, shifts: impl Fn(usize) -> &'a [f64]) -> f64 {
-        let paired = self.pairs.iter().filter(|(nodes, lean)| *lean > least && nodes.iter().all(|&at| acts(at)));
-        let mut largest = paired.fold(least, |most, (_, lean)| most.max(*lean));
+        let paired = self.pairs.iter().filter(|(nodes, angle)| *angle > least && nodes.iter().all(|&at| acts(at)));
+        let mut largest = paired.fold(least, |most, (_, angle)| most.max(*angle));
         for (index, slopes) in self.non_matching.iter().enumerate().filter(|(_, slopes)| slopes.largest > least) {
             let found = self.of_non_matching((&self.surface.non_matching()[index], slopes), &acts, shifts(index));
             largest = largest.max(found);
@@ -79,15 +79,15 @@ impl<'s, const D: usize> Leaning<'s, D> {
         };
         for xi in (0..slave.len()).filter(strikes).map(place) {
             let faced = edges_between(master, [xi - tolerance, xi + tolerance]);
-            largest = largest.max(lean_at(&slopes.master, faced));
+            largest = largest.max(inclination_at(&slopes.master, faced));
         }
         largest
     }
 }
 
-/// By how much the edges at a place lean. Between two that lean to different sides, the direction is one between
+/// The inclination of the edges at a place. Between two inclined to different sides, the direction is one between
 /// theirs.
-fn lean_at(slopes: &[f64], edges: impl Iterator<Item = usize>) -> f64 {
+fn inclination_at(slopes: &[f64], edges: impl Iterator<Item = usize>) -> f64 {
     edges.map(|edge| slopes[edge]).reduce(|a, b| common(a, b).copysign(a)).unwrap_or(0.0).abs()
 }
 
@@ -106,12 +106,13 @@ impl Slopes {
     }
 }
 
-/// The lean of two edges at one place: none if one of them is level, or if they lean to different sides.
+/// The common inclination of two edges at one place: none if one of them is level, or if they are inclined to
+/// different sides.
 fn common(one: f64, other: f64) -> f64 {
     if one * other > 0.0 { one.abs().min(other.abs()) } else { 0.0 }
 }
 
-/// The edges of pairs of nodes that lean together, and by which angle (rad).
+/// The edges of pairs of nodes that are inclined to the same side, each with its angle (rad).
 fn pairs<const D: usize>(surface: &ContactSurface<D>, mesh: &Mesh) -> Vec<([usize; D], f64)> {
     let partner = |at: usize| surface.nodes()[at].partner;
     let sorted = |mut nodes: [usize; D]| {
@@ -119,7 +120,7 @@ fn pairs<const D: usize>(surface: &ContactSurface<D>, mesh: &Mesh) -> Vec<([usiz
         nodes
     };
     let faces: BTreeMap<[usize; D], _> = surface.faces().iter().map(|face| (sorted(face.nodes), face)).collect();
-    let mut leaning = Vec::new();
+    let mut inclined = Vec::new();
     for face in surface.faces() {
         let other = face.nodes.map(|at| partner(at).unwrap_or(at));
         let Some(other) = faces.get(&sorted(other)).filter(|other| other.face != face.face) else { continue };
@@ -129,12 +130,12 @@ fn pairs<const D: usize>(surface: &ContactSurface<D>, mesh: &Mesh) -> Vec<([usiz
             let outward = mesh.normal_in::<D>(face).0;
             (dot(&outward, &along) / dot(&outward, normal)).atan()
         };
-        let lean = common(slope(face.face), slope(other.face));
-        if lean > LEVEL {
-            leaning.push((face.nodes, lean));
+        let angle = common(slope(face.face), slope(other.face));
+        if angle > LEVEL {
+            inclined.push((face.nodes, angle));
         }
     }
-    leaning
+    inclined
 }
 
 /// The edges of a side of one body that reach into an interval (m).
