@@ -122,7 +122,7 @@ def test_a_correct_history_gives_the_same_bits(case: Case, tmp_path: Path) -> No
     done = subprocess.run(
         [sys.executable, "-m", "percute", "estimate", str(tmp_path / "theirs.vtkhdf"), "--json"], capture_output=True, text=True, check=True
     )
-    assert json.loads(done.stdout)["consistency"]["interface_balance"] == figures(estimate)["opposite"]
+    assert json.loads(done.stdout)["consistency"]["interface_balance"] == figures(estimate)["interface_balance"]
 
 
 def test_single_precision_is_enough(case: Case) -> None:
@@ -179,7 +179,7 @@ def test_samples_are_refused(slid: Case) -> None:
 
 
 def of_side(above: bool, change: Callable[[NDArray[Any]], Any]) -> Callable[[Parts], Parts]:
-    """Change the forces on one of the two surfaces of ``sliding``."""
+    """Change the forces on one side of the interface of ``sliding``."""
 
     def changed_side(held: Parts) -> Parts:
         reaction = held["reaction"].copy()
