@@ -279,8 +279,8 @@ pub enum Cause {
     InnerFace { nodes: Vec<usize> },
     /// A side of an interface that lies on several bodies.
     #[error(
-        "group \"{group}\" lies on several bodies; it may do so if \"{other}\" is of one body and surfaces slide along \
-         each other (`matching = false`); else give each of them a contact of its own"
+        "group \"{group}\" lies on several bodies; it may do so if \"{other}\" is of one body and the interface is \
+         non-matching (`matching = false`); else give each of them a contact of its own"
     )]
     SeveralBodies { group: String, other: String },
     /// A face that does not face the other side of its interface.

@@ -170,8 +170,8 @@ impl<'s> Completed<'s> {
 fn forces_missing(problem: &AnyProblem, heard: Heard) -> String {
     let groups = problem.non_matching_of(heard.at).map(|non_matching| groups(problem, non_matching).join(" and "));
     format!(
-        "`reaction` is missing: the contact forces between {}, which slide or whose nodes do not face each other, are \
-         not derived, and some act from {} s on; give the force on each node of both (N) at each step of the solver, \
+        "`reaction` is missing: the contact forces on the non-matching interface of {} are not derived, and some act \
+         from {} s on; give the force on each node of both (N) at each step of the solver, \
          or simulate with percute",
         groups.unwrap_or_default(),
         trimmed(heard.time, 5)
