@@ -5,7 +5,7 @@ use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::material::{Elastic, MaterialError};
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 
 /// Cells along x and y: 640, 40 960 and 655 360 elements.
 pub const SIZES: [[usize; 2]; 3] = [[20, 16], [160, 128], [640, 512]];
@@ -29,7 +29,7 @@ pub enum Motion {
 #[derive(Clone, Debug)]
 pub struct Block {
     /// The problem, numbered for locality as every run numbers it.
-    pub problem: TriangleProblem,
+    pub problem: Problem<2>,
     /// The step (s).
     pub step: f64,
     /// Distance of the plane from the bottom of the block (m).
@@ -72,14 +72,14 @@ impl Block {
 ///
 /// # Errors
 /// A mesh of another body.
-pub fn problem(mesh: Mesh, motion: Motion, gap: f64) -> Result<TriangleProblem, Failure> {
+pub fn problem(mesh: Mesh, motion: Motion, gap: f64) -> Result<Problem<2>, Failure> {
     // ±SPEED at the sides, so that strain starts at once.
     let spread = |p: &[f64; 2]| [SPEED * (p[0] / 0.025 - 1.0), SPEED * (1.0 - p[1] / 0.02)];
     let velocity = match motion {
         Motion::Impact => Initial::Uniform([SPEED, -SPEED]),
         Motion::Free => Initial::Nodal(mesh.points_in::<2>().iter().map(spread).collect()),
     };
-    let mut builder = TriangleProblem::builder(mesh).material(material()?).initial_velocity(velocity);
+    let mut builder = Problem::<2>::builder(mesh).material(material()?).initial_velocity(velocity);
     if motion == Motion::Impact {
         builder = builder.obstacle(Obstacle::plane([0.0, -gap], [0.0, 1.0], 0.2, None)?);
     }

@@ -2,7 +2,7 @@
 
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
-use percute_core::problem::TriangleProblem;
+use percute_core::problem::Problem;
 
 /// K in compressed sparse rows, as a sparse library stores it: 32-bit columns, rows in order.
 #[derive(Clone, Debug)]
@@ -15,7 +15,7 @@ pub struct Csr {
 impl Csr {
     /// Assembles K (N/m).
     #[must_use]
-    pub fn assemble(problem: &TriangleProblem) -> Self {
+    pub fn assemble(problem: &Problem<2>) -> Self {
         let mut rows: Vec<Vec<(u32, f64)>> = vec![Vec::new(); 2 * problem.mesh().node_count()];
         for (e, cell) in problem.mesh().nodes_of::<3>().iter().enumerate() {
             let matrix = element_matrix(problem, ElementId::new(e));
@@ -53,7 +53,7 @@ impl Csr {
 }
 
 /// The stiffness matrix of an element (N/m): its columns are the forces of unit displacements.
-fn element_matrix(problem: &TriangleProblem, element: ElementId) -> [[f64; 6]; 6] {
+fn element_matrix(problem: &Problem<2>, element: ElementId) -> [[f64; 6]; 6] {
     let (volume, gradients) = (problem.volume(element), problem.mesh().geometry::<2, 3>(element).gradients);
     let mut matrix = [[0.0; 6]; 6];
     for j in 0..3 {

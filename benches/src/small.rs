@@ -5,7 +5,7 @@ use crate::{Block, Failure};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 
 /// Cells along x and y of a block of 50 × 40 mm.
 const CELLS: [usize; 2] = [10, 10];
@@ -52,7 +52,7 @@ impl Small {
 pub fn small(kind: Small) -> Result<Block, Failure> {
     let [angle, speed, gap] = kind.impact();
     let normal = [angle.to_radians().sin(), angle.to_radians().cos()];
-    let builder = TriangleProblem::builder(kind.mesh()?)
+    let builder = Problem::<2>::builder(kind.mesh()?)
         .material(material()?)
         .initial_velocity(Initial::Uniform(normal.map(|n| -speed * n)))
         // The corner of the block is the origin.

@@ -5,7 +5,7 @@ use crate::{Block, Failure};
 use percute_core::contact::Interface;
 use percute_core::dynamics::critical_time_step;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_testkit::translated;
 
 /// Cells along and across each block: 41 000 elements in both, and 250 edges on either side of the interface.
@@ -43,13 +43,13 @@ pub fn two_blocks(contact: Contact) -> Result<Block, Failure> {
     let lower = Mesh::rectangle(width, height, CELLS[0], CELLS[1])?;
     let cells = if contact == Contact::NonMatching { OTHER_CELLS } else { CELLS };
     let upper = Mesh::rectangle(width, height, cells[0], cells[1])?;
-    let at = |gap: f64| -> Result<TriangleProblem, Failure> {
+    let at = |gap: f64| -> Result<Problem<2>, Failure> {
         let upper = translated(&upper, [0.0, height + gap])?;
         let mesh = Mesh::joined(&[("upper", &upper), ("lower", &lower)])?;
         let count = upper.node_count();
         let velocity = |i: usize| if i < count { [VELOCITY[0], -VELOCITY[1]] } else { [0.0, VELOCITY[1]] };
         let velocity = Initial::Nodal((0..mesh.node_count()).map(velocity).collect());
-        let builder = TriangleProblem::builder(mesh).material(material()?).initial_velocity(velocity);
+        let builder = Problem::<2>::builder(mesh).material(material()?).initial_velocity(velocity);
         let builder = match contact {
             Contact::None => builder,
             Contact::Pairs => builder.interface(Interface::matching(2, "upper.bottom", "lower.top", 0.2)?),

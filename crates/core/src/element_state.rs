@@ -29,13 +29,9 @@ impl ElementState {
         on_problem!(problem.into(), problem => Self::of(problem, element, vectors(displacement)))
     }
 
-    fn of<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
-        element: ElementId,
-        displacement: &[[f64; D]],
-    ) -> Self {
+    fn of<const D: usize>(problem: &Problem<D>, element: ElementId, displacement: &[[f64; D]]) -> Self {
         let law = problem.material(element);
-        let gradient = displacement_gradient::<D, N>(problem.mesh(), element, displacement);
+        let gradient = displacement_gradient(problem.mesh(), element, displacement);
         let strain = std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * (gradient[a][b] + gradient[b][a])));
         Self {
             dimension: D,
@@ -86,18 +82,14 @@ fn in_space<const D: usize>(tensor: &Tensor<D>) -> Tensor<3> {
 
 /// ∂u_a/∂x_b of an element for these displacements of all nodes (m).
 #[must_use]
-pub fn displacement_gradient<const D: usize, const N: usize>(
-    mesh: &Mesh,
-    element: ElementId,
-    displacement: &[[f64; D]],
-) -> Tensor<D> {
-    let (nodes, geometry) = (mesh.nodes_of::<N>()[element.index()], mesh.geometry::<D, N>(element));
+pub fn displacement_gradient<const D: usize>(mesh: &Mesh, element: ElementId, displacement: &[[f64; D]]) -> Tensor<D> {
+    let (nodes, slopes) = (mesh.cell(element), mesh.gradients_in::<D>(element));
     let mut gradient = [[0.0; D]; D];
     // Against the first node: a translation of the body leaves no rounding.
-    for k in 1..N {
+    for k in 1..nodes.len() {
         for a in 0..D {
             let motion = displacement[nodes[k].index()][a] - displacement[nodes[0].index()][a];
-            (0..D).for_each(|b| gradient[a][b] += motion * geometry.gradients[k][b]);
+            (0..D).for_each(|b| gradient[a][b] += motion * slopes[k][b]);
         }
     }
     gradient
@@ -107,9 +99,9 @@ pub fn displacement_gradient<const D: usize, const N: usize>(
 /// masses, eq. \[35\].
 #[must_use]
 pub fn kinetic_energy<'p>(problem: impl Into<ProblemRef<'p>>, element: ElementId, velocity: &[f64]) -> f64 {
-    fn of<const D: usize, const N: usize>(problem: &Problem<D, N>, element: ElementId, velocity: &[[f64; D]]) -> f64 {
-        let mass = problem.material(element).density() * problem.volume(element) / N as f64;
-        let nodes = &problem.mesh().nodes_of::<N>()[element.index()];
+    fn of<const D: usize>(problem: &Problem<D>, element: ElementId, velocity: &[[f64; D]]) -> f64 {
+        let nodes = problem.mesh().cell(element);
+        let mass = problem.material(element).density() * problem.volume(element) / nodes.len() as f64;
         0.5 * mass * nodes.iter().flat_map(|node| velocity[node.index()]).map(|v| v * v).sum::<f64>()
     }
     on_problem!(problem.into(), problem => of(problem, element, vectors(velocity)))

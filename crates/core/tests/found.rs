@@ -8,10 +8,10 @@ use percute_core::problem::{Between, Builder, Contact, Initial, Problem};
 pub(crate) type Body<'a> = (&'a str, Mesh, [f64; 2]);
 
 /// Bodies of aluminium with contact between all, without friction.
-pub(crate) fn problem(bodies: &[Body<'_>]) -> Builder<2, 3> {
+pub(crate) fn problem(bodies: &[Body<'_>]) -> Builder<2> {
     let meshes: Vec<(&str, &Mesh)> = bodies.iter().map(|(name, mesh, _)| (*name, mesh)).collect();
     let velocity = bodies.iter().flat_map(|(_, mesh, velocity)| vec![*velocity; mesh.node_count()]).collect();
-    Problem::<2, 3>::builder(Mesh::joined(&meshes).unwrap())
+    Problem::<2>::builder(Mesh::joined(&meshes).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Nodal(velocity))
         .automatic_contact()

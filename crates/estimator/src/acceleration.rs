@@ -4,8 +4,8 @@ use crate::parallel::by_pieces;
 use percute_core::problem::Problem;
 
 /// Turns nodal forces (N) into M⁻¹ of them and of the contact forces on the nodes of the contact surface (m/s²).
-pub(crate) fn accelerate<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub(crate) fn accelerate<const D: usize>(
+    problem: &Problem<D>,
     inverse_mass: &[f64],
     force: &mut [[f64; D]],
     contact: &[[f64; D]],

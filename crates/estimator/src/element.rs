@@ -21,7 +21,7 @@ pub(crate) struct Element<const D: usize, const N: usize> {
 }
 
 /// The elements of a problem.
-pub(crate) fn elements<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Element<D, N>> {
+pub(crate) fn elements<const D: usize, const N: usize>(problem: &Problem<D>) -> Vec<Element<D, N>> {
     let mesh = problem.mesh();
     let mut links = vec![[0; N]; mesh.element_count()];
     for node in (0..mesh.node_count()).map(NodeId::new) {

@@ -9,7 +9,6 @@ use crate::request::Request;
 use percute_core::dynamics::Simulation;
 use percute_core::history::{SinkError, State, StateSink, StepSource};
 use percute_core::observer::{Observer, StopFlag};
-use percute_core::on_problem;
 use percute_core::problem::ProblemRef;
 use percute_core::time::TimeGrid;
 
@@ -78,7 +77,10 @@ impl StateSink for Estimator<'_> {
 /// each element and sample.
 #[must_use]
 pub fn memory<'p>(problem: impl Into<ProblemRef<'p>>, times: &TimeGrid, options: &Options) -> usize {
-    on_problem!(problem.into(), problem => pipeline::memory(problem, times, options))
+    match problem.into() {
+        ProblemRef::D1(bar) => pipeline::memory::<1, 2>(bar, times, options),
+        ProblemRef::D2(plane) => pipeline::memory::<2, 3>(plane, times, options),
+    }
 }
 
 /// Estimates a history: from the same steps, the same bits as beside the run that made them. If the observer breaks,

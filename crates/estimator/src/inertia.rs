@@ -185,12 +185,12 @@ pub(crate) fn add_lumping_stress<T: Value, const D: usize, const N: usize>(
 
 /// ∫ρ a·b over an element of this mass (kg) for two linear fields.
 #[inline(always)]
-pub(crate) fn mass_product<T: Value, const D: usize, const N: usize>(mass: f64, a: &[[T; D]; N], b: &[[T; D]; N]) -> T {
+pub(crate) fn mass_product<T: Value, const D: usize>(mass: f64, a: &[[T; D]], b: &[[T; D]]) -> T {
     let zero = a[0][0].zero();
     let mut product = zero;
     for c in 0..D {
         let (mut sum_a, mut sum_b) = (zero, zero);
-        for i in 0..N {
+        for i in 0..a.len() {
             product += a[i][c] * b[i][c];
             sum_a += a[i][c];
             sum_b += b[i][c];
@@ -232,7 +232,9 @@ mod tests {
     fn split_solves_the_least_squares_problem() {
         let arms = arms(&POINTS);
         let rigid = [[[1.0, 0.0]; 3], [[0.0, 1.0]; 3], arms.map(|d| [-d[1], d[0]])];
-        let unit = |k: usize| std::array::from_fn(|i| std::array::from_fn(|c| f64::from(u8::from(2 * i + c == k))));
+        let unit = |k: usize| -> [[f64; 2]; 3] {
+            std::array::from_fn(|i| std::array::from_fn(|c| f64::from(u8::from(2 * i + c == k))))
+        };
         let (mut matrix, mut right) = (DMatrix::zeros(9, 9), DVector::zeros(9));
         for k in 0..6 {
             (0..6).for_each(|l| matrix[(k, l)] = mass_product(1.0, &unit(k), &unit(l)));

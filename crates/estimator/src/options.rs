@@ -139,7 +139,7 @@ impl Options {
     }
 
     /// Steps from one sample to the next, where nothing asks for more.
-    pub(crate) fn spacing<const D: usize, const N: usize>(&self, problem: &Problem<D, N>, times: &TimeGrid) -> usize {
+    pub(crate) fn spacing<const D: usize>(&self, problem: &Problem<D>, times: &TimeGrid) -> usize {
         self.every.spacing(problem.mesh().element_count(), times.step_count())
     }
 

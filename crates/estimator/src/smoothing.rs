@@ -62,7 +62,7 @@ pub(crate) struct Smoothing {
 }
 
 impl Smoothing {
-    pub(crate) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub(crate) fn new<const D: usize>(problem: &Problem<D>) -> Self {
         let mesh = problem.mesh();
         let body_of_node: Vec<u32> = match mesh.parts() {
             1 => Vec::new(),
@@ -83,20 +83,20 @@ impl Smoothing {
 
     /// The asymmetry Q of each body: the mean over its inner edges, within a material, of that of the pair of
     /// triangles.
-    fn asymmetry<const D: usize, const N: usize>(&self, problem: &Problem<D, N>) -> Vec<f64> {
+    fn asymmetry<const D: usize>(&self, problem: &Problem<D>) -> Vec<f64> {
         let (mesh, laws) = (problem.mesh(), problem.element_material());
         let mut sums = vec![[0.0; 2]; mesh.parts()];
         for face in mesh.faces() {
             if let Some(other) = face.neighbour.filter(|other| laws[other.index()] == laws[face.owner.index()]) {
                 let sum = &mut sums[self.body(face.nodes[0])];
-                sum[0] += asymmetry_of_pair::<D, N>(mesh, [face.owner, other], face.nodes).min(1.0);
+                sum[0] += asymmetry_of_pair::<D>(mesh, [face.owner, other], face.nodes).min(1.0);
                 sum[1] += 1.0;
             }
         }
         sums.into_iter().map(|[sum, count]| if count > 0.0 { sum / count } else { 0.0 }).collect()
     }
 
-    fn add_patches<const D: usize, const N: usize>(&mut self, problem: &Problem<D, N>) {
+    fn add_patches<const D: usize>(&mut self, problem: &Problem<D>) {
         let laws = problem.element_material();
         self.starts.push(0);
         for node in (0..problem.mesh().node_count()).map(NodeId::new) {
@@ -168,11 +168,7 @@ impl Smoothing {
 
     /// The element of the same material beyond a face of an element; without one, the element itself.
     #[inline(always)]
-    pub(crate) fn beyond<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
-        element: ElementId,
-        face: FaceId,
-    ) -> ElementId {
+    pub(crate) fn beyond<const D: usize>(problem: &Problem<D>, element: ElementId, face: FaceId) -> ElementId {
         let (known, laws) = (&problem.mesh().face(face), problem.element_material());
         let other = known.across(element);
         other.filter(|other| laws[other.index()] == laws[element.index()]).unwrap_or(element)
@@ -187,13 +183,13 @@ impl Smoothing {
 
 /// By how much two triangles at an edge are not images of each other in its midpoint: ½|λ − (1, 1, −1)|² with the
 /// barycentric coordinates λ, in one of them, of the node that only the other one has; the mean of both ways.
-fn asymmetry_of_pair<const D: usize, const N: usize>(mesh: &Mesh, pair: [ElementId; 2], common: &[NodeId]) -> f64 {
+fn asymmetry_of_pair<const D: usize>(mesh: &Mesh, pair: [ElementId; 2], common: &[NodeId]) -> f64 {
     let apart = pair.map(|element| {
-        let cell = &mesh.nodes_of::<N>()[element.index()];
+        let cell = mesh.cell(element);
         cell.iter().find(|node| !common.contains(node)).copied().unwrap_or(cell[0])
     });
     let one_way = |element: ElementId, own: NodeId, other: NodeId| {
-        let (cell, geometry) = (&mesh.nodes_of::<N>()[element.index()], mesh.geometry::<D, N>(element));
+        let (cell, gradients) = (mesh.cell(element), mesh.gradients_in::<D>(element));
         let [from, to] = [own, other].map(|node| mesh.points_in::<D>()[node.index()]);
         let square = |(node, gradient): (&NodeId, &[f64; D])| {
             // λ at the node of its own triangle plus its change from there.
@@ -201,7 +197,7 @@ fn asymmetry_of_pair<const D: usize, const N: usize>(mesh: &Mesh, pair: [Element
             let change: f64 = (0..D).map(|c| gradient[c] * (to[c] - from[c])).sum();
             (start + change - wanted).powi(2)
         };
-        0.5 * cell.iter().zip(&geometry.gradients).map(square).sum::<f64>()
+        0.5 * cell.iter().zip(&gradients).map(square).sum::<f64>()
     };
     0.5 * (one_way(pair[0], apart[0], apart[1]) + one_way(pair[1], apart[1], apart[0]))
 }
@@ -214,7 +210,7 @@ mod tests {
 
     fn of(mesh: Mesh) -> Smoothing {
         let law = Elastic::plane_strain(70e9, 0.3, 2700.0, 1.0).unwrap();
-        Smoothing::new(&Problem::<2, 3>::builder(mesh).material(law).build().unwrap())
+        Smoothing::new(&Problem::<2>::builder(mesh).material(law).build().unwrap())
     }
 
     /// Parallelograms cut in two have no asymmetry.

@@ -45,7 +45,7 @@ const EXPLAINED: f64 = 1e-12;
 /// The fixed data of the star problems.
 #[derive(Debug)]
 pub(crate) struct Equilibration<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+    problem: &'p Problem<D>,
     pub(crate) elements: Vec<Element<D, N>>,
     pub(crate) blocks: ElementBlocks<N>,
     star_blocks: StarBlocks<N>,
@@ -65,7 +65,7 @@ pub(crate) struct Equilibration<'p, const D: usize, const N: usize> {
 }
 
 impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
-    pub(crate) fn new(problem: &'p Problem<D, N>) -> Self {
+    pub(crate) fn new(problem: &'p Problem<D>) -> Self {
         let mut slots = vec![FREE; problem.mesh().faces().len()];
         let loaded = LoadedFaces::new(problem);
         let contact = problem.surface().faces().iter().map(|f| f.face);
@@ -80,7 +80,7 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
         let (elements, loaded) = (crate::element::elements(problem), loaded.faces().len());
         let crossing = simplex::<D, N>().faces_around();
         let (blocks, star_blocks) = (ElementBlocks::new(problem.mesh()), StarBlocks::new(problem.mesh()));
-        let strips = Strips::with_fewest(problem.mesh().nodes_of::<N>(), STRIP);
+        let strips = Strips::with_fewest(problem.mesh(), STRIP);
         let parts = parts(problem.mesh(), &strips);
         let star_fields = Pool::new();
         Self {
@@ -118,7 +118,7 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
         }
         let contact = slot - self.loaded;
         let area = self.problem.surface().faces()[contact].area;
-        Problem::<D, N>::face_moments(area, &densities[contact])[position]
+        Problem::<D>::face_moments(area, &densities[contact])[position]
     }
 
     /// Whether a face has known moments that may differ from zero.

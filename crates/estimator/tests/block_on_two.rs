@@ -3,7 +3,7 @@
 use crate::common::finer::indices;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Between, Contact, Initial, TriangleProblem};
+use percute_core::problem::{Between, Contact, Initial, Problem};
 use percute_testkit::translated;
 
 /// A block of 40 × 25 mm on two of 20 × 25 mm, 20 µm apart, of aluminium, plane stress; a gap of 50 µm and T = 14 µs.
@@ -69,7 +69,7 @@ const ROWS: [Row; 5] = [
 ];
 
 impl Row {
-    fn problem(&self, [lower, upper]: Cells) -> TriangleProblem {
+    fn problem(&self, [lower, upper]: Cells) -> Problem<2> {
         let width = 0.02 - 0.5 * SLIT;
         let block = |width: f64, cells: [usize; 2], at: [f64; 2]| {
             translated(&Mesh::rectangle(width, HEIGHT, cells[0], cells[1]).unwrap(), at).unwrap()
@@ -85,7 +85,7 @@ impl Row {
             let groups = Between::Groups(["upper.bottom", below].map(str::to_string));
             Contact::new(2, groups, self.friction, None).unwrap()
         };
-        TriangleProblem::builder(Mesh::joined(&named).unwrap())
+        Problem::<2>::builder(Mesh::joined(&named).unwrap())
             .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
             .initial_velocity(Initial::Nodal(velocity))
             .contact(contact("left.top"))
@@ -95,7 +95,7 @@ impl Row {
     }
 
     fn indices(&self, meshes: &[Cells], reference: Cells) -> Vec<[f64; 2]> {
-        let problems: Vec<TriangleProblem> = meshes.iter().map(|mesh| self.problem(*mesh)).collect();
+        let problems: Vec<Problem<2>> = meshes.iter().map(|mesh| self.problem(*mesh)).collect();
         indices(&problems, &self.problem(reference), END)
     }
 }

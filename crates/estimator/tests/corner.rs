@@ -2,12 +2,12 @@
 
 use crate::common::corner::{Corner, open_corner};
 use crate::common::finer::indices;
-use percute_core::problem::TriangleProblem;
+use percute_core::problem::Problem;
 
 /// A body on a mesh of so many cells, thrown into a corner.
 struct Row {
     name: &'static str,
-    problem: fn([usize; 2]) -> TriangleProblem,
+    problem: fn([usize; 2]) -> Problem<2>,
     /// Some 12 µs after the arrival at the second plane (s).
     end: f64,
     /// e_sup/e_ref and e_mean/e_ref on 10×8 and 20×16 cells that an independent prototype of the method gave, with a

@@ -6,7 +6,6 @@ use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::TriangleProblem;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Motion};
@@ -29,14 +28,14 @@ const INDEPENDENT: [(Reconstruction, Row, Row); 2] = [
 ];
 
 /// Steps of exactly 0.9 Δt_c that reach an instant.
-fn grid(problem: &TriangleProblem, reach: f64) -> TimeGrid {
+fn grid(problem: &Problem<2>, reach: f64) -> TimeGrid {
     let step = 0.9 * critical_time_step(problem);
     let count = (reach / step).ceil();
     TimeGrid::uniform(count * step, count as usize).unwrap()
 }
 
 /// Motion and estimates of one run, in the order of [`INDEPENDENT`].
-fn run(problem: &TriangleProblem, times: &TimeGrid) -> (Motion, [ErrorMeasures; 2]) {
+fn run(problem: &Problem<2>, times: &TimeGrid) -> (Motion, [ErrorMeasures; 2]) {
     let estimator = |which: usize| {
         let options = Options { reconstruction: INDEPENDENT[which].0, ..Options::default() };
         Estimator::new(problem, times, options).unwrap()
@@ -114,7 +113,7 @@ struct Impact {
 }
 
 impl Impact {
-    fn problem(&self, level: usize) -> TriangleProblem {
+    fn problem(&self, level: usize) -> Problem<2> {
         let mesh = if self.disc {
             (0..level).fold(Mesh::disc(0.02, 5).unwrap(), |mesh, _| mesh.refined().unwrap())
         } else {
@@ -125,7 +124,7 @@ impl Impact {
             mesh.points_in::<2>().iter().map(|p| p[0] * sin + p[1] * cos).fold(f64::INFINITY, f64::min) - self.gap;
         let plane = Obstacle::plane([sin * lowest, cos * lowest], [sin, cos], self.friction, None).unwrap();
         let law = if self.plane_strain { Elastic::plane_strain } else { Elastic::plane_stress };
-        Problem::<2, 3>::builder(mesh)
+        Problem::<2>::builder(mesh)
             .material(law(70e9, 0.3, 2700.0, 1.0).unwrap())
             .initial_velocity(Initial::Uniform(self.velocity))
             .obstacle(plane)

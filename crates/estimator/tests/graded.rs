@@ -5,12 +5,12 @@ use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Estimator, Options};
 
 /// A bar of 60 × 12 mm that strikes with a corner at 12° and 4 m/s, the elements there bisected so many times.
-fn corner(times: usize) -> TriangleProblem {
+fn corner(times: usize) -> Problem<2> {
     let mut mesh = Mesh::rectangle(0.06, 0.012, 20, 4).unwrap();
     for _ in 0..times {
         let (cells, points) = (mesh.nodes_of::<3>().to_vec(), mesh.points_in::<2>().to_vec());
@@ -19,7 +19,7 @@ fn corner(times: usize) -> TriangleProblem {
     }
     let angle = 12.0_f64.to_radians();
     let normal = [angle.sin(), angle.cos()];
-    Problem::<2, 3>::builder(mesh)
+    Problem::<2>::builder(mesh)
         .material(Elastic::plane_strain(70e9, 0.33, 2700.0, 1.0).unwrap())
         .obstacle(Obstacle::plane(normal.map(|n| -1e-5 * n), normal, 0.0, None).unwrap())
         .initial_velocity(Initial::Uniform(normal.map(|n| -4.0 * n)))
@@ -27,7 +27,7 @@ fn corner(times: usize) -> TriangleProblem {
         .unwrap()
 }
 
-fn estimate(problem: &TriangleProblem, courant: f64) -> Estimate {
+fn estimate(problem: &Problem<2>, courant: f64) -> Estimate {
     let end = 2e-5;
     let count = (end / (courant * critical_time_step(problem))).ceil() as usize;
     let times = TimeGrid::uniform(end, count).unwrap();

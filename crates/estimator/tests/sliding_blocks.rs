@@ -4,7 +4,7 @@ use crate::common::finer::indices;
 use percute_core::contact::Interface;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_testkit::{rotated, translated};
 
 /// Blocks of 40 × 25 mm, plane stress, a gap of 50 µm and T = 14 µs; steps of 0.9 Δt_c.
@@ -116,7 +116,7 @@ const ROWS: [Row; 8] = [
 ];
 
 impl Row {
-    fn problem(&self, [lower, upper]: Cells) -> TriangleProblem {
+    fn problem(&self, [lower, upper]: Cells) -> Problem<2> {
         let block = |width: f64, cells: [usize; 2]| Mesh::rectangle(width, HEIGHT, cells[0], cells[1]).unwrap();
         let upper = rotated(&block(self.width, upper), self.tilt.to_radians()).unwrap();
         let low = upper.points_in::<2>().iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
@@ -129,7 +129,7 @@ impl Row {
         let aluminium = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
         let steel = Elastic::plane_stress(210e9, 0.3, 7800.0, 1.0).unwrap();
         let velocity = (0..mesh.node_count()).map(velocity).collect();
-        TriangleProblem::builder(mesh)
+        Problem::<2>::builder(mesh)
             .material_of("upper", aluminium)
             .material_of("lower", if self.steel { steel } else { aluminium })
             .initial_velocity(Initial::Nodal(velocity))

@@ -4,7 +4,7 @@ use crate::common::finer::indices;
 use percute_core::contact::Interface;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 
 /// Blocks of 40 × 25 mm one above the other, plane stress, gaps of 50 µm; steps of 0.9 Δt_c.
 const GAP: f64 = 50e-6;
@@ -66,7 +66,7 @@ const ROWS: [Row; 5] = [
 ];
 
 impl Row {
-    fn problem(&self, cells: [usize; 2]) -> TriangleProblem {
+    fn problem(&self, cells: [usize; 2]) -> Problem<2> {
         let block = Mesh::rectangle(0.04, HEIGHT, cells[0], cells[1]).unwrap();
         let name = |k: usize| format!("block {k}");
         let count = self.blocks.len();
@@ -76,7 +76,7 @@ impl Row {
         let named: Vec<_> = blocks.iter().map(|(name, block)| (name.as_str(), block)).collect();
         let mesh = Mesh::joined(&named).unwrap();
         let velocity = (0..mesh.node_count()).map(|i| self.blocks[i / block.node_count()].1).collect();
-        let mut builder = TriangleProblem::builder(mesh).initial_velocity(Initial::Nodal(velocity));
+        let mut builder = Problem::<2>::builder(mesh).initial_velocity(Initial::Nodal(velocity));
         for (k, (steel, _)) in self.blocks.iter().enumerate() {
             let (young, density) = if *steel { (210e9, 7800.0) } else { (70e9, 2700.0) };
             builder = builder.material_of(name(k), Elastic::plane_stress(young, 0.3, density, 1.0).unwrap());

@@ -5,7 +5,7 @@ use percute_core::contact::{Interface, Obstacle};
 use percute_core::load::{Support, Table};
 use percute_core::material::Elastic;
 use percute_core::mesh::{Mesh, MeshError};
-use percute_core::problem::{Builder, Initial, TriangleProblem};
+use percute_core::problem::{Builder, Initial, Problem};
 use std::error::Error;
 use std::f64::consts::FRAC_PI_2;
 
@@ -59,7 +59,7 @@ impl Roof {
     ///
     /// # Errors
     /// None with an angle and cells that have meshes.
-    pub fn whole(&self) -> Result<Builder<2, 3>, Box<dyn Error>> {
+    pub fn whole(&self) -> Result<Builder<2>, Box<dyn Error>> {
         self.builder(&self.whole)
     }
 
@@ -67,7 +67,7 @@ impl Roof {
     ///
     /// # Errors
     /// As [`Roof::whole`].
-    pub fn half(&self) -> Result<Builder<2, 3>, Box<dyn Error>> {
+    pub fn half(&self) -> Result<Builder<2>, Box<dyn Error>> {
         let velocity = (self.along != 0.0).then(|| Table::constant(self.turn([self.along, 0.0])));
         let held = |group: &str| Support { velocity: velocity.clone(), ..self.held(group) };
         Ok(self.builder(&self.halves)?.support(held("roof.left")).support(held("plate.left")))
@@ -77,10 +77,10 @@ impl Roof {
     ///
     /// # Errors
     /// As [`Roof::whole`].
-    pub fn alone(&self) -> Result<[Builder<2, 3>; 2], Box<dyn Error>> {
-        let builder = |roof: &Mesh| -> Result<Builder<2, 3>, Box<dyn Error>> {
+    pub fn alone(&self) -> Result<[Builder<2>; 2], Box<dyn Error>> {
+        let builder = |roof: &Mesh| -> Result<Builder<2>, Box<dyn Error>> {
             let [point, normal] = [[0.0, HEIGHT], [0.0, 1.0]].map(|vector| self.turn(vector));
-            Ok(TriangleProblem::builder(self.mesh(roof)?)
+            Ok(Problem::<2>::builder(self.mesh(roof)?)
                 .material(aluminium()?)
                 .initial_velocity(Initial::Uniform(self.turn([0.0, -self.speed])))
                 .obstacle(Obstacle::plane(point, normal, FRICTION, Some("bottom".to_string()))?))
@@ -95,11 +95,11 @@ impl Roof {
         if node < half { node } else { node - half + whole }
     }
 
-    fn builder(&self, [roof, plate]: &[Mesh; 2]) -> Result<Builder<2, 3>, Box<dyn Error>> {
+    fn builder(&self, [roof, plate]: &[Mesh; 2]) -> Result<Builder<2>, Box<dyn Error>> {
         let mesh = Mesh::joined(&[("roof", roof), ("plate", plate)])?;
         let velocity = |node: usize| self.turn([self.along, if node < roof.node_count() { -self.speed } else { 0.0 }]);
         let velocity = Initial::Nodal((0..mesh.node_count()).map(velocity).collect());
-        Ok(TriangleProblem::builder(self.mesh(&mesh)?)
+        Ok(Problem::<2>::builder(self.mesh(&mesh)?)
             .material(aluminium()?)
             .initial_velocity(velocity)
             .interface(Interface::non_matching(2, "roof.bottom", "plate.top", FRICTION)?))

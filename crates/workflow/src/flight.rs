@@ -85,13 +85,13 @@ mod tests {
     use percute_core::contact::Obstacle;
     use percute_core::material::Elastic;
     use percute_core::mesh::Mesh;
-    use percute_core::problem::{AnyProblem, TriangleProblem};
+    use percute_core::problem::{AnyProblem, Problem};
 
     /// A square of 1 m, 0.3 m above a plane, turns about its middle: its corner is at ½ − √½·sin(π/4 + ωt).
     #[test]
     fn a_corner_reaches_the_plane_by_turning() {
         let build = |gap: f64| {
-            TriangleProblem::builder(Mesh::rectangle(1.0, 1.0, 2, 2).unwrap())
+            Problem::<2>::builder(Mesh::rectangle(1.0, 1.0, 2, 2).unwrap())
                 .material(Elastic::plane_strain(1.0, 0.2, 2.0, 1.0).unwrap())
                 .obstacle(Obstacle::plane([0.0, -gap], [0.0, 1.0], 0.0, None).unwrap())
                 .build()

@@ -80,7 +80,7 @@ mod tests {
     use percute_core::contact::Obstacle;
     use percute_core::material::Elastic;
     use percute_core::mesh::Mesh;
-    use percute_core::problem::{Initial, TriangleProblem};
+    use percute_core::problem::{Initial, Problem};
 
     struct Block {
         young: f64,
@@ -93,7 +93,7 @@ mod tests {
 
     fn problem(block: &Block) -> AnyProblem {
         let mesh = Mesh::rectangle(0.05, 0.04, block.cells, block.cells).unwrap();
-        let built = TriangleProblem::builder(mesh)
+        let built = Problem::<2>::builder(mesh)
             .material(Elastic::plane_stress(block.young, 0.3, 2700.0, 1.0).unwrap())
             .initial_velocity(Initial::Uniform(block.velocity))
             .obstacle(Obstacle::plane([0.0, -block.gap], [0.0, 1.0], 0.2, None).unwrap())
@@ -132,7 +132,7 @@ mod tests {
             let mesh = Mesh::rectangle(0.05, 0.04, cells, cells).unwrap();
             let velocity = mesh.points_in::<2>().iter().map(|point| [factor * point[0], -10.0]).collect();
             let law = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
-            let built = TriangleProblem::builder(mesh).material(law).initial_velocity(Initial::Nodal(velocity)).build();
+            let built = Problem::<2>::builder(mesh).material(law).initial_velocity(Initial::Nodal(velocity)).build();
             AnyProblem::from(built.unwrap())
         };
         assert_eq!(difference(&varying(4, 1.0), &varying(8, 1.01)).unwrap(), None);

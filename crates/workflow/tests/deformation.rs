@@ -6,7 +6,7 @@ use percute_core::history::History;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{AnyProblem, BarProblem, Initial, TriangleProblem, plausibility_warnings};
+use percute_core::problem::{AnyProblem, Initial, Problem, plausibility_warnings};
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_workflow::report::{Report, Subject, Trust, summary};
@@ -39,7 +39,7 @@ fn named(report: &Report, name: &str) -> Option<String> {
 fn bar(speed: f64, law: Elastic) -> AnyProblem {
     let mesh = Mesh::uniform_bar(0.1, 50).unwrap();
     let wall = Obstacle::plane([-1e-7 * speed], [1.0], 0.0, None).unwrap();
-    let builder = BarProblem::builder(mesh).material(law).initial_velocity(Initial::Uniform([-speed]));
+    let builder = Problem::<1>::builder(mesh).material(law).initial_velocity(Initial::Uniform([-speed]));
     builder.obstacle(wall).build().unwrap().into()
 }
 
@@ -53,7 +53,7 @@ fn spinning(spin: f64, velocity: [f64; 2]) -> AnyProblem {
     let motion = |x: &[f64; 2]| [velocity[0] - spin * (x[1] - 0.02), velocity[1] + spin * (x[0] - 0.025)];
     let velocity = mesh.points_in::<2>().iter().map(motion).collect();
     let plane = Obstacle::plane([0.0, -1.0], [0.0, 1.0], 0.0, None).unwrap();
-    let builder = TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity));
+    let builder = Problem::<2>::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity));
     builder.obstacle(plane).build().unwrap().into()
 }
 
@@ -110,7 +110,7 @@ fn one_of_two_bodies_turns() {
     let mesh = Mesh::joined(&[("left", &left), ("right", &right)]).unwrap();
     let motion = |x: &[f64; 2]| if x[0] < 0.05 { [0.0; 2] } else { [-3000.0 * (x[1] - 0.01), 3000.0 * (x[0] - 0.11)] };
     let velocity = mesh.points_in::<2>().iter().map(motion).collect();
-    let builder = TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity));
+    let builder = Problem::<2>::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity));
     let found = report(&builder.build().unwrap().into(), 100);
     let [left, right] = &found.deformation.bodies[..] else { panic!("two bodies") };
     assert_eq!([&left.name[..], &right.name[..]], ["left", "right"]);
@@ -155,7 +155,7 @@ fn nothing_touched_comes_first() {
     let speed = 5.0;
     let mesh = Mesh::rectangle(0.05, 0.04, 5, 4).unwrap();
     let plane = Obstacle::plane([0.0, -1e-3], [0.0, 1.0], 0.2, None).unwrap();
-    let builder = TriangleProblem::builder(mesh).material(aluminium()).obstacle(plane);
+    let builder = Problem::<2>::builder(mesh).material(aluminium()).obstacle(plane);
     let found = report(&builder.clone().initial_velocity(Initial::Uniform([0.0, -speed])).build().unwrap().into(), 100);
     let nearest = found.contact.as_ref().and_then(|contact| contact.nearest).unwrap();
     // Displacements of 1e-4 m have rounding of 1e-20 m; a speed from two of them 1e-13 of it.
@@ -170,7 +170,7 @@ fn nothing_touched_comes_first() {
     let away = report(&builder.clone().initial_velocity(Initial::Uniform([0.0, speed])).build().unwrap().into(), 100);
     assert!(away.verdict.text[0].contains("no node approaches"), "{:?}", away.verdict.text);
     // Without planes nothing can touch, and after a touch nothing is left.
-    let free = TriangleProblem::builder(Mesh::rectangle(0.05, 0.04, 5, 4).unwrap()).material(aluminium());
+    let free = Problem::<2>::builder(Mesh::rectangle(0.05, 0.04, 5, 4).unwrap()).material(aluminium());
     let free = report(&free.initial_velocity(Initial::Uniform([0.0, -speed])).build().unwrap().into(), 20);
     let touched = report(&bar(10.0, of_bar()), 60);
     for found in [free, touched] {
@@ -188,7 +188,7 @@ fn needles_are_named() {
     let cells: Vec<_> = square.nodes_of::<3>().iter().map(|cell| cell.map(|node| node.index())).collect();
     let mesh = Mesh::new(points, &cells, &Default::default(), &Default::default()).unwrap();
     let plane = Obstacle::plane([0.0, -1e-6], [0.0, 1.0], 0.2, None).unwrap();
-    let builder = TriangleProblem::builder(mesh.clone()).material(aluminium()).obstacle(plane);
+    let builder = Problem::<2>::builder(mesh.clone()).material(aluminium()).obstacle(plane);
     let found = report(&builder.initial_velocity(Initial::Uniform([0.0, -25.0])).build().unwrap().into(), 200);
     let (poor, total) = (&found.verdict.poor_elements, found.by_element.iter().map(|error| error * error).sum::<f64>());
     assert!(poor.len() == 3 && poor.iter().map(|one| one.share).sum::<f64>() > 0.2, "{poor:?}");

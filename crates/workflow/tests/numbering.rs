@@ -8,7 +8,7 @@ use percute_core::load::{Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, Mesh};
 use percute_core::observer::Unobserved;
-use percute_core::problem::{AnyProblem, Initial, TriangleProblem};
+use percute_core::problem::{AnyProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::ReferenceError;
 use percute_estimator::{Options, Request};
@@ -38,7 +38,7 @@ fn problem(mesh: Mesh, gap: f64) -> AnyProblem {
     let value = Table::new(vec![0.0, 1e-5], vec![[1e6, 2e6], [3e6, -1e6]]).unwrap();
     let pull = Traction { group: "right".to_string(), value, profile: Profile::UNIFORM };
     let velocity = mesh.points_in::<2>().iter().map(|p| [200.0 * p[0], -100.0]).collect();
-    TriangleProblem::builder(mesh)
+    Problem::<2>::builder(mesh)
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Nodal(velocity))
         .support(support)

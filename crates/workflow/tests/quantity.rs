@@ -5,7 +5,7 @@ use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{AnyProblem, BarProblem, Initial, TriangleProblem};
+use percute_core::problem::{AnyProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
 use percute_exact::BarImpact;
@@ -36,7 +36,7 @@ fn the_stress_of_a_bar_is_that_of_the_exact_impact() {
     // A node comes to rest on the wall at the end of a step.
     let step = BAR.length / 50.0 / BAR.wave_speed();
     let wall = Obstacle::plane([-2.0 * BAR.speed * step], [1.0], 0.0, None).unwrap();
-    let builder = BarProblem::builder(mesh).material(law).initial_velocity(Initial::Uniform([-BAR.speed]));
+    let builder = Problem::<1>::builder(mesh).material(law).initial_velocity(Initial::Uniform([-BAR.speed]));
     let problem = builder.obstacle(wall).build().unwrap().into();
     let impact = BarImpact { gap: 2.0 * BAR.speed * step, ..BAR };
     let plateau = -impact.normal_force(0.03, impact.impact_time() + 0.05 / BAR.wave_speed()) / BAR.section;
@@ -58,7 +58,7 @@ fn the_stress_of_a_block_is_hookes() {
     let linear = |x: &[f64; 2]| [xx * x[0] + 2.0 * xy * x[1], yy * x[1]];
     let displacement = mesh.points_in::<2>().iter().map(linear).collect();
     let law = Elastic::plane_stress(young, poisson, 2700.0, 1.0).unwrap();
-    let problem = TriangleProblem::builder(mesh)
+    let problem = Problem::<2>::builder(mesh)
         .material(law)
         .initial_displacement(Initial::Nodal(displacement))
         .build()
@@ -95,7 +95,7 @@ fn verified(mesh: &Mesh, (speed, degrees): (f64, f64), texts: &[&str], levels: u
     let low = mesh.points_in::<2>().iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
     let build = |gap: f64| {
         let plane = Obstacle::plane([0.0, low - gap], [0.0, 1.0], 0.0, None).unwrap();
-        let builder = TriangleProblem::builder(mesh.clone()).material(law);
+        let builder = Problem::<2>::builder(mesh.clone()).material(law);
         builder.initial_velocity(Initial::Uniform([0.0, -speed])).obstacle(plane).build().map(AnyProblem::from).unwrap()
     };
     let step = 0.9 * critical_time_step(&build(1.0));
@@ -166,7 +166,7 @@ fn the_stress_at_a_re_entrant_corner_is_named() {
 fn contact_quantities_are_those_of_the_report() {
     let law = Elastic::bar(BAR.young, BAR.density, BAR.section).unwrap();
     let wall = Obstacle::plane([-BAR.gap], [1.0], 0.0, None).unwrap();
-    let builder = BarProblem::builder(Mesh::uniform_bar(BAR.length, 20).unwrap()).material(law);
+    let builder = Problem::<1>::builder(Mesh::uniform_bar(BAR.length, 20).unwrap()).material(law);
     let problem = builder.initial_velocity(Initial::Uniform([-BAR.speed])).obstacle(wall).build().unwrap().into();
     let critical_step = critical_time_step(&problem);
     let times = TimeGrid::with_step(1.1 * BAR.release_time(), 0.9 * critical_step).unwrap();

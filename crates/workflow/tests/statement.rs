@@ -116,19 +116,14 @@ fn start<const D: usize>(mesh: &Mesh, support: Option<&Support>, random: &mut Ra
 
 /// Anything that can be stated on a mesh whose groups are, in this order: may touch, supported or
 /// loaded, loaded, loaded.
-fn anything<const D: usize, const N: usize>(
-    mesh: Mesh,
-    names: &[String],
-    down: [f64; D],
-    random: &mut Random,
-) -> Problem<D, N> {
+fn anything<const D: usize>(mesh: Mesh, names: &[String], down: [f64; D], random: &mut Random) -> Problem<D> {
     let support = flip(random).then(|| support::<D>(&names[1], random));
     let velocity = start(&mesh, support.as_ref(), random);
     let loaded = names.iter().skip(if support.is_some() { 2 } else { 1 });
     let (length, friction) = (size(random), if D == 1 { 0.0 } else { random.between(0.0, 2.0) });
     // So far away that no displacement of half a metre matters.
     let plane = Obstacle::plane(down.map(|x| 10.0 * x), down.map(|x| -length * x), friction, Some(names[0].clone()));
-    let mut builder = Problem::<D, N>::builder(mesh.clone())
+    let mut builder = Problem::<D>::builder(mesh.clone())
         .obstacle(plane.unwrap())
         .initial_velocity(Initial::Nodal(velocity))
         .initial_displacement(Initial::Nodal(mesh.points_in::<D>().iter().map(|p| p.map(|x| 0.1 * x)).collect()));
@@ -173,7 +168,7 @@ proptest! {
         let random = &mut Random::new(seed);
         let mesh = named(&mesh, &["bottom", "left", "right", "top"], &names);
         let angle = random.between(-0.7, 0.7);
-        let problem = anything::<2, 3>(mesh, &names, [angle.sin(), -angle.cos()], random).into();
+        let problem = anything::<2>(mesh, &names, [angle.sin(), -angle.cos()], random).into();
         same(&problem, &options(random));
     }
 
@@ -183,7 +178,7 @@ proptest! {
     ) {
         let random = &mut Random::new(seed);
         let mesh = named(&Mesh::uniform_bar(length, elements).unwrap(), &["start", "end"], &names);
-        let problem = anything::<1, 2>(mesh, &names, [-1.0], random).into();
+        let problem = anything::<1>(mesh, &names, [-1.0], random).into();
         same(&problem, &options(random));
     }
 }
@@ -221,7 +216,7 @@ fn examples_come_back_with_their_estimates() {
 fn zeros_keep_their_sign() {
     let velocity = Table::new(vec![-0.0, 1.0], vec![[-0.0, 0.0], [2.0, -0.0]]).unwrap();
     let support = Support { group: "left".into(), components: [true, true, false], velocity: Some(velocity) };
-    let problem = Problem::<2, 3>::builder(Mesh::rectangle(1.0, 1.0, 2, 1).unwrap())
+    let problem = Problem::<2>::builder(Mesh::rectangle(1.0, 1.0, 2, 1).unwrap())
         .material(Elastic::plane_stress(1.0, -0.0, 1.0, 1.0).unwrap())
         .support(support)
         .obstacle(Obstacle::plane([-0.0, -1.0], [-0.0, 3.0], -0.0, None).unwrap());
@@ -238,12 +233,11 @@ fn without_options_there_is_no_estimate() {
 #[test]
 fn a_law_of_another_dimension_is_refused() {
     let plane = Elastic::plane_strain(1.0, 0.3, 1.0, 1.0).unwrap();
-    let bar = Problem::<1, 2>::builder(Mesh::uniform_bar(1.0, 2).unwrap()).material(plane).build().unwrap().into();
+    let bar = Problem::<1>::builder(Mesh::uniform_bar(1.0, 2).unwrap()).material(plane).build().unwrap().into();
     let error = statement(&bar, None).unwrap_err();
     assert!(matches!(error, NotRepresentable::Law { index: 1, dimension: 1, .. }), "{error}");
     let law = Elastic::bar(1.0, 1.0, 1.0).unwrap();
-    let plane =
-        Problem::<2, 3>::builder(Mesh::rectangle(1.0, 1.0, 1, 1).unwrap()).material(law).build().unwrap().into();
+    let plane = Problem::<2>::builder(Mesh::rectangle(1.0, 1.0, 1, 1).unwrap()).material(law).build().unwrap().into();
     assert!(statement(&plane, None).unwrap_err().to_string().contains("material 1 is a law for a bar"));
 }
 

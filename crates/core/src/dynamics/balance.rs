@@ -71,7 +71,7 @@ pub(super) struct BalanceKeeper<const D: usize> {
 }
 
 impl<const D: usize> BalanceKeeper<D> {
-    pub(super) fn new<const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Self {
+    pub(super) fn new(problem: &Problem<D>, times: &TimeGrid) -> Self {
         let loaded = if problem.is_loaded() { problem.mesh().node_count() } else { 0 };
         Self {
             balance: Balance::default(),
@@ -88,12 +88,7 @@ impl<const D: usize> BalanceKeeper<D> {
     }
 
     /// The keeper of a run that goes on from a state, with the sums until then.
-    pub(super) fn resumed<const N: usize>(
-        problem: &Problem<D, N>,
-        times: &TimeGrid,
-        now: &State<'_>,
-        sums: &Sums,
-    ) -> Self {
+    pub(super) fn resumed(problem: &Problem<D>, times: &TimeGrid, now: &State<'_>, sums: &Sums) -> Self {
         let mut keeper = Self::new(problem, times);
         // The works of the next step begin at this state. Those until here are among the sums.
         keeper.advance_works(problem, times, now);
@@ -161,12 +156,7 @@ impl<const D: usize> BalanceKeeper<D> {
     /// Adds one instant and returns whether the energy is plausible: at most ten times the sum of the initial energy
     /// and the work of loads and supports. Only an unstable run exceeds this limit. The kinetic energy that a load
     /// gives to a body at rest before it has done any work, and rounding, are allowed for.
-    pub(super) fn record<const N: usize>(
-        &mut self,
-        problem: &Problem<D, N>,
-        times: &TimeGrid,
-        now: &State<'_>,
-    ) -> bool {
+    pub(super) fn record(&mut self, problem: &Problem<D>, times: &TimeGrid, now: &State<'_>) -> bool {
         let total_force = self.advance_works(problem, times, now);
         let b = &mut self.balance;
         let (kinetic, momentum) = now.energies::<D>(problem.mass());
@@ -195,12 +185,7 @@ impl<const D: usize> BalanceKeeper<D> {
     }
 
     /// Adds the works of the step that ends at this instant; returns the sum of all external forces.
-    fn advance_works<const N: usize>(
-        &mut self,
-        problem: &Problem<D, N>,
-        times: &TimeGrid,
-        now: &State<'_>,
-    ) -> [f64; D] {
+    fn advance_works(&mut self, problem: &Problem<D>, times: &TimeGrid, now: &State<'_>) -> [f64; D] {
         let first = now.step().index == 0;
         let mut total = [0.0; D];
         let mut add = |force: &[f64; D]| (0..D).for_each(|c| total[c] += force[c]);
@@ -252,11 +237,7 @@ impl<const D: usize> BalanceKeeper<D> {
 }
 
 /// Work of contact reactions and dissipation since the last call (J).
-fn contact_works<const D: usize, const N: usize>(
-    meter: &mut WorkMeter<D>,
-    problem: &Problem<D, N>,
-    now: &State<'_>,
-) -> [f64; 2] {
+fn contact_works<const D: usize>(meter: &mut WorkMeter<D>, problem: &Problem<D>, now: &State<'_>) -> [f64; 2] {
     let (surface, u, reaction) = (problem.surface(), now.step().displacement::<D>(), now.step().reaction());
     let (mut work, mut friction) = (0.0, 0.0);
     meter.advance(
@@ -272,7 +253,7 @@ fn contact_works<const D: usize, const N: usize>(
 
 /// Rounding of the displacements, some 1e-16 of their size, moves nodes by as much in a step; the
 /// factor covers its growth over any number of steps.
-fn rounding_energy<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> f64 {
+fn rounding_energy<const D: usize>(problem: &Problem<D>, times: &TimeGrid) -> f64 {
     let largest = problem.initial_displacement().iter().flatten().fold(0.0_f64, |m, u| m.max(u.abs()));
     let step = (0..times.step_count()).map(|n| times.step(n)).fold(f64::INFINITY, f64::min);
     let speed = 1e-10 * largest / step;
@@ -280,7 +261,7 @@ fn rounding_energy<const D: usize, const N: usize>(problem: &Problem<D, N>, time
 }
 
 /// Σ m|v| along the axis on which it is largest (kg m/s), of several bodies, whose momenta may cancel; 0 of one.
-fn momentum_of_bodies<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+fn momentum_of_bodies<const D: usize>(problem: &Problem<D>) -> f64 {
     if problem.mesh().parts() == 1 {
         return 0.0;
     }

@@ -45,20 +45,20 @@ impl StateSink for Balancing<'_> {
 
 /// That of a problem with its dimension.
 #[derive(Debug)]
-struct Keeping<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+struct Keeping<'p, const D: usize> {
+    problem: &'p Problem<D>,
     times: &'p TimeGrid,
     keeper: BalanceKeeper<D>,
     over_time: Vec<Balance>,
 }
 
-impl<const D: usize, const N: usize> Steps for Keeping<'_, D, N> {
+impl<const D: usize> Steps for Keeping<'_, D> {
     fn finish(self: Box<Self>) -> Vec<Balance> {
         self.over_time
     }
 }
 
-impl<const D: usize, const N: usize> StateSink for Keeping<'_, D, N> {
+impl<const D: usize> StateSink for Keeping<'_, D> {
     fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         // The integrator alone refuses implausible energies.
         self.keeper.record(self.problem, self.times, state);

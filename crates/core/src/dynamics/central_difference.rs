@@ -19,8 +19,8 @@ const FEWEST_ELEMENTS: usize = 20_000;
 const FEWEST_STRIPS: usize = 4;
 
 /// Runs a problem over a time grid, on so many threads, from the start or from a checkpoint on.
-pub(super) fn simulate<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub(super) fn simulate<const D: usize>(
+    problem: &Problem<D>,
     times: &TimeGrid,
     threads: Option<usize>,
     checkpoint: Option<&Checkpoint>,
@@ -42,8 +42,8 @@ pub(super) fn simulate<const D: usize, const N: usize>(
 }
 
 /// The loop over the steps.
-fn run<const D: usize, const N: usize>(
-    dynamics: &Dynamics<'_, D, N>,
+fn run<const D: usize>(
+    dynamics: &Dynamics<'_, D>,
     checkpoint: Option<&Checkpoint>,
     sink: &mut dyn StateSink,
     observer: &mut dyn Observer,

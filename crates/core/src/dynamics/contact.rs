@@ -21,7 +21,7 @@ pub(super) struct StepContact<const D: usize> {
 }
 
 impl<const D: usize> StepContact<D> {
-    pub(super) fn new<const N: usize>(dynamics: &Dynamics<'_, D, N>) -> Self {
+    pub(super) fn new(dynamics: &Dynamics<'_, D>) -> Self {
         let surface = dynamics.problem.surface();
         let count = surface.nodes().len();
         let node = |at: usize| surface.nodes()[at].node.index();
@@ -40,9 +40,9 @@ impl<const D: usize> StepContact<D> {
 
     /// Reactions at t_n that keep candidate nodes out of the obstacles at t_{n+1}; they are added to
     /// `force`. `velocity` is v_{n−½} (v₀ at the start).
-    pub(super) fn react<const N: usize>(
+    pub(super) fn react(
         &mut self,
-        dynamics: &Dynamics<'_, D, N>,
+        dynamics: &Dynamics<'_, D>,
         n: usize,
         displacement: &[[f64; D]],
         velocity: &[[f64; D]],
@@ -82,7 +82,7 @@ impl<const D: usize> StepContact<D> {
 
     /// Touching at t_0: a node on its obstacle, without normal velocity, whose multiplier at t_0 is active; a node of a
     /// master that such a multiplier acts on, if it faces the slave at t_0 already.
-    pub(super) fn settle_start<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>) {
+    pub(super) fn settle_start(&mut self, dynamics: &Dynamics<'_, D>) {
         let problem = dynamics.problem;
         let starts = problem.starts_of_contact();
         for (at, &(gap, normal)) in starts.iter().enumerate() {

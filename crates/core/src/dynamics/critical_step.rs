@@ -15,22 +15,22 @@ const MOST_VECTORS: usize = 320;
 
 /// Δt_c (s) from the element-wise bound on ω_max: cheap, never above the true value.
 #[must_use]
-pub fn element_time_step<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+pub fn element_time_step<const D: usize>(problem: &Problem<D>) -> f64 {
     2.0 / element_bound(problem).sqrt()
 }
 
 /// Δt_c (s) from the largest eigenvalue of M⁻¹K, [`critical_time_step`](super::critical_time_step).
-pub(super) fn critical_time_step<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+pub(super) fn critical_time_step<const D: usize>(problem: &Problem<D>) -> f64 {
     2.0 / largest_eigenvalue(problem).min(element_bound(problem)).sqrt()
 }
 
 /// The same of one element alone with its lumped mass (s).
-pub(super) fn time_step_of_element<const D: usize, const N: usize>(problem: &Problem<D, N>, element: ElementId) -> f64 {
+pub(super) fn time_step_of_element<const D: usize>(problem: &Problem<D>, element: ElementId) -> f64 {
     2.0 / largest_of_element(problem, element).sqrt()
 }
 
 /// Largest ω² of any element alone (1/s²): a bound on that of the mesh.
-fn element_bound<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+fn element_bound<const D: usize>(problem: &Problem<D>) -> f64 {
     let elements = (0..problem.mesh().element_count()).map(ElementId::new);
     elements.map(|element| largest_of_element(problem, element)).fold(0.0, f64::max)
 }
@@ -40,8 +40,8 @@ fn element_bound<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64
 /// Its eigenvalues are those of Cᴷ Q Cᴷ on strains, Cᴷ the root of the law and Q = Σ∇φ_i ∇φ_iᵀ. In 2D,
 /// with the strains 1, diag(1, −1) and the shear over √2, they are those of a matrix of two rows and one more, which is
 /// not the largest: m = ½ tr Q and r, half the difference of the eigenvalues of Q, couple volume and shear.
-fn largest_of_element<const D: usize, const N: usize>(problem: &Problem<D, N>, element: ElementId) -> f64 {
-    let (material, gradients) = (problem.material(element), problem.mesh().geometry::<D, N>(element).gradients);
+fn largest_of_element<const D: usize>(problem: &Problem<D>, element: ElementId) -> f64 {
+    let (material, gradients) = (problem.material(element), problem.mesh().gradients_in::<D>(element));
     let q = |a: usize, b: usize| gradients.iter().map(|g| g[a] * g[b]).sum::<f64>();
     let (lambda, shear) = material.moduli();
     let largest = match problem.mesh().shape() {
@@ -53,14 +53,14 @@ fn largest_of_element<const D: usize, const N: usize>(problem: &Problem<D, N>, e
             0.5 * (m * (volume + deviator) + (m * m * (volume - deviator).powi(2) + coupling).sqrt())
         }
     };
-    largest * N as f64 / material.density()
+    largest * problem.mesh().nodes_of_element() as f64 / material.density()
 }
 
 /// The largest Ritz value plus its residual.
 ///
 /// The vectors y_j = β_j q_j obey y_{j+1} = (M⁻¹K y_j − α_j y_j)/β_j − (β_j/β_{j−1}) y_{j−1}, with the products
 /// α_j = y_j·K y_j/β_j² and β_j² = y_j·M y_j: one pass over the mesh for each.
-fn largest_eigenvalue<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+fn largest_eigenvalue<const D: usize>(problem: &Problem<D>) -> f64 {
     let count = D * problem.mesh().node_count() - problem.prescribed().len();
     let fewest = (10.0 * (count as f64).ln()).ceil() as usize;
     let stiffness = Stiffness::new(problem);
@@ -112,7 +112,7 @@ fn largest_eigenvalue<const D: usize, const N: usize>(problem: &Problem<D, N>) -
 /// A nodal field without structure, of values between −½ and ½ and 0 on prescribed components, that is the same in
 /// every run (Knuth's MMIX generator).
 #[must_use]
-pub fn rough_field<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<[f64; D]> {
+pub fn rough_field<const D: usize>(problem: &Problem<D>) -> Vec<[f64; D]> {
     let mut state = 1_u64;
     let mut draw = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -124,7 +124,7 @@ pub fn rough_field<const D: usize, const N: usize>(problem: &Problem<D, N>) -> V
 }
 
 /// A rough field of the norm 1 with the mass.
-fn random_start<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<[f64; D]> {
+fn random_start<const D: usize>(problem: &Problem<D>) -> Vec<[f64; D]> {
     let mut x = rough_field(problem);
     let norm = x.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
     for (x, mass) in x.iter_mut().zip(problem.mass()) {

@@ -60,7 +60,7 @@ pub(super) struct ChunkData<'a> {
 }
 
 /// An element and the element across one of its faces, if it has a partner.
-struct Pair<const N: usize> {
+struct Pair {
     first: ElementId,
     second: Option<ElementId>,
     /// The local node of the first element that the second does not have.
@@ -68,7 +68,7 @@ struct Pair<const N: usize> {
 }
 
 impl ElementPairs {
-    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, strips: &Strips) -> Self {
+    pub(super) fn new<const D: usize>(problem: &Problem<D>, strips: &Strips) -> Self {
         let (laws, law_of_material) = laws(problem);
         let half = problem.mesh().element_count() / 4 + strips.count();
         let mut all = Self {
@@ -97,34 +97,28 @@ impl ElementPairs {
     }
 
     /// Adds a chunk of pairs.
-    fn add<const D: usize, const N: usize>(
-        &mut self,
-        problem: &Problem<D, N>,
-        start: usize,
-        pairs: &[Pair<N>],
-        law: u32,
-    ) {
-        let mesh = problem.mesh();
+    fn add<const D: usize>(&mut self, problem: &Problem<D>, start: usize, pairs: &[Pair], law: u32) {
+        let (mesh, corners) = (problem.mesh(), D + 1);
         for two in pairs.chunks(2) {
             let (mut nodes, mut gradients) = ([[0; 4]; 2], Gradients::default());
             for (p, pair) in two.iter().enumerate() {
-                let cell = &mesh.nodes_of::<N>()[pair.first.index()];
+                let cell = mesh.cell(pair.first);
                 // Node 1 of A is the one that B does not have.
-                let order: [usize; N] = std::array::from_fn(|i| (pair.apart + N - 1 + i) % N);
-                let mut of_pair = [cell[order[0]]; 4];
-                (1..N).for_each(|i| of_pair[i] = cell[order[i]]);
+                let order = |i: usize| cell[(pair.apart + corners - 1 + i) % corners];
+                let mut of_pair = [order(0); 4];
+                (1..corners).for_each(|i| of_pair[i] = order(i));
                 if let Some(second) = pair.second {
-                    let other = mesh.nodes_of::<N>()[second.index()].iter().find(|node| !cell.contains(node));
-                    of_pair[N] = *other.unwrap_or(&cell[order[0]]);
+                    let other = mesh.cell(second).iter().find(|node| !cell.contains(node));
+                    of_pair[corners] = other.copied().unwrap_or(order(0));
                 }
                 for (l, element) in [Some(pair.first), pair.second].into_iter().enumerate() {
                     let Some(element) = element else { continue };
-                    let (cell, geometry) = (&mesh.nodes_of::<N>()[element.index()], mesh.geometry::<D, N>(element));
+                    let (cell, slopes) = (mesh.cell(element), mesh.gradients_in::<D>(element));
                     let root = (problem.volume(element) * problem.material(element).moduli().1).sqrt();
                     for i in 0..D {
                         let at = cell.iter().position(|node| *node == of_pair[i + 1 + l]).unwrap_or(0);
                         for b in 0..D {
-                            gradients.0[i][2 * (2 * p + l) + b] = root * geometry.gradients[at][b];
+                            gradients.0[i][2 * (2 * p + l) + b] = root * slopes[at][b];
                         }
                     }
                 }
@@ -181,7 +175,7 @@ impl ElementPairs {
 }
 
 /// The different laws, and that of each material.
-fn laws<const D: usize, const N: usize>(problem: &Problem<D, N>) -> (Vec<[f64; 2]>, Vec<u32>) {
+fn laws<const D: usize>(problem: &Problem<D>) -> (Vec<[f64; 2]>, Vec<u32>) {
     let mut laws: Vec<[f64; 2]> = Vec::new();
     let of_material = problem.materials().iter().map(|material| {
         let (lambda, shear) = material.moduli();
@@ -198,14 +192,14 @@ fn laws<const D: usize, const N: usize>(problem: &Problem<D, N>) -> (Vec<[f64; 2
 
 /// Joins elements of a strip that share a face and a law: each with its free neighbour of the lowest number, if that
 /// is not far ahead.
-fn pair<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+fn pair<const D: usize>(
+    problem: &Problem<D>,
     strip: Range<usize>,
     taken: &mut [bool],
     law: impl Fn(usize) -> u32,
-) -> Vec<Pair<N>> {
+) -> Vec<Pair> {
     let mesh = problem.mesh();
-    let highest = |e: usize| mesh.nodes_of::<N>()[e].iter().map(|node| node.index()).fold(0, usize::max);
+    let highest = |e: usize| mesh.cell(ElementId::new(e)).iter().map(|node| node.index()).fold(0, usize::max);
     let (mut pairs, mut reached) = (Vec::with_capacity(strip.len() / 2 + strip.len() / 16 + 1), 0);
     for e in strip.clone() {
         reached = highest(e).max(reached);
@@ -214,7 +208,7 @@ fn pair<const D: usize, const N: usize>(
         }
         let first = ElementId::new(e);
         let mut partner: Option<(usize, usize)> = None;
-        for (apart, face) in mesh.faces_of::<N>()[e].iter().enumerate() {
+        for (apart, face) in mesh.cell_faces(first).iter().enumerate() {
             let face = &mesh.face(*face);
             let other = face.across(first);
             let Some(other) = other.map(ElementId::index) else { continue };
@@ -237,7 +231,6 @@ mod tests {
     use super::*;
     use crate::material::Elastic;
     use crate::mesh::Mesh;
-    use crate::problem::TriangleProblem;
     use percute_testkit::random_rectangle;
 
     /// In the local numbering of an unstructured mesh, few more nodes than those of a level are in work at a time, and
@@ -251,8 +244,8 @@ mod tests {
         let mesh = Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &Default::default(), &Default::default()).unwrap();
         let numbering = mesh.local_numbering().unwrap();
         let law = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
-        let problem = TriangleProblem::builder(mesh).material(law).build().unwrap().renumbered(&numbering);
-        let strips = Strips::new(problem.mesh().nodes_of::<3>());
+        let problem = Problem::<2>::builder(mesh).material(law).build().unwrap().renumbered(&numbering);
+        let strips = Strips::new(problem.mesh());
         let pairs = ElementPairs::new(&problem, &strips);
         let longest = pairs.chunks.iter().map(|chunk| chunk.reached.saturating_sub(chunk.left)).max().unwrap();
         assert!((longest as usize) < 2 * side, "{longest}");

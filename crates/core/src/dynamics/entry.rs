@@ -1,9 +1,6 @@
 //! The explicit solution of a problem of either dimension, compiled with this crate.
 
-use super::{
-    MissedContact, Simulation, SimulationError, Stiffness, central_difference, critical_step, evaluation, start,
-};
-use crate::border::vectors;
+use super::{MissedContact, Simulation, SimulationError, central_difference, critical_step, evaluation, start};
 use crate::history::{Checkpoint, SinkError, StateSink, StepSource};
 use crate::ids::ElementId;
 use crate::observer::Observer;
@@ -117,33 +114,4 @@ pub fn check_start<'p>(problem: impl Into<ProblemRef<'p>>, times: &TimeGrid) -> 
 #[must_use]
 pub fn missed_contact<'p>(problem: impl Into<ProblemRef<'p>>, steps: usize) -> Box<dyn StateSink + 'p> {
     on_problem!(problem.into(), problem => Box::new(MissedContact::new(problem, steps)))
-}
-
-/// The stiffness K of a problem of either dimension.
-#[derive(Clone, Debug)]
-pub enum AnyStiffness {
-    /// Of a bar.
-    D1(Stiffness<1, 2>),
-    /// Of a plane body.
-    D2(Stiffness<2, 3>),
-}
-
-impl AnyStiffness {
-    /// That of a problem.
-    #[must_use]
-    pub fn new<'p>(problem: impl Into<ProblemRef<'p>>) -> Self {
-        match problem.into() {
-            ProblemRef::D1(problem) => Self::D1(Stiffness::new(problem)),
-            ProblemRef::D2(problem) => Self::D2(Stiffness::new(problem)),
-        }
-    }
-
-    /// Subtracts K u (N) from forces, all in rows: [`Stiffness::subtract_internal_forces`]. Returns the strain energy
-    /// (J).
-    pub fn subtract_internal_forces(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
-        match self {
-            Self::D1(stiffness) => stiffness.subtract_internal_forces(vectors(displacement), force.as_chunks_mut().0),
-            Self::D2(stiffness) => stiffness.subtract_internal_forces(vectors(displacement), force.as_chunks_mut().0),
-        }
-    }
 }

@@ -38,23 +38,23 @@ impl<'p> Evaluation<'p> {
 
 /// That of a problem with its dimension.
 #[derive(Clone, Debug)]
-struct Evaluator<'p, const D: usize, const N: usize> {
-    dynamics: Dynamics<'p, D, N>,
+struct Evaluator<'p, const D: usize> {
+    dynamics: Dynamics<'p, D>,
     check: StepCheck,
     body: MovingBody<D>,
     /// a_{n−1}, if the history brings it.
     given: Option<Vec<f64>>,
 }
 
-impl<'p, const D: usize, const N: usize> Evaluator<'p, D, N> {
-    fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid) -> Self {
+impl<'p, const D: usize> Evaluator<'p, D> {
+    fn new(problem: &'p Problem<D>, times: &'p TimeGrid) -> Self {
         let dynamics = Dynamics::new(problem, times);
         let body = MovingBody::new(&dynamics);
         Self { dynamics, check: StepCheck::default(), body, given: None }
     }
 }
 
-impl<const D: usize, const N: usize> Evaluate for Evaluator<'_, D, N> {
+impl<const D: usize> Evaluate for Evaluator<'_, D> {
     fn advance<'a>(&'a mut self, step: &Step<'a>) -> Result<State<'a>, StepError> {
         let Self { dynamics, check, body, given } = self;
         let (problem, times, n) = (dynamics.problem, dynamics.times, step.index);

@@ -1,8 +1,10 @@
 //! Internal forces of the P1 elements, ∫σ_h ∇φ_i.
 
 use super::element_pairs::{ChunkData, ElementPairs, PairNodes};
+use crate::border::vectors;
 use crate::mesh::Strips;
-use crate::problem::Problem;
+use crate::on_problem;
+use crate::problem::{Problem, ProblemRef};
 use crate::simd::{Lanes, Task, Wide, dispatch};
 use crate::simplex::Shape;
 
@@ -11,27 +13,35 @@ use crate::simplex::Shape;
 /// The sweep goes over pairs of elements that share a face: a pair has four nodes to read and write where two
 /// triangles have six. First all even strips are swept, then all odd ones.
 #[derive(Clone, Debug)]
-pub struct Stiffness<const D: usize, const N: usize> {
+pub struct Stiffness {
     pub(super) shape: Shape,
     pub(super) strips: Strips,
     pub(super) pairs: ElementPairs,
 }
 
-impl<const D: usize, const N: usize> Stiffness<D, N> {
+impl Stiffness {
     /// Prepares the elements of a problem.
     #[must_use]
-    pub fn new(problem: &Problem<D, N>) -> Self {
-        Self::on_strips(problem, Strips::new(problem.mesh().nodes_of::<N>()))
+    pub fn new<'p>(problem: impl Into<ProblemRef<'p>>) -> Self {
+        on_problem!(problem.into(), problem => Self::on_strips(problem, Strips::new(problem.mesh())))
     }
 
     /// The same with a cut of its own.
-    pub(super) fn on_strips(problem: &Problem<D, N>, strips: Strips) -> Self {
+    pub(super) fn on_strips<const D: usize>(problem: &Problem<D>, strips: Strips) -> Self {
         let pairs = ElementPairs::new(problem, &strips);
         Self { shape: problem.mesh().shape(), strips, pairs }
     }
 
+    /// Subtracts K u from `force` (N), both in rows, and returns the strain energy ½ u·K u (J).
+    pub fn subtract_from_rows(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
+        match self.shape {
+            Shape::Bar => self.subtract_internal_forces::<1>(vectors(displacement), force.as_chunks_mut().0),
+            Shape::Triangle => self.subtract_internal_forces::<2>(vectors(displacement), force.as_chunks_mut().0),
+        }
+    }
+
     /// Subtracts K u from `force` (N) and returns the strain energy ½ u·K u (J).
-    pub fn subtract_internal_forces(&self, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
+    pub fn subtract_internal_forces<const D: usize>(&self, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
         let mut energies = vec![0.0; self.strips.count()];
         for parity in 0..2 {
             for strip in (parity..self.strips.count()).step_by(2) {
@@ -50,14 +60,14 @@ impl<const D: usize, const N: usize> Stiffness<D, N> {
 }
 
 /// The sweep over one strip alone.
-struct StripSweep<'a, const D: usize, const N: usize> {
-    stiffness: &'a Stiffness<D, N>,
+struct StripSweep<'a, const D: usize> {
+    stiffness: &'a Stiffness,
     strip: usize,
     displacement: &'a [[f64; D]],
     force: &'a mut [[f64; D]],
 }
 
-impl<const D: usize, const N: usize> Task for StripSweep<'_, D, N> {
+impl<const D: usize> Task for StripSweep<'_, D> {
     type Output = f64;
 
     #[inline(always)]
@@ -189,7 +199,6 @@ mod tests {
     use crate::ids::ElementId;
     use crate::material::{Elastic, Law};
     use crate::mesh::Mesh;
-    use crate::problem::{BarProblem, TriangleProblem};
     use crate::simd::Portable;
     use percute_testkit::{Random, random_rectangle};
 
@@ -204,12 +213,12 @@ mod tests {
     }
 
     /// The forces and the energy, element by element with the law and the gradients as they are stated.
-    fn plain<const D: usize, const N: usize>(problem: &Problem<D, N>, u: &[[f64; D]]) -> (Vec<[f64; D]>, f64) {
+    fn plain<const D: usize>(problem: &Problem<D>, u: &[[f64; D]]) -> (Vec<[f64; D]>, f64) {
         let (mut force, mut energy) = (vec![[0.0; D]; u.len()], 0.0);
-        for (e, cell) in problem.mesh().nodes_of::<3>().iter().enumerate() {
+        for (e, cell) in problem.mesh().cells().enumerate() {
             let element = ElementId::new(e);
             let (material, volume) = (problem.material(element), problem.volume(element));
-            let gradients = problem.mesh().geometry::<2, 3>(element).gradients;
+            let gradients = problem.mesh().gradients_in::<D>(element);
             let mut gradient = [[0.0; D]; D];
             for (node, slope) in cell.iter().zip(&gradients) {
                 (0..D * D).for_each(|k| gradient[k / D][k % D] += u[node.index()][k / D] * slope[k % D]);
@@ -225,10 +234,10 @@ mod tests {
 
     /// Forces within 1e-14 of the largest that elements exchange, which is far below one unit of displacement on an
     /// element; the energy, a sum of positive terms, relatively.
-    fn check<const D: usize, const N: usize>(problem: &Problem<D, N>, strips: Strips, random: &mut Random) {
+    fn check<const D: usize>(problem: &Problem<D>, strips: Strips, random: &mut Random) {
         let u: Vec<[f64; D]> = problem
             .mesh()
-            .points_in::<2>()
+            .points_in::<D>()
             .iter()
             .map(|_| std::array::from_fn(|_| random.between(-1.0, 1.0)))
             .collect();
@@ -250,15 +259,15 @@ mod tests {
         let soft = Elastic::plane_strain(3.0, 0.4, 1.0, 0.5).unwrap();
         for seed in 0..20 {
             let mesh = random_mesh(5 + seed as usize, seed);
-            let strips = Strips::with_fewest(mesh.nodes_of::<3>(), 8 + seed as usize);
+            let strips = Strips::with_fewest(&mesh, 8 + seed as usize);
             let hard = Elastic::plane_stress(7.0, 0.3, 2.0, 1.0).unwrap();
-            let problem = TriangleProblem::builder(mesh).material_of("soft", soft).material_of("hard", hard);
+            let problem = Problem::<2>::builder(mesh).material_of("soft", soft).material_of("hard", hard);
             check(&problem.build().unwrap(), strips, &mut random);
         }
         for elements in [1, 2, 3, 8, 101] {
             let mesh = crate::mesh::Mesh::uniform_bar(2.0, elements).unwrap();
-            let strips = Strips::with_fewest(mesh.nodes_of::<3>(), 10);
-            let problem = BarProblem::builder(mesh).material(Elastic::bar(3.0, 1.0, 0.1).unwrap()).build().unwrap();
+            let strips = Strips::with_fewest(&mesh, 10);
+            let problem = Problem::<1>::builder(mesh).material(Elastic::bar(3.0, 1.0, 0.1).unwrap()).build().unwrap();
             check(&problem, strips, &mut random);
         }
     }
@@ -268,7 +277,7 @@ mod tests {
     fn all_vectors_give_the_same_bits() {
         let mesh = random_mesh(30, 3);
         let law = Elastic::plane_stress(7.0, 0.3, 2.0, 1.0).unwrap();
-        let problem = TriangleProblem::builder(mesh).material(law).build().unwrap();
+        let problem = Problem::<2>::builder(mesh).material(law).build().unwrap();
         let (stiffness, mut random) = (Stiffness::new(&problem), Random::new(6));
         let u: Vec<[f64; 2]> = problem
             .mesh()

@@ -20,8 +20,8 @@ const BESIDE: f64 = 1e-3;
 type Point = [f64; 2];
 
 /// Looks for nodes inside other bodies.
-pub(super) struct MissedContact<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+pub(super) struct MissedContact<'p, const D: usize> {
+    problem: &'p Problem<D>,
     last: usize,
     bodies: Vec<Body>,
     /// For each two bodies, the lines of symmetry of which they are halves.
@@ -48,9 +48,9 @@ struct BoundaryFace {
     line: Option<SymmetryLine>,
 }
 
-impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
+impl<'p, const D: usize> MissedContact<'p, D> {
     /// For a run with so many steps; it costs nothing with a single body.
-    pub(super) fn new(problem: &'p Problem<D, N>, steps: usize) -> Self {
+    pub(super) fn new(problem: &'p Problem<D>, steps: usize) -> Self {
         let mesh = problem.mesh();
         let mut made =
             Self { problem, last: steps, bodies: Vec::new(), halves: BTreeMap::new(), solved: BTreeMap::new() };
@@ -63,7 +63,7 @@ impl<'p, const D: usize, const N: usize> MissedContact<'p, D, N> {
         for face in mesh.boundary() {
             let (nodes, owner) = (mesh.face_nodes::<D>(face), mesh.face(face).owner);
             let (normal, area) = mesh.normal_in::<D>(face);
-            let height = D as f64 * mesh.geometry::<D, N>(owner).volume / area;
+            let height = D as f64 * mesh.volume(owner) / area;
             let line = symmetry::line_of(mesh, &problem.supported(face), &node_lines, face);
             let body = &mut made.bodies[of_node[nodes[0].index()]];
             body.faces.push(BoundaryFace { face, height, line });
@@ -180,7 +180,7 @@ fn distance(point: &Point, a: &Point, b: &Point) -> f64 {
     (from[0] - part * along[0]).hypot(from[1] - part * along[1])
 }
 
-impl<const D: usize, const N: usize> StateSink for MissedContact<'_, D, N> {
+impl<const D: usize> StateSink for MissedContact<'_, D> {
     fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         let step = state.step();
         if self.bodies.is_empty() || !(step.index.is_multiple_of(EVERY) || step.index == self.last) {

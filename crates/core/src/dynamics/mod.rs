@@ -22,8 +22,7 @@ pub use balance::Balance;
 pub use balancing::Balancing;
 pub use critical_step::{element_time_step, rough_field};
 pub use entry::{
-    AnyStiffness, check_start, critical_time_step, missed_contact, replay, resume, simulate, simulate_threaded,
-    time_step_of_element,
+    check_start, critical_time_step, missed_contact, replay, resume, simulate, simulate_threaded, time_step_of_element,
 };
 pub use evaluation::Evaluation;
 pub use internal_force::Stiffness;
@@ -39,10 +38,10 @@ use crate::time::TimeGrid;
 /// The integrator and all that derives velocities from stored displacements call the same
 /// functions in the same order, and so get the same bits.
 #[derive(Clone, Debug)]
-pub struct Dynamics<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+pub struct Dynamics<'p, const D: usize> {
+    problem: &'p Problem<D>,
     times: &'p TimeGrid,
-    stiffness: Stiffness<D, N>,
+    stiffness: Stiffness,
     inverse_mass: Vec<f64>,
     /// Nodes on which contact or a support acts, ascending.
     apart: Vec<u32>,
@@ -50,10 +49,10 @@ pub struct Dynamics<'p, const D: usize, const N: usize> {
     parallel: bool,
 }
 
-impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
+impl<'p, const D: usize> Dynamics<'p, D> {
     /// Prepares the forces of a problem.
     #[must_use]
-    pub fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid) -> Self {
+    pub fn new(problem: &'p Problem<D>, times: &'p TimeGrid) -> Self {
         let inverse_mass = problem.mass().iter().map(|m| 1.0 / m).collect();
         let contact = problem.surface().nodes().iter().map(|contact| contact.node);
         let supported = problem.prescribed().iter().map(|p| p.node);
@@ -65,14 +64,14 @@ impl<'p, const D: usize, const N: usize> Dynamics<'p, D, N> {
 
     /// The problem.
     #[must_use]
-    pub fn problem(&self) -> &'p Problem<D, N> {
+    pub fn problem(&self) -> &'p Problem<D> {
         self.problem
     }
 
     /// The stiffness K.
     #[inline]
     #[must_use]
-    pub fn stiffness(&self) -> &Stiffness<D, N> {
+    pub fn stiffness(&self) -> &Stiffness {
         &self.stiffness
     }
 

@@ -21,8 +21,8 @@ pub(super) struct MovingBody<const D: usize> {
 
 impl<const D: usize> MovingBody<D> {
     /// At rest in its initial fields.
-    pub(super) fn new<const N: usize>(dynamics: &Dynamics<'_, D, N>) -> Self {
-        let problem: &Problem<D, N> = dynamics.problem;
+    pub(super) fn new(dynamics: &Dynamics<'_, D>) -> Self {
+        let problem: &Problem<D> = dynamics.problem;
         let loaded = if problem.is_loaded() { problem.mesh().node_count() } else { 0 };
         Self {
             displacement: problem.initial_displacement().to_vec(),
@@ -35,7 +35,7 @@ impl<const D: usize> MovingBody<D> {
     }
 
     /// Moves to t_n and computes the forces there but for contact.
-    pub(super) fn step<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize, motion: NodeMotion<'_, D>) {
+    pub(super) fn step(&mut self, dynamics: &Dynamics<'_, D>, n: usize, motion: NodeMotion<'_, D>) {
         if !self.external.is_empty() {
             dynamics.problem.external_forces(dynamics.times.instants()[n], &mut self.external);
         }
@@ -65,7 +65,7 @@ impl<const D: usize> MovingBody<D> {
     }
 
     /// Kinetic energy and momentum, once the reactions are among the forces.
-    pub(super) fn sum_up<const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize) {
+    pub(super) fn sum_up(&mut self, dynamics: &Dynamics<'_, D>, n: usize) {
         let (mut sums, back) = (self.total, half_of_last(dynamics.times, n));
         for (i, &node) in dynamics.apart.iter().enumerate() {
             let node = node as usize;

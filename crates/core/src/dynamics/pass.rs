@@ -10,8 +10,8 @@ use std::ops::Range;
 
 /// What is the same for all strips of a pass.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pass<'a, const D: usize, const N: usize> {
-    pub(super) stiffness: &'a Stiffness<D, N>,
+pub(super) struct Pass<'a, const D: usize> {
+    pub(super) stiffness: &'a Stiffness,
     pub(super) mass: &'a [f64],
     pub(super) inverse_mass: &'a [f64],
     /// Nodes that are not summed up, ascending: forces from outside the pass act on them.
@@ -59,7 +59,7 @@ impl<'a, const D: usize> Fields<'a, D> {
     }
 }
 
-impl<const D: usize, const N: usize> Pass<'_, D, N> {
+impl<const D: usize> Pass<'_, D> {
     /// Moves all nodes, computes F_n − K u_n, and sums up nodes and elements; `fields` has one sum for each strip,
     /// those of even strips first.
     pub(super) fn run(&self, fields: Fields<'_, D>) -> StripSums<D> {
@@ -108,13 +108,13 @@ impl<const D: usize, const N: usize> Pass<'_, D, N> {
 }
 
 /// The pass over one strip.
-struct StripPass<'a, const D: usize, const N: usize> {
-    pass: &'a Pass<'a, D, N>,
+struct StripPass<'a, const D: usize> {
+    pass: &'a Pass<'a, D>,
     strip: usize,
     fields: Fields<'a, D>,
 }
 
-impl<const D: usize, const N: usize> Task for StripPass<'_, D, N> {
+impl<const D: usize> Task for StripPass<'_, D> {
     type Output = ();
 
     #[inline(always)]
@@ -143,7 +143,7 @@ impl<const D: usize, const N: usize> Task for StripPass<'_, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> Pass<'_, D, N> {
+impl<const D: usize> Pass<'_, D> {
     /// Moves nodes, counted in the strip, and begins their forces anew.
     #[inline(always)]
     fn advance<L: Lanes>(&self, lanes: L, nodes: Range<usize>, fields: &mut Fields<'_, D>, sums: &mut StripSums<D>) {

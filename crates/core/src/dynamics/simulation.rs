@@ -106,8 +106,8 @@ pub struct Simulation {
 }
 
 /// The error of an unstable run, with the node that has the most kinetic energy.
-pub(super) fn unstable<const D: usize, const N: usize>(
-    dynamics: &Dynamics<'_, D, N>,
+pub(super) fn unstable<const D: usize>(
+    dynamics: &Dynamics<'_, D>,
     step: usize,
     velocity: &[[f64; D]],
     balance: &Balance,

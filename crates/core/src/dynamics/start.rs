@@ -11,8 +11,8 @@ use crate::problem::Problem;
 use crate::time::TimeGrid;
 
 /// The forces and the contact at t_0.
-pub(super) fn start<const D: usize, const N: usize>(
-    dynamics: &Dynamics<'_, D, N>,
+pub(super) fn start<const D: usize>(
+    dynamics: &Dynamics<'_, D>,
     body: &mut MovingBody<D>,
     contact: &mut StepContact<D>,
 ) -> Result<(), SimulationError> {
@@ -23,8 +23,8 @@ pub(super) fn start<const D: usize, const N: usize>(
 }
 
 /// The forces and the contact at the step of a checkpoint; its sums are those of the balance.
-pub(super) fn restart<const D: usize, const N: usize>(
-    dynamics: &Dynamics<'_, D, N>,
+pub(super) fn restart<const D: usize>(
+    dynamics: &Dynamics<'_, D>,
     checkpoint: &Checkpoint,
     body: &mut MovingBody<D>,
     contact: &mut StepContact<D>,
@@ -45,18 +45,15 @@ pub(super) fn restart<const D: usize, const N: usize>(
 }
 
 /// Refuses a start that a simulation refuses.
-pub(super) fn check_start<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    times: &TimeGrid,
-) -> Result<(), SimulationError> {
+pub(super) fn check_start<const D: usize>(problem: &Problem<D>, times: &TimeGrid) -> Result<(), SimulationError> {
     let dynamics = &Dynamics::new(problem, times);
     start(dynamics, &mut MovingBody::new(dynamics), &mut StepContact::new(dynamics))
 }
 
 /// A node that touches at step 1, but not at 0, must be able to slow down: its gap must be at
 /// least |v_n|Δt₀/4, or no admissible kinematic field exists (problem P_CA).
-fn refuse_a_start_too_near<const D: usize, const N: usize>(
-    dynamics: &Dynamics<'_, D, N>,
+fn refuse_a_start_too_near<const D: usize>(
+    dynamics: &Dynamics<'_, D>,
     contact: &StepContact<D>,
 ) -> Result<(), SimulationError> {
     let problem = dynamics.problem;

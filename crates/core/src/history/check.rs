@@ -76,9 +76,9 @@ pub(crate) struct StepCheck {
 
 impl StepCheck {
     /// Checks one step and counts it, unless it does not fit.
-    pub(crate) fn advance<const D: usize, const N: usize>(
+    pub(crate) fn advance<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         times: &TimeGrid,
         step: &Step<'_>,
     ) -> Result<(), StepError> {

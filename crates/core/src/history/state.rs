@@ -22,7 +22,7 @@ pub(crate) struct StepForces<const D: usize> {
 }
 
 impl<const D: usize> StepForces<D> {
-    pub(crate) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub(crate) fn new(problem: &Problem<D>) -> Self {
         Self {
             strain: 0.0,
             energies: (0.0, [0.0; D]),

@@ -470,6 +470,20 @@ impl Mesh {
         in_kind!(self, D, N => self.geometry::<D, N>(element).gradients.iter().map(padded).collect())
     }
 
+    /// ∇φ_i of the nodes of an element (1/m), in their dimension; 0 beyond its nodes.
+    #[inline]
+    #[must_use]
+    pub fn gradients_in<const D: usize>(&self, element: ElementId) -> [[f64; D]; MOST_NODES] {
+        let mut gradients = [[0.0; D]; MOST_NODES];
+        in_kind!(self, K, N => {
+            let of_cell = self.geometry::<K, N>(element).gradients;
+            for (own, slope) in gradients.iter_mut().zip(&of_cell) {
+                own.copy_from_slice(slope);
+            }
+        });
+        gradients
+    }
+
     /// The local number of `node` in `element`.
     #[must_use]
     pub fn local_node(&self, element: ElementId, node: NodeId) -> Option<usize> {

@@ -1,5 +1,6 @@
 //! Blocks of elements that can be worked on at the same time.
 
+use super::Mesh;
 use crate::ids::NodeId;
 use std::ops::Range;
 
@@ -20,16 +21,21 @@ pub struct Strips {
 }
 
 impl Strips {
-    /// Cuts elements, given by their nodes.
+    /// Cuts the elements of a mesh.
     #[must_use]
-    pub fn new<const N: usize>(cells: &[[NodeId; N]]) -> Self {
-        Self::with_fewest(cells, FEWEST.max(cells.len().div_ceil(MOST_STRIPS)))
+    pub fn new(mesh: &Mesh) -> Self {
+        Self::with_fewest(mesh, FEWEST.max(mesh.element_count().div_ceil(MOST_STRIPS)))
     }
 
     /// The same with at least `fewest` elements in a strip.
     #[must_use]
-    pub fn with_fewest<const N: usize>(cells: &[[NodeId; N]], fewest: usize) -> Self {
-        let mut lowest_from: Vec<u32> = cells.iter().map(lowest).collect();
+    pub fn with_fewest(mesh: &Mesh, fewest: usize) -> Self {
+        Self::of_cells(&mesh.cells().collect::<Vec<_>>(), fewest)
+    }
+
+    /// Cuts elements, given by their nodes.
+    fn of_cells(cells: &[&[NodeId]], fewest: usize) -> Self {
+        let mut lowest_from: Vec<u32> = cells.iter().map(|cell| lowest(cell)).collect();
         for e in (1..cells.len()).rev() {
             lowest_from[e - 1] = lowest_from[e - 1].min(lowest_from[e]);
         }
@@ -95,26 +101,25 @@ impl Strips {
     }
 }
 
-fn lowest<const N: usize>(cell: &[NodeId; N]) -> u32 {
+fn lowest(cell: &[NodeId]) -> u32 {
     cell.iter().map(|node| node.index() as u32).fold(u32::MAX, u32::min)
 }
 
-fn highest<const N: usize>(cell: &[NodeId; N]) -> u32 {
+fn highest(cell: &[NodeId]) -> u32 {
     cell.iter().map(|node| node.index() as u32).fold(0, u32::max)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Mesh;
 
     /// All that is promised of the cut of these cells.
-    fn check(cells: &[[NodeId; 3]], nodes: usize, strips: &Strips) {
+    fn check(cells: &[&[NodeId]], nodes: usize, strips: &Strips) {
         let mut seen = vec![[0; 2]; nodes];
         assert_eq!((strips.elements(0).start, strips.elements(strips.count() - 1).end), (0, cells.len()));
         for k in 0..strips.count() {
             let range = strips.nodes(k);
-            assert!(cells[strips.elements(k)].iter().flatten().all(|node| range.contains(&node.index())));
+            assert!(cells[strips.elements(k)].iter().copied().flatten().all(|node| range.contains(&node.index())));
             assert!(k < 2 || strips.nodes(k - 2).end <= range.start, "strips {} and {k} share nodes", k - 2);
             for parity in 0..2 {
                 let part = if k % 2 == parity { strips.nodes(k) } else { strips.own_nodes(k) };
@@ -132,24 +137,24 @@ mod tests {
             swaps in proptest::collection::vec((0_usize..300, 0_usize..30), 0..3),
         ) {
             let mesh = Mesh::rectangle(1.0, 1.0, nx, ny).unwrap();
-            let mut cells = mesh.nodes_of::<3>().to_vec();
+            let mut cells: Vec<_> = mesh.cells().collect();
             for (at, distance) in swaps {
                 let (from, to) = (at % cells.len(), (at + distance) % cells.len());
                 cells.swap(from, to);
             }
-            check(&cells, mesh.node_count(), &Strips::with_fewest(&cells, fewest));
+            check(&cells, mesh.node_count(), &Strips::of_cells(&cells, fewest));
         }
     }
 
     #[test]
     fn a_rectangle_has_strips_of_its_rows() {
         let mesh = Mesh::rectangle(1.0, 1.0, 10, 50).unwrap();
-        let strips = Strips::with_fewest(mesh.nodes_of::<3>(), 100);
+        let strips = Strips::with_fewest(&mesh, 100);
         assert_eq!(strips.count(), 10);
         assert_eq!((strips.nodes(1), strips.own_nodes(1)), (55..121, 66..110));
-        assert_eq!(Strips::new(mesh.nodes_of::<3>()).count(), 1);
-        let mut reversed = mesh.nodes_of::<3>().to_vec();
+        assert_eq!(Strips::new(&mesh).count(), 1);
+        let mut reversed: Vec<_> = mesh.cells().collect();
         reversed.reverse();
-        assert_eq!(Strips::with_fewest(&reversed, 100).count(), 1);
+        assert_eq!(Strips::of_cells(&reversed, 100).count(), 1);
     }
 }

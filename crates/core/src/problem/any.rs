@@ -1,6 +1,6 @@
 //! A problem of either dimension, as other crates see it.
 
-use super::{BarProblem, TriangleProblem, statement};
+use super::statement;
 use super::{BodyLoad, Conditions, FaceLoad, InputError, MovedPlane, Place, PrescribedComponent, Problem, Statement};
 use crate::border::{Vector, padded, vectors};
 use crate::contact::{AnyContactConfiguration, AnyObstacle, ContactFace, ContactNode, Frame, Interface};
@@ -23,17 +23,17 @@ pub struct AnyProblem {
 /// Problems with their dimension.
 #[derive(Clone, Debug)]
 enum Typed {
-    D1(Arc<BarProblem>),
-    D2(Arc<TriangleProblem>),
+    D1(Arc<Problem<1>>),
+    D2(Arc<Problem<2>>),
 }
 
 /// A reference to a problem of either dimension; simulation and estimate take one.
 #[derive(Clone, Copy, Debug)]
 pub enum ProblemRef<'p> {
     /// Of a bar.
-    D1(&'p BarProblem),
+    D1(&'p Problem<1>),
     /// Of a plane body.
-    D2(&'p TriangleProblem),
+    D2(&'p Problem<2>),
 }
 
 /// Does the same with a problem in each dimension.
@@ -56,8 +56,8 @@ impl<'p> From<&'p AnyProblem> for ProblemRef<'p> {
     }
 }
 
-impl<'p, const D: usize, const N: usize> From<&'p Problem<D, N>> for ProblemRef<'p> {
-    fn from(problem: &'p Problem<D, N>) -> Self {
+impl<'p, const D: usize> From<&'p Problem<D>> for ProblemRef<'p> {
+    fn from(problem: &'p Problem<D>) -> Self {
         let any = problem as &dyn Any;
         let found = any.downcast_ref().map(Self::D1).or_else(|| any.downcast_ref().map(Self::D2));
         let Some(found) = found else { unreachable!("problems are of bars or of triangles") };
@@ -68,19 +68,19 @@ impl<'p, const D: usize, const N: usize> From<&'p Problem<D, N>> for ProblemRef<
 impl<'p> ProblemRef<'p> {
     /// The problem with its dimension; none if it has another one.
     #[must_use]
-    pub fn typed<const D: usize, const N: usize>(self) -> Option<&'p Problem<D, N>> {
+    pub fn typed<const D: usize>(self) -> Option<&'p Problem<D>> {
         on_problem!(self, problem => (problem as &dyn Any).downcast_ref())
     }
 }
 
-impl From<BarProblem> for AnyProblem {
-    fn from(problem: BarProblem) -> Self {
+impl From<Problem<1>> for AnyProblem {
+    fn from(problem: Problem<1>) -> Self {
         Self { mesh: problem.mesh.clone(), problem: Typed::D1(Arc::new(problem)) }
     }
 }
 
-impl From<TriangleProblem> for AnyProblem {
-    fn from(problem: TriangleProblem) -> Self {
+impl From<Problem<2>> for AnyProblem {
+    fn from(problem: Problem<2>) -> Self {
         Self { mesh: problem.mesh.clone(), problem: Typed::D2(Arc::new(problem)) }
     }
 }
@@ -125,8 +125,8 @@ impl AnyProblem {
     /// The first thing that is wrong, with its place.
     pub fn new(mesh: &Arc<Mesh>, stated: &Statement) -> Result<Self, InputError> {
         match mesh.shape() {
-            Shape::Bar => statement::build::<1, 2>(mesh, stated).map(Self::from),
-            Shape::Triangle => statement::build::<2, 3>(mesh, stated).map(Self::from),
+            Shape::Bar => statement::build::<1>(mesh, stated).map(Self::from),
+            Shape::Triangle => statement::build::<2>(mesh, stated).map(Self::from),
         }
     }
 

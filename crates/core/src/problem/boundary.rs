@@ -141,7 +141,7 @@ pub(super) fn profile_on<const D: usize>(mesh: &Mesh, face: FaceId, profile: &Pr
 
 /// Body forces with the volume at each node on which they act, and the list of each element.
 #[allow(clippy::type_complexity)]
-pub(super) fn body_forces<const N: usize>(
+pub(super) fn body_forces(
     mesh: &Mesh,
     forces: &[BodyForce],
     volume: impl Fn(ElementId) -> f64,
@@ -158,9 +158,8 @@ pub(super) fn body_forces<const N: usize>(
         let mut nodal = vec![0.0; mesh.node_count()];
         for element in members {
             by_element[element.index()].push(index as u16);
-            for node in mesh.nodes_of::<N>()[element.index()] {
-                nodal[node.index()] += volume(element) / N as f64;
-            }
+            let nodes = mesh.cell(element);
+            nodes.iter().for_each(|node| nodal[node.index()] += volume(element) / nodes.len() as f64);
         }
         let felt = nodal.into_iter().enumerate().filter(|&(_, v)| v > 0.0).map(|(i, v)| (NodeId::new(i), v));
         loads.push(BodyLoad { value: force.value.clone(), nodal_volume: felt.collect() });

@@ -41,7 +41,7 @@ pub struct Conditions {
 
 /// Collects the parts of a problem; [`Builder::build`] checks them all, in one place.
 #[derive(Clone, Debug)]
-pub struct Builder<const D: usize, const N: usize> {
+pub struct Builder<const D: usize> {
     mesh: Arc<Mesh>,
     stated: Conditions,
     displacement: Initial<D>,
@@ -52,7 +52,7 @@ pub struct Builder<const D: usize, const N: usize> {
     planes_to_be_moved: bool,
 }
 
-impl<const D: usize, const N: usize> Builder<D, N> {
+impl<const D: usize> Builder<D> {
     pub(super) fn new(mesh: Arc<Mesh>) -> Self {
         Self {
             mesh,
@@ -184,7 +184,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
     ///
     /// # Errors
     /// The first thing that is wrong, with its place.
-    pub fn build(mut self) -> Result<Problem<D, N>, InputError> {
+    pub fn build(mut self) -> Result<Problem<D>, InputError> {
         self.check_counts()?;
         let mesh = &*self.mesh;
         let (materials, element_material) = materials(mesh, &self.stated.materials)?;
@@ -193,7 +193,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
         let volume = |e: ElementId| mesh.volume(e) * extent(e);
 
         let density = |e: ElementId| materials[usize::from(element_material[e.index()])].density();
-        let mass = lumped_mass::<N>(mesh, |e| density(e) * volume(e));
+        let mass = lumped_mass(mesh, |e| density(e) * volume(e));
 
         let initial_displacement = nodal(&self.displacement, mesh.node_count(), "displacement")?;
         let initial_velocity = nodal(&self.velocity, mesh.node_count(), "velocity")?;
@@ -205,7 +205,7 @@ impl<const D: usize, const N: usize> Builder<D, N> {
             return Err(Cause::NoFreedom.at("support", None, ""));
         }
         let face_loads = boundary::tractions(mesh, &self.stated.tractions, &supported)?;
-        let (body_loads, element_body_loads) = boundary::body_forces::<N>(mesh, &self.stated.body_forces, volume)?;
+        let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.stated.body_forces, volume)?;
 
         let law = |f: FaceId| &materials[usize::from(element_material[mesh.face(f).owner.index()])];
         let (body, held, velocity) = (Vec::new(), boundary::held(mesh, &self.stated), &initial_velocity[..]);
@@ -249,11 +249,12 @@ fn with_groups(mesh: Arc<Mesh>, groups: Vec<(String, Vec<FaceId>)>) -> Arc<Mesh>
 }
 
 /// The mass of each node (kg), from those of the elements.
-fn lumped_mass<const N: usize>(mesh: &Mesh, of_element: impl Fn(ElementId) -> f64) -> Vec<f64> {
+fn lumped_mass(mesh: &Mesh, of_element: impl Fn(ElementId) -> f64) -> Vec<f64> {
     let mut mass = vec![0.0; mesh.node_count()];
     for e in (0..mesh.element_count()).map(ElementId::new) {
-        let share = of_element(e) / N as f64;
-        mesh.nodes_of::<N>()[e.index()].iter().for_each(|node| mass[node.index()] += share);
+        let nodes = mesh.cell(e);
+        let share = of_element(e) / nodes.len() as f64;
+        nodes.iter().for_each(|node| mass[node.index()] += share);
     }
     mass
 }
@@ -319,7 +320,7 @@ fn nodal<const D: usize>(field: &Initial<D>, nodes: usize, key: &'static str) ->
 ///
 /// One that agrees up to rounding, as sin(kx) at a support does, becomes that of the support: kinematically admissible
 /// fields satisfy both, eq. \[4\] and \[7\].
-fn start_with_supports<const D: usize, const N: usize>(problem: &mut Problem<D, N>) -> Result<(), InputError> {
+fn start_with_supports<const D: usize>(problem: &mut Problem<D>) -> Result<(), InputError> {
     let speeds = problem.initial_velocity.iter().flatten().map(|v| v.abs());
     let largest = speeds.fold(0.0, f64::max);
     for i in 0..problem.prescribed.len() {

@@ -77,7 +77,7 @@ pub struct BodyLoad {
 
 /// An elastic body that may strike rigid obstacles, with its supports and loads, checked.
 #[derive(Clone, Debug)]
-pub struct Problem<const D: usize, const N: usize> {
+pub struct Problem<const D: usize> {
     mesh: Arc<Mesh>,
     stated: Conditions,
     materials: Vec<Elastic>,
@@ -100,15 +100,10 @@ pub struct Problem<const D: usize, const N: usize> {
     critical_step: OnceLock<f64>,
 }
 
-/// A problem on a mesh of bars.
-pub type BarProblem = Problem<1, 2>;
-/// A problem on a mesh of triangles.
-pub type TriangleProblem = Problem<2, 3>;
-
-impl<const D: usize, const N: usize> Problem<D, N> {
+impl<const D: usize> Problem<D> {
     /// Starts the statement of a problem on a mesh.
     #[must_use]
-    pub fn builder(mesh: impl Into<Arc<Mesh>>) -> Builder<D, N> {
+    pub fn builder(mesh: impl Into<Arc<Mesh>>) -> Builder<D> {
         Builder::new(mesh.into())
     }
 

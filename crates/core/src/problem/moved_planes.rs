@@ -19,7 +19,7 @@ pub struct MovedPlane {
     pub step: f64,
 }
 
-impl<const D: usize, const N: usize> Problem<D, N> {
+impl<const D: usize> Problem<D> {
     /// Refuses a body that starts on a plane and moves into it.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use super::{BodyLoad, FaceLoad, PrescribedComponent, Problem};
 use crate::mesh::Numbering;
 
-impl<const D: usize, const N: usize> Problem<D, N> {
+impl<const D: usize> Problem<D> {
     /// The problem on the renumbered mesh. The nodes of the contact surface keep their order, so that rows of reactions
     /// and touching status are those of either problem.
     #[must_use]

@@ -29,7 +29,7 @@ impl RigidMotion {
         on_problem!(problem.into(), problem => Self::of(problem))
     }
 
-    fn of<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
+    fn of<const D: usize>(problem: &Problem<D>) -> Self {
         let (mesh, masses) = (problem.mesh(), problem.mass().to_vec());
         let (of_node, bodies) = (mesh.part_numbers(), mesh.parts());
         let (mut mass, mut centre, mut inertia) = (vec![0.0; bodies], vec![[0.0; 3]; bodies], vec![0.0; bodies]);
@@ -90,17 +90,16 @@ mod tests {
     use super::*;
     use crate::material::Elastic;
     use crate::mesh::{ElementGroups, FaceGroups, Mesh};
-    use crate::problem::{BarProblem, TriangleProblem};
 
     /// Two squares of 1 m, apart, of 2 kg each.
-    fn squares() -> TriangleProblem {
+    fn squares() -> Problem<2> {
         let here = Mesh::rectangle(1.0, 1.0, 3, 2).unwrap();
         let points = here.points_in::<2>().iter().map(|[x, y]| [x + 5.0, *y]).collect();
         let cells: Vec<_> = here.nodes_of::<3>().iter().map(|cell| cell.map(|node| node.index())).collect();
         let there = Mesh::new(points, &cells, &FaceGroups::new(), &ElementGroups::new()).unwrap();
         let mesh = Mesh::joined(&[("a", &here), ("b", &there)]).unwrap();
         let law = Elastic::plane_strain(1.0, 0.2, 2.0, 1.0).unwrap();
-        TriangleProblem::builder(mesh).material(law).build().unwrap()
+        Problem::<2>::builder(mesh).material(law).build().unwrap()
     }
 
     /// Each body moves and turns in its own way, 400 m/s apart, and one of them stretches besides: the energy is that
@@ -134,7 +133,7 @@ mod tests {
     #[test]
     fn a_bar_does_not_turn() {
         let mesh = Mesh::uniform_bar(2.0, 4).unwrap();
-        let problem = BarProblem::builder(mesh).material(Elastic::bar(1.0, 1.0, 1.0).unwrap()).build().unwrap();
+        let problem = Problem::<1>::builder(mesh).material(Elastic::bar(1.0, 1.0, 1.0).unwrap()).build().unwrap();
         let rigid = RigidMotion::new(&problem);
         let field: Vec<[f64; 1]> = problem.mesh().points_in::<1>().iter().map(|[x]| [7.0 + (x - 1.0)]).collect();
         // Masses of ¼, ½, ½, ½, ¼ kg at −1, −½, 0, ½, 1 m.

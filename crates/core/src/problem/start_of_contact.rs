@@ -10,10 +10,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// At t = 0 no candidate node may lie behind its obstacle, nor on it with an inward velocity; with
 /// `planes_to_be_moved`, on other bodies only.
-pub(super) fn check<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    planes_to_be_moved: bool,
-) -> Result<(), InputError> {
+pub(super) fn check<const D: usize>(problem: &Problem<D>, planes_to_be_moved: bool) -> Result<(), InputError> {
     let starts = problem.starts_of_contact();
     check_deepest(problem, &starts)?;
     check_apart(problem)?;
@@ -25,8 +22,8 @@ pub(super) fn check<const D: usize, const N: usize>(
 }
 
 /// The candidate nodes on their obstacles that move into them, as positions in the contact surface.
-pub(super) fn striking<'a, const D: usize, const N: usize>(
-    problem: &'a Problem<D, N>,
+pub(super) fn striking<'a, const D: usize>(
+    problem: &'a Problem<D>,
     starts: &'a [(f64, f64)],
 ) -> impl Iterator<Item = usize> + 'a {
     let (surface, tolerance) = (problem.surface(), problem.contact_tolerance());
@@ -34,21 +31,14 @@ pub(super) fn striking<'a, const D: usize, const N: usize>(
     (0..starts.len()).filter(move |&at| surface.leads(at) && surface.nodes()[at].free && strikes(starts[at]))
 }
 
-pub(super) fn strikes<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    at: usize,
-    (gap, normal): (f64, f64),
-) -> InputError {
+pub(super) fn strikes<const D: usize>(problem: &Problem<D>, at: usize, (gap, normal): (f64, f64)) -> InputError {
     let contact = &problem.surface().nodes()[at];
     let cause = Cause::StrikesAtStart { node: contact.node.index(), gap, speed: -normal };
     InputError { place: problem.place_of_obstacle(contact.obstacle), cause }
 }
 
 /// The gap of the deepest node, for which contact is solved, is not negative.
-fn check_deepest<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    starts: &[(f64, f64)],
-) -> Result<(), InputError> {
+fn check_deepest<const D: usize>(problem: &Problem<D>, starts: &[(f64, f64)]) -> Result<(), InputError> {
     let (surface, tolerance) = (problem.surface(), problem.contact_tolerance());
     let deeper = |a: usize, b: usize| if starts[b].0 < starts[a].0 { b } else { a };
     let deepest = (0..starts.len()).filter(|&at| surface.leads(at)).reduce(deeper);
@@ -68,7 +58,7 @@ fn check_deepest<const D: usize, const N: usize>(
 }
 
 /// Sides of a non-matching interface that do not face each other yet are not behind each other.
-fn check_apart<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Result<(), InputError> {
+fn check_apart<const D: usize>(problem: &Problem<D>) -> Result<(), InputError> {
     for non_matching in problem.surface().non_matching() {
         if let Some((depth, at)) = gaps(problem, non_matching).behind()
             && depth > problem.contact_tolerance()
@@ -81,21 +71,18 @@ fn check_apart<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Resul
 }
 
 /// The group of a node that faces another body, and that of the other surface.
-fn groups<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize) -> Box<[String; 2]> {
+fn groups<const D: usize>(problem: &Problem<D>, at: usize) -> Box<[String; 2]> {
     let own = problem.surface().nodes()[at].obstacle;
     let other = problem.partner_obstacle(own).unwrap_or(own);
     Box::new([own, other].map(|obstacle| problem.obstacles()[obstacle].group().unwrap_or_default().to_string()))
 }
 
-fn gaps<'a, const D: usize, const N: usize>(
-    problem: &'a Problem<D, N>,
-    non_matching: &'a NonMatchingSurfaces<D>,
-) -> Gaps<'a, D> {
+fn gaps<'a, const D: usize>(problem: &'a Problem<D>, non_matching: &'a NonMatchingSurfaces<D>) -> Gaps<'a, D> {
     Gaps { surface: problem.surface(), non_matching, displacement: &problem.initial_displacement }
 }
 
 /// Why a node that faces the surface of another body may not be so far (m) behind it.
-fn behind<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize, depth: f64) -> Cause {
+fn behind<const D: usize>(problem: &Problem<D>, at: usize, depth: f64) -> Cause {
     let node = problem.surface().nodes()[at].node;
     // Surfaces that look away from each other are behind each other, too.
     let rounding = depth <= ROUNDING * problem.mesh().size();
@@ -107,7 +94,7 @@ fn behind<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize, de
 
 /// Why a node may not be so far (m) behind the surface of another body in which it is not. Displacements alone can make
 /// bodies overlap: those of a mesh do not.
-fn behind_surface<const D: usize, const N: usize>(problem: &Problem<D, N>, at: usize, depth: f64) -> Cause {
+fn behind_surface<const D: usize>(problem: &Problem<D>, at: usize, depth: f64) -> Cause {
     if let Some(elements) = problem.mesh().overlap_after(problem.initial_displacement.as_flattened()) {
         return Cause::ElementsOverlap { elements: elements.map(ElementId::index) };
     }

@@ -36,10 +36,7 @@ pub struct Statement {
 }
 
 /// Builds the problem on a mesh of its dimension.
-pub(super) fn build<const D: usize, const N: usize>(
-    mesh: &Arc<Mesh>,
-    stated: &Statement,
-) -> Result<Problem<D, N>, InputError> {
+pub(super) fn build<const D: usize>(mesh: &Arc<Mesh>, stated: &Statement) -> Result<Problem<D>, InputError> {
     let mut builder = Problem::builder(mesh.clone());
     for (group, law) in &stated.materials {
         builder = match group {

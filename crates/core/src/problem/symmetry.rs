@@ -74,7 +74,7 @@ fn mirrors<const D: usize>(mesh: &Mesh, supported: &[[bool; D]]) -> Vec<[bool; D
     mirrors
 }
 
-impl<const D: usize, const N: usize> Problem<D, N> {
+impl<const D: usize> Problem<D> {
     /// Whether each node of the contact surface is on a line of symmetry across it: a support holds it along the
     /// surface, and an edge that stands across.
     #[must_use]

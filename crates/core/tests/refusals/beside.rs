@@ -14,8 +14,7 @@ fn stated(at: [f64; 2], displaced: [f64; 2], groups: [&str; 2]) -> Option<Cause>
     let displacement = Initial::Nodal(displacement.collect());
     let law = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
     let interface = Interface::non_matching(2, groups[0], groups[1], 0.2).unwrap();
-    let builder =
-        Problem::<2, 3>::builder(joined).material(law).initial_displacement(displacement).interface(interface);
+    let builder = Problem::<2>::builder(joined).material(law).initial_displacement(displacement).interface(interface);
     builder.build().err().map(|error| error.cause)
 }
 

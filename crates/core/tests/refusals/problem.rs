@@ -4,28 +4,28 @@ use percute_core::contact::Obstacle;
 use percute_core::load::{BodyForce, Profile, Support, Table, TableError, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
-use percute_core::problem::{Builder, Cause, GroupOf, HeldBy, Initial, InputError, Place, TriangleProblem};
+use percute_core::problem::{Builder, Cause, GroupOf, HeldBy, Initial, InputError, Place, Problem};
 
 /// A unit square of two triangles, 0-1-2 below the diagonal and 0-2-3 above it, with its sides, an
 /// empty group, the groups of elements `lower` and `all`, and no material.
-fn square() -> Builder<2, 3> {
+fn square() -> Builder<2> {
     let sides = [("bottom", [0, 1]), ("right", [1, 2]), ("top", [2, 3]), ("left", [3, 0])];
     let mut faces: FaceGroups<2> = sides.iter().map(|(name, nodes)| (name.to_string(), vec![*nodes])).collect();
     faces.insert("nothing".to_string(), vec![]);
     let elements = ElementGroups::from([("lower".to_string(), vec![0]), ("all".to_string(), vec![0, 1])]);
     let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-    TriangleProblem::builder(Mesh::new(points, &[[0, 1, 2], [0, 2, 3]], &faces, &elements).unwrap())
+    Problem::<2>::builder(Mesh::new(points, &[[0, 1, 2], [0, 2, 3]], &faces, &elements).unwrap())
 }
 
 fn elastic() -> Elastic {
     Elastic::plane_stress(1.0, 0.3, 1.0, 1.0).unwrap()
 }
 
-fn solid() -> Builder<2, 3> {
+fn solid() -> Builder<2> {
     square().material(elastic())
 }
 
-fn refused(builder: Builder<2, 3>) -> (Place, Cause) {
+fn refused(builder: Builder<2>) -> (Place, Cause) {
     let InputError { place, cause } = builder.build().unwrap_err();
     (place, cause)
 }

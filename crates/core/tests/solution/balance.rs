@@ -4,13 +4,13 @@ use crate::solution::run::{Run, aluminium, fixed, gravity, run};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{Balance, critical_time_step};
 use percute_core::load::{Profile, Table, Traction};
-use percute_core::problem::{Builder, Initial, TriangleProblem};
+use percute_core::problem::{Builder, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::random_rectangle;
 
 /// A block that falls onto a rough plane, hits it askew and slides.
-fn falling_block() -> Builder<2, 3> {
-    TriangleProblem::builder(random_rectangle(0.05, 0.04, 6, 2).unwrap())
+fn falling_block() -> Builder<2> {
+    Problem::<2>::builder(random_rectangle(0.05, 0.04, 6, 2).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform([40.0, -30.0]))
         .obstacle(Obstacle::plane([0.0, -1e-5], [0.02, 1.0], 0.3, Some("bottom".to_string())).unwrap())
@@ -18,9 +18,9 @@ fn falling_block() -> Builder<2, 3> {
 }
 
 /// A block held on the left, pulled on the right.
-fn pulled_block() -> Builder<2, 3> {
+fn pulled_block() -> Builder<2> {
     let pull = Table::new(vec![0.0, 1e-5, 3e-5], vec![[1e7, 0.0], [3e7, -2e7], [-1e7, 1e7]]).unwrap();
-    TriangleProblem::builder(random_rectangle(0.05, 0.04, 6, 4).unwrap())
+    Problem::<2>::builder(random_rectangle(0.05, 0.04, 6, 4).unwrap())
         .material(aluminium())
         .support(fixed("left", [true, true]))
         .traction(Traction {
@@ -32,12 +32,12 @@ fn pulled_block() -> Builder<2, 3> {
 }
 
 /// Steps of 0.8 of the critical one.
-fn steps(problem: &TriangleProblem, count: usize) -> TimeGrid {
+fn steps(problem: &Problem<2>, count: usize) -> TimeGrid {
     TimeGrid::uniform(0.8 * critical_time_step(problem) * count as f64, count).unwrap()
 }
 
 /// Balance with `count` of 120 equal steps done.
-fn balance_after(problem: &TriangleProblem, times: &TimeGrid, count: usize) -> Balance {
+fn balance_after(problem: &Problem<2>, times: &TimeGrid, count: usize) -> Balance {
     let steps: Vec<f64> = (0..count).map(|n| times.step(n)).collect();
     run(problem, &TimeGrid::from_steps(&steps).unwrap()).simulation.balance
 }
@@ -151,7 +151,7 @@ fn the_energy_drift_falls_with_the_square_of_the_step() {
 #[test]
 fn friction_dissipates() {
     let problem = falling_block().build().unwrap();
-    let run: Run<'_, 2, 3> = run(&problem, &steps(&problem, 150));
+    let run: Run<'_, 2> = run(&problem, &steps(&problem, 150));
     let plane = &problem.obstacles()[0];
     let mut friction = 0.0;
     for n in 0..run.last() {

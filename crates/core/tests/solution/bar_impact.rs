@@ -4,7 +4,7 @@ use crate::solution::run::{Run, mean_rate, run};
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{BarProblem, Initial};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_exact::BarImpact;
 
@@ -13,8 +13,8 @@ fn bar(gap: f64) -> BarImpact {
     BarImpact { length: 0.1, young: 70e9, density: 2700.0, section: 0.02, speed: 400.0, gap }
 }
 
-fn problem(bar: &BarImpact, elements: usize) -> BarProblem {
-    BarProblem::builder(Mesh::uniform_bar(bar.length, elements).unwrap())
+fn problem(bar: &BarImpact, elements: usize) -> Problem<1> {
+    Problem::<1>::builder(Mesh::uniform_bar(bar.length, elements).unwrap())
         .material(Elastic::bar(bar.young, bar.density, bar.section).unwrap())
         .initial_velocity(Initial::Uniform([-bar.speed]))
         .obstacle(Obstacle::plane([-bar.gap], [1.0], 0.0, None).unwrap())
@@ -23,7 +23,7 @@ fn problem(bar: &BarImpact, elements: usize) -> BarProblem {
 }
 
 /// Contact force at t_n (N).
-fn force(run: &Run<'_, 1, 2>, n: usize) -> f64 {
+fn force(run: &Run<'_, 1>, n: usize) -> f64 {
     run.history.step(n).unwrap().reaction::<1>()[0][0]
 }
 
@@ -73,7 +73,7 @@ fn courant_one_is_exact_at_the_nodes() {
 }
 
 /// The mean velocity after the release, for the impulse of 2n_e − ½ steps.
-fn check_rebound(run: &Run<'_, 1, 2>, exact: &BarImpact, release: usize) {
+fn check_rebound(run: &Run<'_, 1>, exact: &BarImpact, release: usize) {
     let mass = exact.density * exact.section * exact.length;
     for n in release..run.last() {
         let velocity = run.momentum(n)[0] / mass;

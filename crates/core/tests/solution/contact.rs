@@ -7,7 +7,7 @@ use percute_core::history::History;
 use percute_core::load::{Support, Table};
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::{disc, random_rectangle, rotated};
 
@@ -19,10 +19,10 @@ const STILL: f64 = 1e-9;
 /// 200 m/s · 1 µs, as a start nearer than a quarter of that is refused.
 const GAP: f64 = 2.7e-4;
 
-fn thrown(mesh: Mesh, velocity: [f64; 2], friction: f64, group: Option<&str>) -> TriangleProblem {
+fn thrown(mesh: Mesh, velocity: [f64; 2], friction: f64, group: Option<&str>) -> Problem<2> {
     let lowest = mesh.points_in::<2>().iter().fold(f64::INFINITY, |m, p| m.min(p[1]));
     let plane = Obstacle::plane([0.0, lowest - GAP], [0.0, 1.0], friction, group.map(String::from)).unwrap();
-    TriangleProblem::builder(mesh)
+    Problem::<2>::builder(mesh)
         .material(aluminium())
         .initial_velocity(Initial::Uniform(velocity))
         .obstacle(plane)
@@ -30,18 +30,18 @@ fn thrown(mesh: Mesh, velocity: [f64; 2], friction: f64, group: Option<&str>) ->
         .unwrap()
 }
 
-fn steps(problem: &TriangleProblem, count: usize) -> TimeGrid {
+fn steps(problem: &Problem<2>, count: usize) -> TimeGrid {
     TimeGrid::uniform(0.9 * critical_time_step(problem) * count as f64, count).unwrap()
 }
 
 /// About as many steps that change all the time: h_n and Δt_n differ.
-fn swinging(problem: &TriangleProblem, count: usize) -> TimeGrid {
+fn swinging(problem: &Problem<2>, count: usize) -> TimeGrid {
     let critical = critical_time_step(problem);
     swinging_steps(critical, 0.7 * critical * count as f64, 6.0)
 }
 
 /// Checks the law on every node and step and returns the number of reactions.
-fn check_law(run: &Run<'_, 2, 3>, what: &str) -> usize {
+fn check_law(run: &Run<'_, 2>, what: &str) -> usize {
     let problem = run.problem;
     let plane = &problem.obstacles()[0];
     // The tolerance of the method, and rounding of a gap made of coordinates of the body's size.
@@ -106,7 +106,7 @@ fn two_planes_share_the_nodes_by_groups() {
         [("floor".to_string(), side("bottom", &|_| true)), ("wall".to_string(), side("left", &|p| p[1] > 0.0))];
     let mesh = Mesh::new(points.clone(), &cells, &groups.into(), &Default::default()).unwrap();
     let plane = |point, normal, group: &str| Obstacle::plane(point, normal, 0.1, Some(group.to_string())).unwrap();
-    let problem = TriangleProblem::builder(mesh)
+    let problem = Problem::<2>::builder(mesh)
         .material(aluminium())
         .initial_velocity(Initial::Uniform([-100.0, -100.0]))
         .obstacle(plane([0.0, -GAP], [0.0, 1.0], "floor"))
@@ -210,7 +210,7 @@ fn without_friction_a_tangential_velocity_only_carries_the_body_along() {
 #[test]
 fn a_body_at_rest_on_the_plane_touches_from_the_start() {
     for (pull, touches) in [(-1e4, true), (0.0, false), (1e4, false)] {
-        let problem = TriangleProblem::builder(random_rectangle(0.05, 0.04, 5, 2).unwrap())
+        let problem = Problem::<2>::builder(random_rectangle(0.05, 0.04, 5, 2).unwrap())
             .material(aluminium())
             .obstacle(Obstacle::plane([0.0, 0.0], [0.0, 1.0], 0.2, Some("bottom".to_string())).unwrap())
             .body_force(gravity(2700.0, [0.0, pull]))
@@ -230,7 +230,7 @@ fn a_block_may_start_sliding_on_a_slope() {
     let mut wrong = Vec::new();
     for angle in [0.0_f64, 0.3, 0.7, -1.1, 2.0, 2.9] {
         let (sin, cos) = angle.sin_cos();
-        let problem = TriangleProblem::builder(rotated(&random_rectangle(0.05, 0.04, 5, 2).unwrap(), angle).unwrap())
+        let problem = Problem::<2>::builder(rotated(&random_rectangle(0.05, 0.04, 5, 2).unwrap(), angle).unwrap())
             .material(aluminium())
             .initial_velocity(Initial::Uniform([30.0 * cos, 30.0 * sin]))
             .obstacle(Obstacle::plane([0.0, 0.0], [-sin, cos], 0.2, Some("bottom".to_string())).unwrap())
@@ -260,7 +260,7 @@ fn a_block_may_start_sliding_on_a_slope() {
 /// reaction, whatever its gap, and its neighbours do.
 #[test]
 fn held_nodes_get_no_reaction() {
-    let problem = TriangleProblem::builder(random_rectangle(0.05, 0.04, 6, 4).unwrap())
+    let problem = Problem::<2>::builder(random_rectangle(0.05, 0.04, 6, 4).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform([0.0, -100.0]))
         .support(Support {

@@ -8,7 +8,7 @@ use percute_core::dynamics::critical_time_step;
 use percute_core::history::StepSource;
 use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, Mesh};
-use percute_core::problem::{BarProblem, Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_exact::BarImpact;
 use percute_testkit::{disc, mirrored, random_rectangle, rotated};
@@ -19,7 +19,7 @@ const STILL: f64 = 1e-9;
 const GAP: f64 = 2.7e-4;
 
 /// The contact results of a run, with all nodes at all instants.
-fn results<const D: usize, const N: usize>(run: &Run<'_, D, N>) -> ContactResults {
+fn results<const D: usize>(run: &Run<'_, D>) -> ContactResults {
     ContactRecorder::new(run.problem, run.history.times()).keeping_steps().unwrap().replay(&run.history).unwrap()
 }
 
@@ -27,9 +27,9 @@ fn steps(results: &ContactResults) -> &ContactSteps {
     results.steps.as_ref().unwrap()
 }
 
-fn thrown(mesh: Mesh, velocity: [f64; 2], friction: f64) -> TriangleProblem {
+fn thrown(mesh: Mesh, velocity: [f64; 2], friction: f64) -> Problem<2> {
     let lowest = mesh.points_in::<2>().iter().fold(f64::INFINITY, |m, p| m.min(p[1]));
-    TriangleProblem::builder(mesh)
+    Problem::<2>::builder(mesh)
         .material(aluminium())
         .initial_velocity(Initial::Uniform(velocity))
         .obstacle(Obstacle::plane([0.0, lowest - GAP], [0.0, 1.0], friction, None).unwrap())
@@ -37,7 +37,7 @@ fn thrown(mesh: Mesh, velocity: [f64; 2], friction: f64) -> TriangleProblem {
         .unwrap()
 }
 
-fn equal_steps(problem: &TriangleProblem, count: usize) -> TimeGrid {
+fn equal_steps(problem: &Problem<2>, count: usize) -> TimeGrid {
     TimeGrid::uniform(0.9 * critical_time_step(problem) * count as f64, count).unwrap()
 }
 
@@ -49,7 +49,7 @@ fn the_exact_bar_is_pressed_by_rho_c_v_for_two_transits() {
     let mut exact = BarImpact { length: 0.1, young: 70e9, density: 2700.0, section: 0.02, speed: 400.0, gap: 0.0 };
     let (speed_of_waves, dt) = (exact.wave_speed(), exact.length / ELEMENTS as f64 / exact.wave_speed());
     exact.gap = 3.0 * dt * exact.speed;
-    let problem = BarProblem::builder(Mesh::uniform_bar(exact.length, ELEMENTS).unwrap())
+    let problem = Problem::<1>::builder(Mesh::uniform_bar(exact.length, ELEMENTS).unwrap())
         .material(Elastic::bar(exact.young, exact.density, exact.section).unwrap())
         .initial_velocity(Initial::Uniform([-exact.speed]))
         .obstacle(Obstacle::plane([-exact.gap], [1.0], 0.0, None).unwrap())
@@ -106,9 +106,9 @@ fn the_averaged_force_of_a_bar_is_rho_c_v_for_any_step() {
         let cells: Vec<_> = (1..points.len()).map(|i| [i - 1, i]).collect();
         let groups = [("start".to_string(), vec![[0]])].into();
         let mesh = Mesh::new(points.clone(), &cells, &groups, &ElementGroups::new()).unwrap();
-        let free = BarProblem::builder(mesh.clone()).material(law).build().unwrap();
+        let free = Problem::<1>::builder(mesh.clone()).material(law).build().unwrap();
         let dt = courant * critical_time_step(&free);
-        let problem = BarProblem::builder(mesh)
+        let problem = Problem::<1>::builder(mesh)
             .material(law)
             .initial_velocity(Initial::Uniform([-50.0]))
             .obstacle(Obstacle::plane([-2.3 * 50.0 * dt], [1.0], 0.0, None).unwrap())
@@ -158,7 +158,7 @@ fn the_impulse_is_the_change_of_momentum() {
 
 /// A node is in contact (not free) at t_n if and only if it touches at t_{n+1}. If it sticks it does not move along the
 /// plane until then; if it slips, R_n is on the cone and against the motion.
-fn check_status(run: &Run<'_, 2, 3>, what: &str) -> [usize; 3] {
+fn check_status(run: &Run<'_, 2>, what: &str) -> [usize; 3] {
     let (results, problem) = (results(run), run.problem);
     let (plane, steps, nodes) = (&problem.obstacles()[0], steps(&results), run.contact_nodes());
     let mut seen = [0; 3];
@@ -236,7 +236,7 @@ fn the_parts_add_up() {
     let material = Elastic::plane_stress(70e9, 0.3, 2700.0, 0.5).unwrap();
     // Its lower half flies at the floor, its upper one at the ceiling.
     let velocity = mesh.points_in::<2>().iter().map(|p| [30.0, 100.0 * (p[1] - 0.02) / 0.02]).collect();
-    let problem = TriangleProblem::builder(mesh)
+    let problem = Problem::<2>::builder(mesh)
         .material(material)
         .initial_velocity(Initial::Nodal(velocity))
         .obstacle(plane([0.0, -5e-5], [0.0, 1.0], "bottom"))
@@ -300,7 +300,7 @@ fn the_mirror_image_has_mirrored_results() {
 fn half_a_body_has_half_the_results() {
     let block = |width: f64, nx: usize| Mesh::rectangle(width, 0.03, nx, 6).unwrap();
     let builder = |mesh| {
-        TriangleProblem::builder(mesh)
+        Problem::<2>::builder(mesh)
             .material(aluminium())
             .initial_velocity(Initial::Uniform([0.0, -100.0]))
             .obstacle(Obstacle::plane([0.0, -3e-4], [0.0, 1.0], 0.3, Some("bottom".to_string())).unwrap())

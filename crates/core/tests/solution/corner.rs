@@ -4,7 +4,7 @@ use crate::solution::run::{Run, aluminium, difference, largest, run};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{Stiffness, critical_time_step};
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::rotated;
 
@@ -31,12 +31,12 @@ impl Corner {
         [cos * x - sin * y, sin * x + cos * y]
     }
 
-    fn problem(&self) -> TriangleProblem {
+    fn problem(&self) -> Problem<2> {
         self.at_distance(3e-4)
     }
 
     /// With this gap to the wall.
-    fn at_distance(&self, distance: f64) -> TriangleProblem {
+    fn at_distance(&self, distance: f64) -> Problem<2> {
         let (sin, cos) = self.opening.to_radians().sin_cos();
         let mesh = Mesh::rectangle(0.05, 0.04, 10, 8).unwrap();
         // At a right angle cos is 6e-17: the planes are exactly orthogonal only if it is 0.
@@ -49,21 +49,21 @@ impl Corner {
         let floor = plane([0.0, 1.0], if self.on_the_floor { 0.0 } else { 1e-4 }, self.friction[0], "bottom");
         let wall = plane([sin, -cos], distance, self.friction[1], "left");
         let planes = if self.wall_first { [wall, floor] } else { [floor, wall] };
-        let builder = TriangleProblem::builder(rotated(&mesh, self.turn).unwrap())
+        let builder = Problem::<2>::builder(rotated(&mesh, self.turn).unwrap())
             .material(aluminium())
             .initial_velocity(Initial::Uniform(self.turned(self.velocity)));
         planes.into_iter().fold(builder, |builder, plane| builder.obstacle(plane)).build().unwrap()
     }
 }
 
-fn steps(problem: &TriangleProblem, end: f64) -> TimeGrid {
+fn steps(problem: &Problem<2>, end: f64) -> TimeGrid {
     let count = (end / (0.9 * critical_time_step(problem))).ceil() as usize;
     TimeGrid::uniform(end, count).unwrap()
 }
 
 /// The laws at both planes, and the balances of momentum and energy. Returns the steps at which a node is pressed on
 /// both.
-fn check(run: &Run<'_, 2, 3>, what: &str) -> usize {
+fn check(run: &Run<'_, 2>, what: &str) -> usize {
     let (problem, surface) = (run.problem, run.problem.surface());
     let (depth, mut both) = (1e-12 * problem.mesh().size(), 0);
     let energy = |n: usize| {
@@ -142,7 +142,7 @@ fn a_far_wall_changes_nothing() {
     for turn in [0.0, 0.3] {
         let corner = Corner { turn, ..Corner::of(90.0, [-30.0, -200.0], [0.2, 0.3]) };
         let far = corner.at_distance(1.0);
-        let floor = TriangleProblem::builder(far.mesh().clone())
+        let floor = Problem::<2>::builder(far.mesh().clone())
             .material(aluminium())
             .initial_velocity(Initial::Uniform(corner.turned(corner.velocity)))
             .obstacle(far.obstacles()[0].clone())

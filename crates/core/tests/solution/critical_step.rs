@@ -6,12 +6,12 @@ use percute_core::dynamics::{Stiffness, critical_time_step, element_time_step};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
-use percute_core::problem::{BarProblem, Problem, TriangleProblem};
+use percute_core::problem::Problem;
 use percute_testkit::{disc, random_rectangle};
 use std::f64::consts::PI;
 
 /// 2/ω_max with ω_max from the dense matrix M^−½ K M^−½ on the free components.
-fn dense_time_step<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+fn dense_time_step<const D: usize>(problem: &Problem<D>) -> f64 {
     let count = D * problem.mesh().node_count();
     let stiffness = Stiffness::new(problem);
     let mut matrix = DMatrix::zeros(count, count);
@@ -35,7 +35,7 @@ fn dense_time_step<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f
 
 /// Lanczos against the dense solver to 1e-6, and the element-wise step never above either: a bound
 /// that holds exactly, up to rounding of 1e-12.
-fn check<const D: usize, const N: usize>(problem: &Problem<D, N>, what: &str) {
+fn check<const D: usize>(problem: &Problem<D>, what: &str) {
     let (critical, dense, element) =
         (critical_time_step(problem), dense_time_step(problem), element_time_step(problem));
     assert!((critical / dense - 1.0).abs() < 1e-6, "{what}: {critical} against {dense}");
@@ -55,7 +55,7 @@ fn uniform_bars_have_the_steps_of_their_modes() {
                 continue; // Nothing can move.
             }
             let mesh = Mesh::uniform_bar(0.1, elements).unwrap();
-            let mut builder = BarProblem::builder(mesh).material(Elastic::bar(70e9, 2700.0, 0.02).unwrap());
+            let mut builder = Problem::<1>::builder(mesh).material(Elastic::bar(70e9, 2700.0, 0.02).unwrap());
             for group in supports {
                 builder = builder.support(Support {
                     group: group.to_string(),
@@ -85,12 +85,12 @@ fn rectangles_and_discs_match_the_dense_solver() {
         ("slender", random_rectangle(5.0, 0.4, 24, 1).unwrap()),
     ];
     for (what, mesh) in meshes {
-        let free = TriangleProblem::builder(mesh).material(aluminium());
+        let free = Problem::<2>::builder(mesh).material(aluminium());
         check(&free.clone().build().unwrap(), what);
         check(&free.clone().support(fixed("left", [true, true])).build().unwrap(), what);
         check(&free.support(fixed("left", [true, false])).support(fixed("top", [false, true])).build().unwrap(), what);
     }
-    let round = TriangleProblem::builder(disc(0.02, 0.005).unwrap());
+    let round = Problem::<2>::builder(disc(0.02, 0.005).unwrap());
     check(&round.material(Elastic::plane_strain(70e9, 0.45, 2700.0, 0.1).unwrap()).build().unwrap(), "disc");
 }
 
@@ -102,7 +102,7 @@ fn mixed_materials_match_the_dense_solver() {
     let groups =
         ElementGroups::from([("soft".to_string(), (0..20).collect()), ("hard".to_string(), (20..50).collect())]);
     let mesh = Mesh::new(base.points_in::<2>().to_vec(), &cells, &FaceGroups::new(), &groups).unwrap();
-    let problem = TriangleProblem::builder(mesh)
+    let problem = Problem::<2>::builder(mesh)
         .material_of("soft", Elastic::plane_stress(3e9, 0.4, 1200.0, 1.0).unwrap())
         .material_of("hard", Elastic::plane_stress(400e9, 0.2, 3900.0, 1.0).unwrap())
         .build()

@@ -7,17 +7,17 @@ use percute_core::history::{Discard, History, SinkError, State, StateSink};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::{Progress, Unobserved};
-use percute_core::problem::{BarProblem, Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::{Random, random_rectangle};
 use std::ops::ControlFlow;
 
 /// A free block with velocities at random, so that every mode has its share.
-fn shaken_block() -> TriangleProblem {
+fn shaken_block() -> Problem<2> {
     let mesh = random_rectangle(0.05, 0.04, 6, 8).unwrap();
     let mut random = Random::new(1);
     let velocity = (0..mesh.node_count()).map(|_| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)]).collect();
-    TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity)).build().unwrap()
+    Problem::<2>::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity)).build().unwrap()
 }
 
 /// Above the critical step the run ends with an error that names a node, and no step that was
@@ -44,8 +44,8 @@ fn runs_above_the_critical_step_are_unstable() {
     }
 }
 
-fn near_bar(gap: f64) -> BarProblem {
-    BarProblem::builder(Mesh::uniform_bar(0.1, 10).unwrap())
+fn near_bar(gap: f64) -> Problem<1> {
+    Problem::<1>::builder(Mesh::uniform_bar(0.1, 10).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-400.0]))
         .obstacle(Obstacle::plane([-gap], [1.0], 0.0, None).unwrap())
@@ -83,7 +83,7 @@ fn a_start_too_near_names_what_will_do() {
 fn a_plane_is_placed_by_its_gap() {
     for gap in [0.0, 1e-6, 0.25] {
         let stated = |plane| {
-            BarProblem::builder(Mesh::uniform_bar(0.1, 10).unwrap())
+            Problem::<1>::builder(Mesh::uniform_bar(0.1, 10).unwrap())
                 .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
                 .initial_displacement(Initial::Uniform([0.5]))
                 .obstacle(plane)
@@ -113,7 +113,7 @@ fn a_plane_that_is_struck_at_once_is_moved_by_the_least_gap() {
         let mut velocity = |_| std::array::from_fn(|c| -10.0 * normal[c] + random.between(-2.0, 2.0));
         let velocity: Vec<[f64; 2]> = (0..mesh.node_count()).map(&mut velocity).collect();
         let stated = |plane: Obstacle<2>| {
-            TriangleProblem::builder(mesh.clone())
+            Problem::<2>::builder(mesh.clone())
                 .material(aluminium())
                 .initial_velocity(Initial::Nodal(velocity.clone()))
                 .obstacle(plane)
@@ -143,7 +143,7 @@ fn a_plane_that_is_struck_at_once_is_moved_by_the_least_gap() {
 #[test]
 fn a_plane_that_is_not_struck_stays() {
     for speed in [0.0, 3.0] {
-        let bar = BarProblem::builder(Mesh::uniform_bar(0.1, 10).unwrap())
+        let bar = Problem::<1>::builder(Mesh::uniform_bar(0.1, 10).unwrap())
             .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
             .initial_velocity(Initial::Uniform([speed]))
             .obstacle(Obstacle::plane([0.0], [1.0], 0.0, None).unwrap());

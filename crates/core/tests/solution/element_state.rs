@@ -8,7 +8,7 @@ use percute_core::ids::ElementId;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::random_rectangle;
 
@@ -25,7 +25,7 @@ fn linear(mesh: &Mesh) -> Vec<[f64; 2]> {
     mesh.points_in::<2>().iter().map(moved).collect()
 }
 
-fn elements<const D: usize, const N: usize>(problem: &Problem<D, N>) -> impl Iterator<Item = ElementId> {
+fn elements<const D: usize>(problem: &Problem<D>) -> impl Iterator<Item = ElementId> {
     (0..problem.mesh().element_count()).map(ElementId::new)
 }
 
@@ -55,7 +55,7 @@ fn a_linear_field_has_the_stress_of_three_dimensions() {
     let (young, poisson) = (70e9, 0.3);
     let laws = [Elastic::plane_stress(young, poisson, 2700.0, 0.5), Elastic::plane_strain(young, poisson, 2700.0, 0.5)];
     for (law, strain) in laws.into_iter().zip([false, true]) {
-        let problem = TriangleProblem::builder(mesh.clone()).material(law.unwrap()).build().unwrap();
+        let problem = Problem::<2>::builder(mesh.clone()).material(law.unwrap()).build().unwrap();
         let expected = in_space(young, poisson, strain);
         let (von_mises, pressure) = invariants(&expected);
         let tolerance = ROUNDING * von_mises;
@@ -80,7 +80,7 @@ fn a_linear_field_has_the_stress_of_three_dimensions() {
 
 #[test]
 fn a_bar_has_stress_along_it_alone() {
-    let problem = BarProblem::builder(Mesh::uniform_bar(0.3, 3).unwrap());
+    let problem = Problem::<1>::builder(Mesh::uniform_bar(0.3, 3).unwrap());
     let problem = problem.material(Elastic::bar(2e11, 7800.0, 1e-4).unwrap()).build().unwrap();
     let displacement: Vec<f64> = problem.mesh().points_in::<1>().iter().map(|p| -1e-3 * p[0]).collect();
     for element in elements(&problem) {
@@ -117,7 +117,7 @@ fn energies_of_the_elements_sum_to_those_of_the_balance() {
     let edges = [("bottom".to_string(), bottom)].into();
     let groups = [("soft".to_string(), half), ("hard".to_string(), other)].into();
     let mesh = Mesh::new(mesh.points_in::<2>().to_vec(), &cells, &edges, &groups).unwrap();
-    let problem = TriangleProblem::builder(mesh)
+    let problem = Problem::<2>::builder(mesh)
         .material_of("soft", Elastic::plane_strain(3e9, 0.4, 1200.0, 0.1).unwrap())
         .material_of("hard", Elastic::plane_strain(70e9, 0.3, 2700.0, 0.1).unwrap())
         .initial_velocity(Initial::Uniform([40.0, -30.0]))

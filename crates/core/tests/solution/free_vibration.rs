@@ -5,7 +5,7 @@ use percute_core::dynamics::critical_time_step;
 use percute_core::load::Support;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{BarProblem, Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_exact::{BarEnds, BarMode, BlockMode, Wave};
 use percute_testkit::random_rectangle;
@@ -25,12 +25,12 @@ fn bar_mode(phase: f64) -> BarMode {
     }
 }
 
-fn bar_problem(mode: &BarMode, elements: usize) -> BarProblem {
+fn bar_problem(mode: &BarMode, elements: usize) -> Problem<1> {
     let mesh = Mesh::uniform_bar(mode.length, elements).unwrap();
     let at = |f: &dyn Fn(f64) -> f64| Initial::Nodal(mesh.points_in::<1>().iter().map(|x| [f(x[0])]).collect());
     // The fixed end is at rest in exact arithmetic and here, since sin 0 = 0.
     let (displacement, velocity) = (at(&|x| mode.displacement(x, 0.0)), at(&|x| mode.velocity(x, 0.0)));
-    BarProblem::builder(mesh)
+    Problem::<1>::builder(mesh)
         .material(Elastic::bar(mode.young, mode.density, mode.section).unwrap())
         .initial_displacement(displacement)
         .initial_velocity(velocity)
@@ -106,7 +106,7 @@ fn block_mode(wave: Wave, numbers: [u32; 2], phase: f64) -> BlockMode {
     }
 }
 
-fn block_problem(mode: &BlockMode, mesh: Mesh) -> TriangleProblem {
+fn block_problem(mode: &BlockMode, mesh: Mesh) -> Problem<2> {
     let material = Elastic::plane_stress(70e9, 0.3, mode.density, mode.thickness).unwrap();
     let mut fields = [vec![], vec![]];
     for &point in mesh.points_in::<2>() {

@@ -7,7 +7,7 @@
 use crate::solution::run::{aluminium, fixed, gravity, largest, run};
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
-use percute_core::problem::{Builder, Initial, TriangleProblem};
+use percute_core::problem::{Builder, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::random_rectangle;
 
@@ -16,11 +16,11 @@ fn late(value: [f64; 2]) -> Table {
     Table::new(vec![0.0, 5e-6, 1e-5], vec![[0.0; 2], [0.0; 2], value]).unwrap()
 }
 
-fn block() -> Builder<2, 3> {
-    TriangleProblem::builder(random_rectangle(0.05, 0.04, 5, 0).unwrap()).material(aluminium())
+fn block() -> Builder<2> {
+    Problem::<2>::builder(random_rectangle(0.05, 0.04, 5, 0).unwrap()).material(aluminium())
 }
 
-fn moves(problem: &TriangleProblem) -> bool {
+fn moves(problem: &Problem<2>) -> bool {
     let run = run(problem, &TimeGrid::with_step(6e-5, 0.8 * critical_time_step(problem)).unwrap());
     largest(run.displacement(run.last())) > 0.0
 }
@@ -53,7 +53,7 @@ fn a_support_that_starts_late_is_no_instability() {
 fn a_body_turned_at_rest_stays_at_rest() {
     let mesh = random_rectangle(0.05, 0.04, 6, 1).unwrap();
     let turned: Vec<_> = mesh.points_in::<2>().iter().map(|p| [-1e-3 * p[1], 1e-3 * p[0]]).collect();
-    let builder = TriangleProblem::builder(mesh).material(aluminium());
+    let builder = Problem::<2>::builder(mesh).material(aluminium());
     let problem = builder.initial_displacement(Initial::Nodal(turned.clone())).build().unwrap();
     let run = run(&problem, &TimeGrid::uniform(500.0 * 0.9 * critical_time_step(&problem), 500).unwrap());
     // Rounding of displacements of 5e-5 m that vibrations carry on.

@@ -5,7 +5,7 @@ use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{Profile, Table, Traction};
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::strategy::{angle, rectangle};
 use percute_testkit::{mirrored, renumbered, rotated, translated};
@@ -26,7 +26,7 @@ struct Throw {
 
 impl Throw {
     fn new(mesh: &Mesh, along: f64, speed: f64, friction: f64) -> Self {
-        let free = TriangleProblem::builder(mesh.clone()).material(aluminium()).build().unwrap();
+        let free = Problem::<2>::builder(mesh.clone()).material(aluminium()).build().unwrap();
         let step = 0.85 * critical_time_step(&free);
         let times = TimeGrid::uniform(60.0 * step, 60).unwrap();
         Self { velocity: [along, -speed], friction, gap: 2.4 * speed * step, times }
@@ -34,11 +34,11 @@ impl Throw {
 
     /// The block above the rough plane and pulled on top, after `map` has moved all vectors and
     /// the plane's point; the bottom may touch.
-    fn problem(&self, mesh: Mesh, map: impl Fn([f64; 2]) -> [f64; 2]) -> TriangleProblem {
+    fn problem(&self, mesh: Mesh, map: impl Fn([f64; 2]) -> [f64; 2]) -> Problem<2> {
         let end = self.times.end();
         let pull = Table::new(vec![0.0, end], vec![map([2e8, 3e8]), map([-2e8, 1e8])]).unwrap();
         let bottom = Some("bottom".to_string());
-        TriangleProblem::builder(mesh)
+        Problem::<2>::builder(mesh)
             .material(aluminium())
             .initial_velocity(Initial::Uniform(map(self.velocity)))
             .obstacle(Obstacle::plane(map([0.0, -self.gap]), map([0.0, 1.0]), self.friction, bottom).unwrap())
@@ -48,15 +48,15 @@ impl Throw {
     }
 }
 
-fn reactions(run: &Run<'_, 2, 3>) -> usize {
+fn reactions(run: &Run<'_, 2>) -> usize {
     (0..=run.last()).map(|n| run.history.step(n).unwrap().reaction().iter().filter(|r| **r != [0.0; 2]).count()).sum()
 }
 
 /// Compares two runs at all steps: `map` of the first against the second, whose node of number i is
 /// `number[i]`. 1e-9 of the largest displacement: rounding that 60 steps carry on, with some to spare.
 fn same(
-    first: &Run<'_, 2, 3>,
-    second: &Run<'_, 2, 3>,
+    first: &Run<'_, 2>,
+    second: &Run<'_, 2>,
     map: impl Fn([f64; 2]) -> [f64; 2],
     number: impl Fn(usize) -> usize,
 ) -> Result<(), TestCaseError> {
@@ -120,7 +120,7 @@ proptest! {
         let throw = Throw::new(&mesh, 60.0, 90.0, friction);
         let thrown = |factor: f64| {
             let bottom = Some("bottom".to_string());
-            TriangleProblem::builder(mesh.clone())
+            Problem::<2>::builder(mesh.clone())
                 .material(aluminium())
                 .initial_velocity(Initial::Uniform(throw.velocity.map(|v| factor * v)))
                 .obstacle(Obstacle::plane([0.0, -throw.gap * factor], [0.0, 1.0], friction, bottom).unwrap())
@@ -139,7 +139,7 @@ proptest! {
     fn the_origin_does_not_matter(mesh in rectangle(5), x in -30.0..30.0, y in -30.0..30.0) {
         let pulled = |mesh: Mesh| {
             let value = Table::new(vec![0.0, 1e-4], vec![[2e8, 3e8], [-2e8, 1e8]]).unwrap();
-            TriangleProblem::builder(mesh)
+            Problem::<2>::builder(mesh)
                 .material(aluminium())
                 .support(fixed("left", [true, false]))
                 .traction(Traction { group: "right".to_string(), value, profile: Profile::UNIFORM })

@@ -5,7 +5,7 @@ use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Profile, Table, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{BarProblem, Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::{disc, random_rectangle};
 
@@ -13,7 +13,7 @@ use percute_testkit::{disc, random_rectangle};
 #[test]
 fn free_flight_under_gravity_is_exact() {
     let (v0, g) = ([3.0, 20.0], [50.0, -9.81e4]);
-    let problem = TriangleProblem::builder(disc(0.02, 0.004).unwrap())
+    let problem = Problem::<2>::builder(disc(0.02, 0.004).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform(v0))
         .body_force(gravity(2700.0, g))
@@ -45,7 +45,7 @@ fn a_uniform_traction_is_in_equilibrium_with_its_stress() {
         value: Table::constant(value),
         profile: Profile::UNIFORM,
     };
-    let problem = TriangleProblem::builder(mesh)
+    let problem = Problem::<2>::builder(mesh)
         .material(aluminium())
         .initial_displacement(Initial::Nodal(u0.clone()))
         .support(fixed("left", [true, false]))
@@ -66,7 +66,7 @@ fn a_uniform_traction_is_in_equilibrium_with_its_stress() {
 fn nodal_forces_keep_resultant_and_moment() {
     // On x = 2, y from 0 to 1: F(y) = (3, −1)(1 + 4y), so ∫F = (9, −3), ∫yF_x = 3(½ + 4/3) = 5.5.
     let mesh = random_rectangle(2.0, 1.0, 7, 3).unwrap();
-    let problem = TriangleProblem::builder(mesh)
+    let problem = Problem::<2>::builder(mesh)
         .material(Elastic::plane_strain(1.0, 0.2, 1.0, 0.5).unwrap())
         .traction(Traction {
             group: "right".to_string(),
@@ -97,7 +97,7 @@ fn nodal_forces_keep_resultant_and_moment() {
 fn a_stepped_load_runs_in_as_a_wave() {
     let (young, density, section, pressure) = (70e9_f64, 2700.0_f64, 0.02, 1e8);
     let c = (young / density).sqrt();
-    let problem = BarProblem::builder(Mesh::uniform_bar(0.1, 50).unwrap())
+    let problem = Problem::<1>::builder(Mesh::uniform_bar(0.1, 50).unwrap())
         .material(Elastic::bar(young, density, section).unwrap())
         .traction(Traction {
             group: "start".to_string(),

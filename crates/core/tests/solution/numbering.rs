@@ -8,7 +8,7 @@ use percute_core::ids::{ElementId, NodeId};
 use percute_core::load::{BodyForce, Profile, Table, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::{Mesh, Numbering};
-use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::{Random, random_rectangle, renumbered};
 
@@ -42,7 +42,7 @@ fn assert_same(one: &Mesh, other: &Mesh) {
 }
 
 /// A rectangle of two materials above a rough plane, held at the left, loaded on top and inside.
-fn loaded() -> TriangleProblem {
+fn loaded() -> Problem<2> {
     let mesh = random_rectangle(1.0, 0.7, 8, 5).unwrap();
     let cells: Vec<_> = mesh.nodes_of::<3>().iter().map(|cell| cell.map(NodeId::index)).collect();
     let face = |f: &percute_core::ids::FaceId| mesh.face_nodes::<2>(*f).map(NodeId::index);
@@ -54,7 +54,7 @@ fn loaded() -> TriangleProblem {
     let profile = Profile { value: 0.3, gradient: [1.0, 0.0, 0.0] };
     let body = BodyForce { group: Some("low".to_string()), value: Table::constant([1e7, -3e7]) };
     let nodes: Vec<_> = mesh.points_in::<2>().iter().map(|p| [0.0, -50.0 * p[0]]).collect();
-    TriangleProblem::builder(mesh)
+    Problem::<2>::builder(mesh)
         .material_of("low", aluminium())
         .material_of("high", Elastic::plane_strain(210e9, 0.25, 7800.0, 1.0).unwrap())
         .initial_velocity(Initial::Nodal(nodes))
@@ -67,7 +67,7 @@ fn loaded() -> TriangleProblem {
 }
 
 /// Steps of 0.85 of the critical one.
-fn steps<const D: usize, const N: usize>(problem: &Problem<D, N>, count: usize) -> TimeGrid {
+fn steps<const D: usize>(problem: &Problem<D>, count: usize) -> TimeGrid {
     TimeGrid::uniform(0.85 * critical_time_step(problem) * count as f64, count).unwrap()
 }
 
@@ -76,7 +76,7 @@ fn a_renumbered_mesh_is_that_of_its_parts() {
     let problem = loaded();
     let image = problem.renumbered(&shuffle(problem.mesh(), 3));
     assert_same(image.mesh(), &rebuilt(image.mesh()));
-    let problem = BarProblem::builder(Mesh::uniform_bar(1.0, 9).unwrap())
+    let problem = Problem::<1>::builder(Mesh::uniform_bar(1.0, 9).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .build()
         .unwrap();
@@ -89,7 +89,7 @@ fn what_was_stated_follows_the_numbers() {
     let problem = loaded();
     let numbering = shuffle(problem.mesh(), 7);
     let image = problem.renumbered(&numbering);
-    let contact = |p: &TriangleProblem, old: &dyn Fn(NodeId) -> NodeId| -> Vec<_> {
+    let contact = |p: &Problem<2>, old: &dyn Fn(NodeId) -> NodeId| -> Vec<_> {
         p.surface().nodes().iter().map(|c| (old(c.node), c.undeformed_gap)).collect()
     };
     let old = |node: NodeId| numbering.nodes()[node.index()];
@@ -181,7 +181,7 @@ fn a_local_order_is_kept() {
 fn a_shuffled_mesh_becomes_local() {
     let mesh = Mesh::rectangle(1.0, 1.0, 40, 40).unwrap();
     let (mesh, _) = renumbered(&mesh, 2).unwrap();
-    let problem = TriangleProblem::builder(mesh).material(aluminium()).build().unwrap();
+    let problem = Problem::<2>::builder(mesh).material(aluminium()).build().unwrap();
     let numbering = problem.mesh().local_numbering().unwrap();
     let mut nodes = numbering.nodes().to_vec();
     nodes.sort_unstable();

@@ -5,7 +5,7 @@ use percute_core::contact::{Interface, Obstacle};
 use percute_core::dynamics::critical_time_step;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{BarProblem, Cause, Initial, TriangleProblem};
+use percute_core::problem::{Cause, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::{translated, upside_down};
 
@@ -17,13 +17,13 @@ fn block() -> Mesh {
 }
 
 /// The block above its mirror image, 2 GAP apart, with one velocity (m/s) for each.
-fn blocks(velocities: [[f64; 2]; 2], friction: f64, materials: [Elastic; 2]) -> TriangleProblem {
+fn blocks(velocities: [[f64; 2]; 2], friction: f64, materials: [Elastic; 2]) -> Problem<2> {
     let upper = translated(&block(), [0.0, GAP]).unwrap();
     let lower = translated(&upside_down(&block()).unwrap(), [0.0, -GAP]).unwrap();
     let mesh = Mesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap();
     let half = upper.node_count();
     let velocity = (0..mesh.node_count()).map(|i| velocities[usize::from(i >= half)]).collect();
-    TriangleProblem::builder(mesh)
+    Problem::<2>::builder(mesh)
         .material_of("upper", materials[0])
         .material_of("lower", materials[1])
         .initial_velocity(Initial::Nodal(velocity))
@@ -36,7 +36,7 @@ fn steel() -> Elastic {
     Elastic::plane_stress(210e9, 0.3, 7800.0, 1.0).unwrap()
 }
 
-fn steps(problem: &TriangleProblem, fraction: f64, end: f64) -> TimeGrid {
+fn steps(problem: &Problem<2>, fraction: f64, end: f64) -> TimeGrid {
     let count = (end / (fraction * critical_time_step(problem))).ceil() as usize;
     TimeGrid::uniform(end, count).unwrap()
 }
@@ -45,7 +45,7 @@ fn steps(problem: &TriangleProblem, fraction: f64, end: f64) -> TimeGrid {
 #[test]
 fn the_plane_of_symmetry_is_rigid() {
     let both = blocks([[3.0, -20.0], [3.0, 20.0]], 0.2, [aluminium(); 2]);
-    let one = TriangleProblem::builder(translated(&block(), [0.0, GAP]).unwrap())
+    let one = Problem::<2>::builder(translated(&block(), [0.0, GAP]).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform([3.0, -20.0]))
         .obstacle(Obstacle::plane([0.0, 0.0], [0.0, 1.0], 0.0, None).unwrap())
@@ -67,7 +67,7 @@ fn the_plane_of_symmetry_is_rigid() {
 }
 
 /// Momentum of both bodies together and, with friction, what the law says of each pair; contact gives no energy.
-fn check(run: &Run<'_, 2, 3>) {
+fn check(run: &Run<'_, 2>) {
     let surface = run.problem.surface();
     let start = run.momentum(0);
     let scale: f64 = run.problem.mass().iter().sum::<f64>() * 30.0;
@@ -143,7 +143,7 @@ fn equal_bars_exchange_their_velocities() {
         let (left, right) = (bar(-0.3), bar(1e-4));
         let mesh = Mesh::joined(&[("left", &left), ("right", &right)]).unwrap();
         let velocity = (0..mesh.node_count()).map(|i| [if i <= count { 10.0 } else { 0.0 }]).collect();
-        let problem = BarProblem::builder(mesh)
+        let problem = Problem::<1>::builder(mesh)
             .material(Elastic::bar(70e9, 2700.0, 1e-4).unwrap())
             .initial_velocity(Initial::Nodal(velocity))
             .interface(Interface::matching(1, "left.end", "right.start", 0.0).unwrap())
@@ -172,7 +172,7 @@ fn wrong_interfaces_are_refused() {
         let lower = upside_down(&Mesh::rectangle(0.04, 0.025, nx, 6).unwrap()).unwrap();
         let lower = translated(&lower, [shift[0], -GAP + shift[1]]).unwrap();
         let mesh = Mesh::joined(&[("upper", &block()), ("lower", &lower)]).unwrap();
-        let problem = TriangleProblem::builder(mesh)
+        let problem = Problem::<2>::builder(mesh)
             .material(aluminium())
             .interface(Interface::matching(2, first, second, 0.2).unwrap())
             .build();

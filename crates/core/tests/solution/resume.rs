@@ -7,7 +7,7 @@ use percute_core::history::{Checkpoint, History, SinkError, State, StateSink};
 use percute_core::load::{BodyForce, Support, Table};
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 
 /// Steps of the runs below.
@@ -32,7 +32,7 @@ impl StateSink for Kept {
     }
 }
 
-fn goes_on_from_every_step<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) {
+fn goes_on_from_every_step<const D: usize>(problem: &Problem<D>, times: &TimeGrid) {
     let mut whole = Kept::default();
     let all: Simulation = simulate(problem, times, &mut whole, &mut Unobserved).unwrap();
     assert!(whole.steps.iter().any(|(_, _, reaction, _)| reaction.iter().any(|r| *r != 0.0)), "no contact");
@@ -51,7 +51,7 @@ fn goes_on_from_every_step<const D: usize, const N: usize>(problem: &Problem<D, 
 fn a_block_goes_on_from_every_step() {
     let mesh = Mesh::rectangle(0.03, 0.02, 6, 4).unwrap();
     let step = 4e-7;
-    let problem = TriangleProblem::builder(mesh)
+    let problem = Problem::<2>::builder(mesh)
         .material(aluminium())
         .initial_velocity(Initial::Uniform([60.0, -400.0]))
         .support(Support {
@@ -70,7 +70,7 @@ fn a_block_goes_on_from_every_step() {
 #[test]
 fn a_bar_goes_on_from_every_step() {
     let step = 1.6e-6;
-    let problem = BarProblem::builder(Mesh::uniform_bar(0.1, 10).unwrap())
+    let problem = Problem::<1>::builder(Mesh::uniform_bar(0.1, 10).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform([-5.0]))
         .obstacle(Obstacle::plane([-5.0 * 6.4 * step], [1.0], 0.0, None).unwrap())
@@ -89,7 +89,7 @@ fn a_replayed_step_is_no_checkpoint() {
             Ok(())
         }
     }
-    let problem = BarProblem::builder(Mesh::uniform_bar(0.1, 4).unwrap()).material(aluminium()).build().unwrap();
+    let problem = Problem::<1>::builder(Mesh::uniform_bar(0.1, 4).unwrap()).material(aluminium()).build().unwrap();
     let times = TimeGrid::uniform(1e-5, 10).unwrap();
     let mut history = History::new(&times);
     simulate(&problem, &times, &mut history, &mut Unobserved).unwrap();

@@ -7,26 +7,26 @@ use percute_core::load::{BodyForce, Support, Table};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{Problem, TriangleProblem};
+use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::f64::consts::TAU;
 
 /// A run and all its steps.
-pub(crate) struct Run<'p, const D: usize, const N: usize> {
-    pub(crate) problem: &'p Problem<D, N>,
+pub(crate) struct Run<'p, const D: usize> {
+    pub(crate) problem: &'p Problem<D>,
     pub(crate) history: History,
     pub(crate) simulation: Simulation,
 }
 
 /// Runs a problem that must not fail.
-pub(crate) fn run<'p, const D: usize, const N: usize>(problem: &'p Problem<D, N>, times: &TimeGrid) -> Run<'p, D, N> {
+pub(crate) fn run<'p, const D: usize>(problem: &'p Problem<D>, times: &TimeGrid) -> Run<'p, D> {
     let mut history = History::new(times);
     let simulation = simulate(problem, times, &mut history, &mut Unobserved).unwrap();
     assert_eq!((history.len(), simulation.steps), (times.step_count() + 1, times.step_count()));
     Run { problem, history, simulation }
 }
 
-impl<const D: usize, const N: usize> Run<'_, D, N> {
+impl<const D: usize> Run<'_, D> {
     /// N.
     pub(crate) fn last(&self) -> usize {
         self.history.len() - 1
@@ -120,8 +120,8 @@ pub(crate) fn gravity<const D: usize>(density: f64, g: [f64; D]) -> BodyForce {
 }
 
 /// Rollers on all four sides of a rectangle.
-pub(crate) fn on_rollers(mesh: Mesh, material: Elastic) -> percute_core::problem::Builder<2, 3> {
-    TriangleProblem::builder(mesh)
+pub(crate) fn on_rollers(mesh: Mesh, material: Elastic) -> percute_core::problem::Builder<2> {
+    Problem::<2>::builder(mesh)
         .material(material)
         .support(fixed("left", [true, false]))
         .support(fixed("right", [true, false]))

@@ -3,13 +3,13 @@
 use crate::solution::run::{aluminium, fixed, nodes_of, run};
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{Support, Table};
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::{Random, random_rectangle};
 
 /// A block driven on the left by a table, on rollers at the bottom.
-fn driven(table: &Table) -> TriangleProblem {
-    TriangleProblem::builder(random_rectangle(0.05, 0.04, 6, 1).unwrap())
+fn driven(table: &Table) -> Problem<2> {
+    Problem::<2>::builder(random_rectangle(0.05, 0.04, 6, 1).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform([table.at(0.0)[0], 0.0]))
         .support(Support { group: "left".to_string(), components: [true, false, false], velocity: Some(table.clone()) })
@@ -92,7 +92,7 @@ fn a_uniform_motion_of_the_support_is_a_translation() {
 /// Rollers hold one component and leave the other: a block on rollers slides along them for ever.
 #[test]
 fn rollers_let_slide() {
-    let problem = TriangleProblem::builder(random_rectangle(0.05, 0.04, 6, 1).unwrap())
+    let problem = Problem::<2>::builder(random_rectangle(0.05, 0.04, 6, 1).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform([30.0, 0.0]))
         .support(fixed("bottom", [false, true]))

@@ -6,7 +6,7 @@ use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::Support;
 use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::random_rectangle;
 
@@ -30,8 +30,8 @@ fn doubled(half: &Mesh) -> Mesh {
     Mesh::new(points, &cells, &FaceGroups::new(), &ElementGroups::new()).unwrap()
 }
 
-fn dropped(mesh: Mesh, guide: bool) -> TriangleProblem {
-    let builder = TriangleProblem::builder(mesh)
+fn dropped(mesh: Mesh, guide: bool) -> Problem<2> {
+    let builder = Problem::<2>::builder(mesh)
         .material(aluminium())
         .initial_velocity(Initial::Uniform([0.0, -100.0]))
         .obstacle(Obstacle::plane([0.0, -3e-4], [0.0, 1.0], 0.3, None).unwrap());
@@ -64,7 +64,7 @@ fn half_a_body_moves_as_the_whole() {
 fn a_node_held_along_the_normal_is_no_candidate() {
     let mesh = random_rectangle(0.02, 0.03, 6, 11).unwrap();
     let held = Support { group: "left".to_string(), components: [true, true, false], velocity: None };
-    let problem = TriangleProblem::builder(mesh)
+    let problem = Problem::<2>::builder(mesh)
         .material(aluminium())
         .support(held)
         .obstacle(Obstacle::plane([0.0, -3e-4], [0.0, 1.0], 0.3, None).unwrap())

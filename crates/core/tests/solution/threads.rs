@@ -8,18 +8,18 @@ use percute_core::history::History;
 use percute_core::load::{BodyForce, Support, Table};
 use percute_core::mesh::{Mesh, Strips};
 use percute_core::observer::{Progress, Unobserved};
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use std::ops::ControlFlow;
 
 /// A block of 22 000 elements that strikes a plane with friction, held at its left and pulled down: every kind of
 /// force.
-fn block() -> (TriangleProblem, TimeGrid) {
+fn block() -> (Problem<2>, TimeGrid) {
     let mesh = Mesh::rectangle(0.05, 0.04, 110, 100).unwrap();
-    assert!(Strips::new(mesh.nodes_of::<3>()).count() > 8);
+    assert!(Strips::new(&mesh).count() > 8);
     // Some 0.9 of the critical step of legs of 0.4 mm; the plane is met in the second one.
     let step = 5e-8;
-    let problem = TriangleProblem::builder(mesh)
+    let problem = Problem::<2>::builder(mesh)
         .material(aluminium())
         .initial_velocity(Initial::Uniform([0.0, -400.0]))
         .support(Support { group: "left".into(), components: [true, false, false], velocity: None })

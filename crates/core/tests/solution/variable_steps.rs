@@ -8,7 +8,7 @@ use percute_core::load::{BodyForce, Table};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{BarProblem, Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_exact::{BarImpact, BlockMode, Wave};
 use percute_testkit::{Random, random_rectangle};
@@ -30,7 +30,7 @@ fn random_steps(critical: f64, end: f64, seed: u64) -> TimeGrid {
 #[test]
 fn free_flight_is_exact() {
     let (v0, g) = ([-7.0, 15.0], [2e4, -8e4]);
-    let problem = TriangleProblem::builder(random_rectangle(0.05, 0.04, 6, 3).unwrap())
+    let problem = Problem::<2>::builder(random_rectangle(0.05, 0.04, 6, 3).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform(v0))
         .body_force(BodyForce { group: None, value: Table::constant(g.map(|g| 2700.0 * g)) })
@@ -85,7 +85,7 @@ fn a_standing_wave_converges() {
 #[test]
 fn a_bar_stays_on_the_plane_and_rebounds() {
     let exact = BarImpact { length: 0.1, young: 70e9, density: 2700.0, section: 0.02, speed: 400.0, gap: 1e-4 };
-    let problem = BarProblem::builder(Mesh::uniform_bar(0.1, 200).unwrap())
+    let problem = Problem::<1>::builder(Mesh::uniform_bar(0.1, 200).unwrap())
         .material(Elastic::bar(exact.young, exact.density, exact.section).unwrap())
         .initial_velocity(Initial::Uniform([-exact.speed]))
         .obstacle(Obstacle::plane([-exact.gap], [1.0], 0.0, None).unwrap())
@@ -116,7 +116,7 @@ fn a_bar_stays_on_the_plane_and_rebounds() {
 /// 1993): the run ends with the error, and steps of the same lengths that change smoothly go through.
 #[test]
 fn jumping_steps_can_be_unstable_below_the_critical_step() {
-    let problem = BarProblem::builder(Mesh::uniform_bar(0.1, 100).unwrap())
+    let problem = Problem::<1>::builder(Mesh::uniform_bar(0.1, 100).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Nodal((0..=100).map(|i| [f64::from(i % 7) - 3.0]).collect()))
         .build()
@@ -133,7 +133,7 @@ fn jumping_steps_can_be_unstable_below_the_critical_step() {
 /// Equal steps given one by one are the uniform grid, up to rounding of the sum of the steps.
 #[test]
 fn equal_steps_one_by_one_are_a_uniform_grid() {
-    let problem = TriangleProblem::builder(random_rectangle(0.05, 0.04, 5, 3).unwrap())
+    let problem = Problem::<2>::builder(random_rectangle(0.05, 0.04, 5, 3).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform([50.0, -100.0]))
         .obstacle(Obstacle::plane([0.0, -3.3e-5], [0.0, 1.0], 0.2, None).unwrap())

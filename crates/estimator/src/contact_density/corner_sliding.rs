@@ -26,8 +26,8 @@ pub(crate) struct CornerSliding<const D: usize> {
 impl<const D: usize> CornerSliding<D> {
     /// Those over a step from this one on, with these velocities of all nodes at its beginning, middle and end, and
     /// densities at its beginning and end.
-    pub(crate) fn all<const N: usize>(
-        problem: &Problem<D, N>,
+    pub(crate) fn all(
+        problem: &Problem<D>,
         step: usize,
         velocities: [&[[f64; D]]; 3],
         densities: [&Densities<D>; 2],
@@ -45,12 +45,7 @@ impl<const D: usize> CornerSliding<D> {
     }
 
     /// Its misfit up to the middle and the end of the step (J): the trapezoidal rule over its three half-step instants.
-    pub(crate) fn misfit<const N: usize>(
-        &self,
-        problem: &Problem<D, N>,
-        times: &TimeGrid,
-        tracks: &[ContactMotion],
-    ) -> [f64; 2] {
+    pub(crate) fn misfit(&self, problem: &Problem<D>, times: &TimeGrid, tracks: &[ContactMotion]) -> [f64; 2] {
         let nodes = problem.surface().faces()[self.face].nodes;
         let density = |k: usize| FaceDensity { wide: &self.wide[k], hats: [&self.hats[k][..]; 1] };
         let [start, end] = [density(0), density(1)];

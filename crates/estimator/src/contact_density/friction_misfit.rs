@@ -24,8 +24,8 @@ impl<const D: usize, const M: usize> FaceDensity<'_, D, M> {
 
 /// The power of the misfit of the mean of densities on a face (W), with this velocity at its nodes (m/s): hats keep
 /// their shapes.
-pub(crate) fn face_power<const D: usize, const N: usize, const M: usize>(
-    problem: &Problem<D, N>,
+pub(crate) fn face_power<const D: usize, const M: usize>(
+    problem: &Problem<D>,
     f: usize,
     velocity: &[[f64; D]; D],
     densities: &[&FaceDensity<'_, D, M>],
@@ -45,8 +45,8 @@ pub(crate) fn face_power<const D: usize, const N: usize, const M: usize>(
 /// Power of ∫[b(−w, F) + w·F] on a face: μF_n‖w_t‖ + w_t·F_t (W). The normal part vanishes where F is zero
 /// unless both nodes stay on the plane; elsewhere [`NormalMisfit`](super::NormalMisfit) measures it. In 2D both factors
 /// are linear along the edge.
-fn misfit_power<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+fn misfit_power<const D: usize>(
+    problem: &Problem<D>,
     face: &ContactFace<D>,
     density: &[[f64; D]; D],
     velocity: &[[f64; D]; D],
@@ -68,11 +68,7 @@ fn misfit_power<const D: usize, const N: usize>(
 }
 
 /// The same of a hat (W).
-fn hat_misfit_power<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    hat: &NarrowHat<D>,
-    velocity: &[[f64; D]; D],
-) -> f64 {
+fn hat_misfit_power<const D: usize>(problem: &Problem<D>, hat: &NarrowHat<D>, velocity: &[[f64; D]; D]) -> f64 {
     let obstacle = &problem.obstacles()[problem.surface().faces()[hat.face].obstacle];
     let (law, frame) = (obstacle.law(), obstacle.flat_frame());
     let tangent = tangent(&frame);

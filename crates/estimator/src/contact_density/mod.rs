@@ -69,16 +69,13 @@ impl<const D: usize> Deref for Densities<D> {
 
 impl<const D: usize> Densities<D> {
     /// The values on each candidate face, by its position.
-    pub(crate) fn new<const N: usize>(
-        problem: &Problem<D, N>,
-        value: impl Fn(usize, &ContactFace<D>) -> [[f64; D]; D],
-    ) -> Self {
+    pub(crate) fn new(problem: &Problem<D>, value: impl Fn(usize, &ContactFace<D>) -> [[f64; D]; D]) -> Self {
         Self::with_hats(problem, value, Vec::new())
     }
 
     /// The values of the part that is linear on each face, and hats.
-    pub(crate) fn with_hats<const N: usize>(
-        problem: &Problem<D, N>,
+    pub(crate) fn with_hats(
+        problem: &Problem<D>,
         value: impl Fn(usize, &ContactFace<D>) -> [[f64; D]; D],
         mut hats: Vec<NarrowHat<D>>,
     ) -> Self {
@@ -97,9 +94,9 @@ impl<const D: usize> Densities<D> {
     }
 
     /// The density with those of all non-matching interfaces.
-    pub(crate) fn with_non_matching<const N: usize>(
+    pub(crate) fn with_non_matching(
         mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         faces: &Arc<[NonMatchingFaces]>,
         densities: Vec<NonMatchingDensity<D>>,
     ) -> Self {
@@ -125,7 +122,7 @@ impl<const D: usize> Densities<D> {
     }
 
     /// No force anywhere.
-    pub(crate) fn none<const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub(crate) fn none(problem: &Problem<D>) -> Self {
         Self::new(problem, |_, _| [[0.0; D]; D])
     }
 
@@ -145,7 +142,7 @@ impl<const D: usize> Densities<D> {
     }
 
     /// The residuals of non-matching interfaces: of Coulomb's cone, and of opposite forces.
-    pub(crate) fn non_matching_residuals<const N: usize>(&self, problem: &Problem<D, N>) -> [f64; 2] {
+    pub(crate) fn non_matching_residuals(&self, problem: &Problem<D>) -> [f64; 2] {
         let Some(non_matching) = &self.non_matching else { return [0.0; 2] };
         let all = non_matching.densities.iter().zip(&*non_matching.faces).zip(problem.surface().non_matching());
         let one = |((density, faces), surfaces): ((&NonMatchingDensity<D>, &NonMatchingFaces), _)| {
@@ -155,7 +152,7 @@ impl<const D: usize> Densities<D> {
     }
 
     /// The stresses beside that of linear tractions in an element.
-    pub(crate) fn residual<const N: usize>(&self, problem: &Problem<D, N>, element: ElementId) -> ResidualStress {
+    pub(crate) fn residual(&self, problem: &Problem<D>, element: ElementId) -> ResidualStress {
         let Some(non_matching) = &self.non_matching else { return ResidualStress::NONE };
         let residual = non_matching.residual.get_or_init(|| {
             let all = non_matching.densities.iter().zip(&*non_matching.faces).zip(problem.surface().non_matching());
@@ -184,13 +181,10 @@ impl<const D: usize> Densities<D> {
 }
 
 /// ∫F φ_k over all faces, for each node of the contact surface (N).
-pub(crate) fn nodal_forces<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    densities: &Densities<D>,
-) -> Vec<[f64; D]> {
+pub(crate) fn nodal_forces<const D: usize>(problem: &Problem<D>, densities: &Densities<D>) -> Vec<[f64; D]> {
     let mut forces = vec![[0.0; D]; problem.surface().nodes().len()];
     for (face, density) in problem.surface().faces().iter().zip(densities.iter()) {
-        let moments = Problem::<D, N>::face_moments(face.area, density);
+        let moments = Problem::<D>::face_moments(face.area, density);
         for (node, moment) in face.nodes.iter().zip(moments) {
             (0..D).for_each(|c| forces[*node][c] += moment[c]);
         }
@@ -200,10 +194,7 @@ pub(crate) fn nodal_forces<const D: usize, const N: usize>(
 
 /// The forces that move the nodes of the contact surface under a density (N): [`nodal_forces`] without the tangential
 /// part at guided nodes, whose tangential motion is prescribed.
-pub(crate) fn driving_forces<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    densities: &Densities<D>,
-) -> Vec<[f64; D]> {
+pub(crate) fn driving_forces<const D: usize>(problem: &Problem<D>, densities: &Densities<D>) -> Vec<[f64; D]> {
     let mut forces = nodal_forces(problem, densities);
     for (contact, force) in problem.surface().nodes().iter().zip(&mut forces).filter(|(contact, _)| contact.guided) {
         let frame = problem.obstacles()[contact.obstacle].flat_frame();

@@ -116,9 +116,9 @@ impl<const D: usize> NonMatchingDensity<D> {
 
     /// Adds the linear tractions with the same moments to those of faces (Pa), but those of narrow hats on the slave,
     /// which are hats of their node.
-    pub(crate) fn apply<const N: usize>(
+    pub(crate) fn apply(
         &self,
-        (problem, non_matching): (&Problem<D, N>, &NonMatchingSurfaces<D>),
+        (problem, non_matching): (&Problem<D>, &NonMatchingSurfaces<D>),
         faces: &NonMatchingFaces,
         linear: &mut [[[f64; D]; D]],
     ) {
@@ -135,9 +135,9 @@ impl<const D: usize> NonMatchingDensity<D> {
 
     /// How far it is outside of Coulomb's cone, and how far the tractions on both surfaces (Pa) are from opposite
     /// forces and couples. Both are relative.
-    pub(crate) fn residuals<const N: usize>(
+    pub(crate) fn residuals(
         &self,
-        (problem, non_matching): (&Problem<D, N>, &NonMatchingSurfaces<D>),
+        (problem, non_matching): (&Problem<D>, &NonMatchingSurfaces<D>),
         faces: &NonMatchingFaces,
         linear: &[[[f64; D]; D]],
     ) -> [f64; 2] {
@@ -162,7 +162,7 @@ impl<const D: usize> NonMatchingDensity<D> {
                 let face = &problem.surface().faces()[edge.face];
                 // Places on the slave are those of the master that it faces.
                 let moved = if side == 0 { self.coupling.shifts()[non_matching.slave().part_of(*first)] } else { 0.0 };
-                let moments = Problem::<D, N>::face_moments(face.area, &linear[edge.face]);
+                let moments = Problem::<D>::face_moments(face.area, &linear[edge.face]);
                 for k in 0..2 {
                     let moment = moments[edge.ends[k]];
                     (0..D).for_each(|c| force[c] += moment[c]);
@@ -176,9 +176,9 @@ impl<const D: usize> NonMatchingDensity<D> {
     }
 
     /// The elements with stresses beside that of linear tractions and of the hats of nodes.
-    pub(crate) fn residual<const N: usize>(
+    pub(crate) fn residual(
         &self,
-        (problem, non_matching): (&Problem<D, N>, &NonMatchingSurfaces<D>),
+        (problem, non_matching): (&Problem<D>, &NonMatchingSurfaces<D>),
         faces: &NonMatchingFaces,
     ) -> Stresses {
         let of_edge = |loads: Loads<D>| {

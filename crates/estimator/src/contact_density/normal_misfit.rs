@@ -102,7 +102,7 @@ impl<const D: usize> NormalForces<D> {
     const NONE: Self = Self { linear: Vec::new(), hats: Vec::new() };
 
     /// Those of the densities at both ends of a step.
-    fn new<const N: usize>(problem: &Problem<D, N>, densities: [&Densities<D>; 2]) -> Self {
+    fn new(problem: &Problem<D>, densities: [&Densities<D>; 2]) -> Self {
         let normal = |face: usize, force: &[f64; D]| {
             problem.obstacles()[problem.surface().faces()[face].obstacle].flat_frame().split(force).0
         };
@@ -156,11 +156,7 @@ pub(crate) struct OffContact<const D: usize> {
 
 impl<const D: usize> OffContact<D> {
     /// Those of the densities at both ends of a step, and of those that the reactions alone give.
-    pub(crate) fn new<const N: usize>(
-        problem: &Problem<D, N>,
-        acting: [&Densities<D>; 2],
-        sudden: [&Densities<D>; 2],
-    ) -> Self {
+    pub(crate) fn new(problem: &Problem<D>, acting: [&Densities<D>; 2], sudden: [&Densities<D>; 2]) -> Self {
         Self { acting: NormalForces::new(problem, acting), sudden: NormalForces::new(problem, sudden) }
     }
 
@@ -258,9 +254,9 @@ impl<const D: usize> FacePressures<D> {
 
     /// The misfit over the interval, for the motion in the tracks; work by the trapezoidal rule over all half-step
     /// instants.
-    pub(crate) fn misfit<const N: usize>(
+    pub(crate) fn misfit(
         &self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         times: &TimeGrid,
         tracks: &[ContactMotion],
         weight_of_work: f64,

@@ -9,11 +9,7 @@ use percute_core::problem::Problem;
 /// The value of a nodal field, displacement or velocity, at a contact node without its part of the normal motion
 /// against another body. At a rigid obstacle it is that of the node.
 #[inline]
-pub(crate) fn common<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    at: usize,
-    field: &[[f64; D]],
-) -> [f64; D] {
+pub(crate) fn common<const D: usize>(problem: &Problem<D>, at: usize, field: &[[f64; D]]) -> [f64; D] {
     let surface = problem.surface();
     let contact = &surface.nodes()[at];
     let own = field[contact.node.index()];

@@ -21,7 +21,7 @@ pub(crate) struct ContactMotions {
 
 impl ContactMotions {
     /// Those of a problem, which begin with the first step; so many half-step instants are at hand at a time.
-    pub(crate) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, span: usize, file: ScratchFile) -> Self {
+    pub(crate) fn new<const D: usize>(problem: &Problem<D>, span: usize, file: ScratchFile) -> Self {
         let surface = problem.surface();
         Self {
             all: Vec::new(),
@@ -34,7 +34,7 @@ impl ContactMotions {
     }
 
     /// The most bytes that they take.
-    pub(crate) fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, span: usize) -> usize {
+    pub(crate) fn memory<const D: usize>(problem: &Problem<D>, span: usize) -> usize {
         let nodes = problem.surface().nodes().len();
         let at_hand = nodes.saturating_mul(span).saturating_mul(size_of::<[f64; 2]>());
         let non_matching: usize =
@@ -48,9 +48,9 @@ impl ContactMotions {
     ///
     /// # Errors
     /// A temporary file that fails.
-    pub(crate) fn begin<const D: usize, const N: usize>(
+    pub(crate) fn begin<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         start: impl Fn(usize) -> ((f64, f64), bool),
     ) -> Result<(), ScratchError> {
         self.store.extend()?;
@@ -71,9 +71,9 @@ impl ContactMotions {
     ///
     /// # Errors
     /// A temporary file that fails.
-    pub(crate) fn push<const D: usize, const N: usize>(
+    pub(crate) fn push<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         step: impl Fn(usize) -> NormalStep,
     ) -> Result<(), ScratchError> {
         self.store.extend()?;
@@ -92,9 +92,9 @@ impl ContactMotions {
     ///
     /// # Errors
     /// A temporary file that fails.
-    pub(crate) fn slide<const D: usize, const N: usize>(
+    pub(crate) fn slide<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         half: f64,
         motion: impl Fn(usize) -> [[f64; D]; 2],
     ) -> Result<(), ScratchError> {
@@ -102,12 +102,7 @@ impl ContactMotions {
     }
 
     /// Takes in which nodes of non-matching interfaces touch at a step.
-    pub(crate) fn touch<const D: usize, const N: usize>(
-        &mut self,
-        problem: &Problem<D, N>,
-        step: usize,
-        touching: &[bool],
-    ) {
+    pub(crate) fn touch<const D: usize>(&mut self, problem: &Problem<D>, step: usize, touching: &[bool]) {
         self.non_matching.iter_mut().for_each(|non_matching| non_matching.touch(problem, step, touching));
     }
 
@@ -115,10 +110,7 @@ impl ContactMotions {
     ///
     /// # Errors
     /// A temporary file that fails.
-    pub(crate) fn finish<const D: usize, const N: usize>(
-        &mut self,
-        problem: &Problem<D, N>,
-    ) -> Result<(), ScratchError> {
+    pub(crate) fn finish<const D: usize>(&mut self, problem: &Problem<D>) -> Result<(), ScratchError> {
         let Self { all, store, non_matching, residuals } = self;
         for non_matching in non_matching {
             non_matching.finish(problem, residuals, |node, from, motion| store.write(node, from, motion))?;
@@ -137,9 +129,9 @@ impl ContactMotions {
     ///
     /// # Errors
     /// A temporary file that fails.
-    pub(crate) fn non_matching<const D: usize, const N: usize>(
+    pub(crate) fn non_matching<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         index: usize,
         instants: Range<usize>,
     ) -> Result<Vec<NonMatchingInstant>, ScratchError> {

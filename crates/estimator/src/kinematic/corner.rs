@@ -16,8 +16,8 @@ pub(super) struct Corner<'a, const D: usize> {
 
 impl<'a, const D: usize> Corner<'a, D> {
     /// That of a node of the contact surface. None if it has one plane, or both leave the motion as it is.
-    pub(super) fn of<const N: usize>(
-        problem: &Problem<D, N>,
+    pub(super) fn of(
+        problem: &Problem<D>,
         contact: &ContactNode,
         [own, beside]: [&'a ContactMotion; 2],
         instant: usize,
@@ -68,8 +68,8 @@ impl<'a, const D: usize> Corner<'a, D> {
 }
 
 /// The velocity (m/s) at a node of the contact surface, with both normal components if it may touch two planes.
-pub(crate) fn at_both_planes<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub(crate) fn at_both_planes<const D: usize>(
+    problem: &Problem<D>,
     at: usize,
     velocity: &[f64; D],
     tracks: &[ContactMotion],

@@ -47,7 +47,7 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
     /// `contact` gives the contact node at each local node.
     #[inline]
     pub(crate) fn gather(
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         motion: &NodalMotion<D>,
         nodes: &[NodeId; N],
         contact: &[Option<usize>; N],
@@ -79,7 +79,7 @@ impl<const D: usize, const N: usize> ElementMotion<D, N> {
     /// contact surface, the first one at two planes.
     pub(crate) fn set_normal(
         &mut self,
-        (problem, i, at): (&Problem<D, N>, usize, usize),
+        (problem, i, at): (&Problem<D>, usize, usize),
         tracks: &[ContactMotion],
         instant: usize,
     ) {
@@ -194,7 +194,7 @@ impl<const D: usize, const N: usize, T: Value<Stored = Lanes>> ElementMotion<D, 
 /// Values of a nodal field at the nodes of an element, the common motion at contact nodes.
 #[inline]
 pub(crate) fn gather_common<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+    problem: &Problem<D>,
     field: &[[f64; D]],
     nodes: &[NodeId; N],
     contact: &[Option<usize>; N],
@@ -206,8 +206,8 @@ pub(crate) fn gather_common<const D: usize, const N: usize>(
 /// Puts the solution of P_CA in the place of the normal components of the motion of a contact node, displacement and
 /// velocity; it is the common motion of two nodes that may touch. A node at two planes gets both normal components, one
 /// of non-matching interfaces the change of its own.
-pub(crate) fn settle<const D: usize, const N: usize>(
-    (problem, at): (&Problem<D, N>, usize),
+pub(crate) fn settle<const D: usize>(
+    (problem, at): (&Problem<D>, usize),
     [displacement, velocity]: [&mut [f64; D]; 2],
     tracks: &[ContactMotion],
     instant: usize,

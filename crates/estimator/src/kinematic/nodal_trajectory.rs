@@ -45,7 +45,7 @@ pub(crate) struct NodalTrajectory<const D: usize> {
 }
 
 impl<const D: usize> NodalTrajectory<D> {
-    pub(crate) fn new<const N: usize>(problem: &Problem<D, N>, pool: &FieldPool<D>) -> Self {
+    pub(crate) fn new(problem: &Problem<D>, pool: &FieldPool<D>) -> Self {
         let copy = |field: &[[f64; D]]| Arc::new(pool.copy(field));
         let (displacement, velocity) = (copy(problem.initial_displacement()), copy(problem.initial_velocity()));
         Self { now: NodalMotion { displacement, velocity }, pool: pool.clone() }
@@ -53,9 +53,9 @@ impl<const D: usize> NodalTrajectory<D> {
 
     /// Advances over the half steps to t_{n−½} and t_n, and returns the velocity at the first (m/s) and the motion at
     /// the second; at n = 0 there is no half step and the initial conditions are returned.
-    pub(crate) fn advance<const N: usize>(
+    pub(crate) fn advance(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         times: &TimeGrid,
         state: &State<'_>,
     ) -> (Option<NodalField<D>>, NodalMotion<D>) {

@@ -36,10 +36,10 @@ pub(crate) struct BalanceFields<const D: usize> {
 impl<const D: usize> BalanceFields<D> {
     /// Takes the fields of these nodes.
     #[inline(always)]
-    pub(crate) fn gather<R: Registers, const N: usize>(
+    pub(crate) fn gather<R: Registers>(
         &mut self,
         like: Wide<R>,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         nodes: &[u32],
         levels: &EquilibratedLevels<D>,
     ) {

@@ -40,7 +40,7 @@ pub(crate) fn work<const D: usize, const N: usize>(loading: &Loading<D, N>, prod
 /// The maps of one element, constant in time.
 #[derive(Clone, Debug)]
 pub(crate) struct ElementMeasure<'a, const D: usize, const N: usize> {
-    problem: &'a Problem<D, N>,
+    problem: &'a Problem<D>,
     element: &'a Element<D, N>,
     id: ElementId,
     law: &'a Elastic,
@@ -54,7 +54,7 @@ pub(crate) struct ElementMeasure<'a, const D: usize, const N: usize> {
 
 impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     pub(crate) fn new(
-        problem: &'a Problem<D, N>,
+        problem: &'a Problem<D>,
         element: &'a Element<D, N>,
         id: ElementId,
         choice: Acceleration,
@@ -66,7 +66,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     /// The maps of an element whose nodes are at hand.
     #[inline(always)]
     pub(crate) fn of_nodes(
-        of: (&'a Problem<D, N>, &'a Element<D, N>, ElementId),
+        of: (&'a Problem<D>, &'a Element<D, N>, ElementId),
         choice: Acceleration,
         nodes: &[&BalanceNode<D>; N],
     ) -> Self {
@@ -80,7 +80,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     /// From the places of the nodes (m) and their initial velocities (m/s).
     #[inline(always)]
     fn with(
-        (problem, element, id): (&'a Problem<D, N>, &'a Element<D, N>, ElementId),
+        (problem, element, id): (&'a Problem<D>, &'a Element<D, N>, ElementId),
         choice: Acceleration,
         points: &[[f64; D]; N],
         start: [[f64; D]; N],

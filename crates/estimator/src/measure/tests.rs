@@ -2,7 +2,7 @@ use super::*;
 use crate::element::elements;
 use crate::stress::{EnergyForms, TriangleStress};
 use percute_core::material::Elastic;
-use percute_core::problem::TriangleProblem;
+use percute_core::problem::Problem;
 use percute_testkit::{Random, random_rectangle};
 
 /// Random tractions and Γ_DA on an element that balance: at each node, the moment on the edge that ends there makes the
@@ -32,7 +32,7 @@ fn random_balance(measure: &ElementMeasure<'_, 2, 3>, random: &mut Random) -> Ba
 #[test]
 fn errors_are_energies_of_differences_and_sums() {
     let law = Elastic::plane_strain(3.0, 0.3, 2.0, 0.25).unwrap();
-    let problem = TriangleProblem::builder(random_rectangle(1.0, 0.8, 3, 1).unwrap()).material(law).build().unwrap();
+    let problem = Problem::<2>::builder(random_rectangle(1.0, 0.8, 3, 1).unwrap()).material(law).build().unwrap();
     let mut random = Random::new(7);
     for (e, element) in elements(&problem).iter().enumerate() {
         let (id, points) = (ElementId::new(e), problem.mesh().corners::<2, 3>(ElementId::new(e)));

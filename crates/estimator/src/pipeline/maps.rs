@@ -39,10 +39,7 @@ pub(crate) struct Maps {
 
 impl Maps {
     /// Makes sure that memory can hold what is requested.
-    pub(crate) fn new<const D: usize, const N: usize>(
-        request: Request,
-        problem: &Problem<D, N>,
-    ) -> Result<Self, RequestError> {
+    pub(crate) fn new<const D: usize>(request: Request, problem: &Problem<D>) -> Result<Self, RequestError> {
         let (nodes, elements) = (problem.mesh().node_count(), problem.mesh().element_count());
         let fields = if request.fields { 2 * D * nodes + (2 * D * D + D) * elements } else { 0 };
         let steps = request.steps.len();
@@ -97,12 +94,7 @@ impl Maps {
     }
 
     /// Puts the motion at contact into the maps of steps up to this one, at which it is at hand.
-    pub(crate) fn settle<const D: usize, const N: usize>(
-        &mut self,
-        problem: &Problem<D, N>,
-        tracks: &[ContactMotion],
-        last: usize,
-    ) {
+    pub(crate) fn settle<const D: usize>(&mut self, problem: &Problem<D>, tracks: &[ContactMotion], last: usize) {
         let count = self.made.partition_point(|map| map.step <= last);
         for map in &mut self.made[self.settled..count] {
             let Some(fields) = &mut map.fields else { continue };
@@ -127,7 +119,7 @@ impl Maps {
     /// The maps, once all have the motion at contact.
     pub(crate) fn finish<const D: usize, const N: usize>(
         mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         elements: &[Element<D, N>],
     ) -> Vec<ElementMap> {
         for map in &mut self.made {
@@ -146,7 +138,7 @@ impl Maps {
 
 /// The data of the fields that balance.
 pub(super) struct Balance<'a, const D: usize, const N: usize> {
-    pub(super) problem: &'a Problem<D, N>,
+    pub(super) problem: &'a Problem<D>,
     pub(super) equilibration: &'a Equilibration<'a, D, N>,
     pub(super) choice: Acceleration,
     pub(super) concentration: Option<&'a Concentration<D>>,

@@ -31,7 +31,6 @@ use maps::Maps;
 use near_elements::may_need_a_file;
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::observer::StopFlag;
-use percute_core::on_problem;
 use percute_core::problem::{Problem, ProblemRef};
 use percute_core::time::TimeGrid;
 use prepare::Preparation;
@@ -64,13 +63,16 @@ pub(crate) fn begin<'p>(
     times: &'p TimeGrid,
     options: Options,
 ) -> Result<Box<dyn Steps + 'p>, EstimateError> {
-    Ok(on_problem!(problem, problem => Box::new(Pipeline::new(problem, times, options)?)))
+    Ok(match problem {
+        ProblemRef::D1(bar) => Box::new(Pipeline::<1, 2>::new(bar, times, options)?),
+        ProblemRef::D2(plane) => Box::new(Pipeline::<2, 3>::new(plane, times, options)?),
+    })
 }
 
 /// The work of an [`Estimator`](crate::Estimator).
 #[derive(Debug)]
 pub(crate) struct Pipeline<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+    problem: &'p Problem<D>,
     times: &'p TimeGrid,
     every: Sampling,
     pool: ThreadPool,
@@ -80,11 +82,7 @@ pub(crate) struct Pipeline<'p, const D: usize, const N: usize> {
 
 impl<'p, const D: usize, const N: usize> Pipeline<'p, D, N> {
     /// Before the first step.
-    pub(crate) fn new(
-        problem: &'p Problem<D, N>,
-        times: &'p TimeGrid,
-        options: Options,
-    ) -> Result<Self, EstimateError> {
+    pub(crate) fn new(problem: &'p Problem<D>, times: &'p TimeGrid, options: Options) -> Result<Self, EstimateError> {
         let every = match options.every {
             Sampling::Auto => None,
             Sampling::Every(steps) => Some(steps),
@@ -106,7 +104,7 @@ impl<'p, const D: usize, const N: usize> Pipeline<'p, D, N> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build();
         let pool = pool.map_err(|e| EstimateError::Threads { cause: e.to_string() })?;
         let spacing = options.spacing(problem, times);
-        if may_need_a_file(problem, times.step_count() / spacing + 1, spacing) {
+        if may_need_a_file::<D, N>(problem, times.step_count() / spacing + 1, spacing) {
             ScratchFile::check()?;
         }
         let mut window = LevelWindow::new(problem, times, &options, Maps::new(Request::default(), problem)?);

@@ -63,14 +63,14 @@ pub(super) struct NearElement<const D: usize, const N: usize> {
 }
 
 /// Number of such elements.
-pub(super) fn near_count<const D: usize, const N: usize>(problem: &Problem<D, N>) -> usize {
+pub(super) fn near_count<const D: usize>(problem: &Problem<D>) -> usize {
     let mut touches = vec![false; problem.mesh().node_count()];
     problem.surface().nodes().iter().for_each(|contact| touches[contact.node.index()] = true);
-    problem.mesh().nodes_of::<N>().iter().filter(|cell| cell.iter().any(|node| touches[node.index()])).count()
+    problem.mesh().cells().filter(|cell| cell.iter().any(|node| touches[node.index()])).count()
 }
 
 /// All such elements, by number.
-pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<NearElement<D, N>> {
+pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D>) -> Vec<NearElement<D, N>> {
     let mesh = problem.mesh();
     let mut of_node = vec![None; mesh.node_count()];
     for (at, contact) in problem.surface().nodes().iter().enumerate() {
@@ -84,7 +84,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D,
         let contact = mesh.nodes_of::<N>()[e].map(|n| of_node[n.index()]);
         contact.iter().any(Option::is_some).then(|| NearElement {
             element: ElementId::new(e),
-            form: ElementForm::new(problem, ElementId::new(e)),
+            form: ElementForm::new::<D, N>(problem, ElementId::new(e)),
             contact,
             faces,
             start: None,
@@ -170,7 +170,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
     }
 
     /// The non-matching interfaces, by their index, to which the element belongs.
-    pub(super) fn non_matching(&self, problem: &Problem<D, N>) -> Option<usize> {
+    pub(super) fn non_matching(&self, problem: &Problem<D>) -> Option<usize> {
         self.contact.iter().flatten().find_map(|&at| problem.surface().non_matching_of(at))
     }
 

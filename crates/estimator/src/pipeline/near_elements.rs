@@ -26,7 +26,7 @@ const GROUP: usize = 16;
 
 /// The most bytes that near elements and their intervals take in memory, at so many samples, each so many steps after
 /// the one before.
-pub(super) fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, samples: usize, spacing: usize) -> usize {
+pub(super) fn memory<const D: usize, const N: usize>(problem: &Problem<D>, samples: usize, spacing: usize) -> usize {
     let (nodes, elements) = (problem.surface().nodes().len(), near_count(problem));
     let interval = bytes_of_interval::<D, N>(spacing);
     let (all, most) = (samples.saturating_mul(elements).saturating_mul(interval), backlog::most_bytes(nodes));
@@ -40,7 +40,7 @@ pub(super) fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, sa
 
 /// Whether the intervals of a flight over the whole run have no room in memory.
 pub(super) fn may_need_a_file<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+    problem: &Problem<D>,
     samples: usize,
     spacing: usize,
 ) -> bool {
@@ -69,7 +69,7 @@ pub(super) struct NearElements<const D: usize, const N: usize> {
 
 impl<const D: usize, const N: usize> NearElements<D, N> {
     /// Those of a problem, of which no interval waits.
-    pub(super) fn new(problem: &Problem<D, N>, file: ScratchFile) -> Self {
+    pub(super) fn new(problem: &Problem<D>, file: ScratchFile) -> Self {
         let backlog = Backlog::new(problem.surface().nodes().len(), file);
         Self { all: near_elements(problem), backlog, buffers: vec![Vec::new(); GROUP] }
     }

@@ -26,7 +26,7 @@ pub(crate) struct NonMatchingMisfit {
 }
 
 impl NonMatchingMisfit {
-    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, span: usize) -> Self {
+    pub(super) fn new<const D: usize>(problem: &Problem<D>, span: usize) -> Self {
         let store = |non_matching: &NonMatchingSurfaces<D>| {
             NormalMotions::new(NUMBERS * non_matching.slave().len(), span, ScratchFile::default())
         };
@@ -39,9 +39,9 @@ impl NonMatchingMisfit {
     }
 
     /// Takes in the densities of a step.
-    pub(super) fn push<const D: usize, const N: usize>(
+    pub(super) fn push<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         step: usize,
         densities: &LevelDensities<D>,
     ) -> Result<(), ScratchError> {
@@ -57,9 +57,9 @@ impl NonMatchingMisfit {
     }
 
     /// Has the misfits at hand from one half-step instant to another; the tracks have the motion.
-    pub(super) fn show<const D: usize, const N: usize>(
+    pub(super) fn show<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         tracks: &mut ContactMotions,
         [first, last]: [usize; 2],
     ) -> Result<(), ScratchError> {

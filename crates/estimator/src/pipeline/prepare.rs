@@ -34,10 +34,10 @@ pub(crate) use vibration::Vibration;
 /// Turns steps into levels whose forces are known.
 #[derive(Debug)]
 pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+    problem: &'p Problem<D>,
     times: &'p TimeGrid,
-    dynamics: Dynamics<'p, D, N>,
-    loaded: LoadedFaces<'p, D, N>,
+    dynamics: Dynamics<'p, D>,
+    loaded: LoadedFaces<'p, D>,
     reconstruction: Box<dyn ReconstructionMethod<D, N> + 'p>,
     schedule: Schedule,
     motion: NodalTrajectory<D>,
@@ -70,7 +70,7 @@ pub(crate) struct Preparation<'p, const D: usize, const N: usize> {
 }
 
 impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
-    pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
+    pub(super) fn new(problem: &'p Problem<D>, times: &'p TimeGrid, options: &Options) -> Self {
         let pool = FieldPool::new(problem.mesh().node_count());
         let spacing = options.spacing(problem, times);
         Self {

@@ -166,7 +166,7 @@ pub(super) struct ElementInterval<'i, const D: usize, const N: usize> {
 /// The data that all elements share.
 #[derive(Clone, Copy)]
 pub(super) struct SharedData<'a, 'p, const D: usize, const N: usize> {
-    pub(super) problem: &'p Problem<D, N>,
+    pub(super) problem: &'p Problem<D>,
     pub(super) times: &'p TimeGrid,
     pub(super) equilibration: &'a Equilibration<'p, D, N>,
     pub(super) choice: Acceleration,
@@ -187,7 +187,7 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         Self { shared, id, element, measure: ElementMeasure::new(problem, element, id, shared.choice) }
     }
 
-    pub(super) fn problem(&self) -> &'p Problem<D, N> {
+    pub(super) fn problem(&self) -> &'p Problem<D> {
         self.shared.problem
     }
 

@@ -9,12 +9,12 @@ use percute_core::dynamics::{SimulationError, critical_time_step, simulate};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::{Progress, StopFlag, Unobserved};
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use std::ops::ControlFlow;
 
 /// A low, wide block that strikes a plane and flies off: most nodes never touch again.
-fn rebound() -> TriangleProblem {
-    Problem::<2, 3>::builder(Mesh::rectangle(0.04, 0.001, 40, 1).unwrap())
+fn rebound() -> Problem<2> {
+    Problem::<2>::builder(Mesh::rectangle(0.04, 0.001, 40, 1).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([2.0, -10.0]))
         .obstacle(Obstacle::plane([0.0, -1e-5], [0.0, 1.0], 0.2, Some("bottom".to_string())).unwrap())
@@ -22,7 +22,7 @@ fn rebound() -> TriangleProblem {
         .unwrap()
 }
 
-fn instants(problem: &TriangleProblem, steps: usize) -> TimeGrid {
+fn instants(problem: &Problem<2>, steps: usize) -> TimeGrid {
     TimeGrid::uniform(steps as f64 * 0.9 * critical_time_step(problem), steps).unwrap()
 }
 
@@ -33,14 +33,14 @@ struct Watched<'p> {
 }
 
 impl<'p> Watched<'p> {
-    fn new(problem: &'p TriangleProblem, times: &'p TimeGrid) -> Self {
+    fn new(problem: &'p Problem<2>, times: &'p TimeGrid) -> Self {
         let options = Options {
             reconstruction: Reconstruction::Consistent,
             every: Sampling::Every(1),
             threads: Some(1),
             ..Options::default()
         };
-        Self { pipeline: Pipeline::new(problem, times, options).unwrap(), most: 0 }
+        Self { pipeline: Pipeline::<2, 3>::new(problem, times, options).unwrap(), most: 0 }
     }
 
     fn run(&mut self) -> Result<(), SimulationError> {
@@ -99,10 +99,10 @@ fn a_file_that_fails_is_an_error() {
 
 /// The estimate of a short run that is stopped once this step was taken in; only a `large` mesh is left in the middle
 /// of its work.
-fn stopped(problem: &TriangleProblem, times: &TimeGrid, step: usize, large: bool) -> Result<Estimate, EstimateError> {
+fn stopped(problem: &Problem<2>, times: &TimeGrid, step: usize, large: bool) -> Result<Estimate, EstimateError> {
     let options = Options { every: Sampling::Every(1), threads: Some(1), ..Options::default() };
     let flag = StopFlag::default();
-    let mut pipeline = Pipeline::new(problem, times, options).unwrap();
+    let mut pipeline = Pipeline::<2, 3>::new(problem, times, options).unwrap();
     pipeline.stop_at(flag.clone());
     if large {
         pipeline.window.stop_at(flag.clone());

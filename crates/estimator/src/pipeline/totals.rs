@@ -23,7 +23,7 @@ pub(super) struct Worked<const D: usize, const N: usize> {
 
 /// The estimate, from everything that was summed.
 pub(super) fn estimate<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+    problem: &Problem<D>,
     times: &TimeGrid,
     preparation: &Preparation<'_, D, N>,
     worked: Worked<D, N>,

@@ -36,18 +36,13 @@ use std::sync::Arc;
 const OTHER_LEVELS: usize = 4;
 
 /// Memory of one level (bytes).
-fn bytes_of_level<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> usize {
+fn bytes_of_level<const D: usize>(problem: &Problem<D>, options: &Options) -> usize {
     let fields = if options.acceleration(D) == Acceleration::Split { 9 } else { 6 };
     size_of::<[f64; D]>() * fields * problem.mesh().node_count()
 }
 
 /// About how much memory (bytes) the steps between samples take, and what is kept of each sample beside the intervals.
-fn bytes_of_auxiliary<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    steps: usize,
-    samples: usize,
-    pending: usize,
-) -> usize {
+fn bytes_of_auxiliary<const D: usize>(problem: &Problem<D>, steps: usize, samples: usize, pending: usize) -> usize {
     let faces = problem.surface().faces().len();
     let auxiliary = steps.saturating_mul(size_of::<Difference>()) + 2 * samples * size_of::<Sources>();
     pending.saturating_mul(OffContact::<D>::memory(faces)).saturating_add(auxiliary)
@@ -60,7 +55,7 @@ fn size(options: &Options) -> usize {
 
 /// About how much memory (bytes) an estimate takes beside its problem, [`memory`](crate::memory).
 pub(crate) fn memory<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+    problem: &Problem<D>,
     times: &TimeGrid,
     options: &Options,
 ) -> usize {
@@ -80,18 +75,18 @@ pub(crate) fn memory<const D: usize, const N: usize>(
     };
     levels
         .saturating_mul(bytes_of_level(problem, options))
-        .saturating_add(reconstruction::memory(problem, options))
+        .saturating_add(reconstruction::memory::<D, N>(problem, options))
         .saturating_add(element.saturating_mul(problem.mesh().element_count()))
         .saturating_add(link.saturating_mul(problem.mesh().stars().link_count()))
         .saturating_add(step.saturating_mul(steps))
-        .saturating_add(near_elements::memory(problem, steps, spacing))
+        .saturating_add(near_elements::memory::<D, N>(problem, steps, spacing))
         .saturating_add(auxiliary)
 }
 
 /// Levels in work, and the sums so far.
 #[derive(Debug)]
 pub(crate) struct LevelWindow<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+    problem: &'p Problem<D>,
     times: &'p TimeGrid,
     pub(super) equilibration: Equilibration<'p, D, N>,
     choice: Acceleration,
@@ -119,7 +114,7 @@ pub(crate) struct LevelWindow<'p, const D: usize, const N: usize> {
 }
 
 impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
-    pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options, maps: Maps) -> Self {
+    pub(super) fn new(problem: &'p Problem<D>, times: &'p TimeGrid, options: &Options, maps: Maps) -> Self {
         let near = NearElements::new(problem, ScratchFile::default());
         let mut is_near = vec![false; problem.mesh().element_count()];
         near.all.iter().for_each(|n| is_near[n.element.index()] = true);

@@ -6,8 +6,8 @@ use percute_core::problem::Problem;
 
 /// Checks that the densities of a step are in the cone and, unless they may act `off_contact`, act only where both
 /// nodes of a face touch throughout the step.
-pub(crate) fn check<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub(crate) fn check<const D: usize>(
+    problem: &Problem<D>,
     steps: &SurfaceSteps<'_, D>,
     densities: &StepDensities<D>,
     off_contact: bool,

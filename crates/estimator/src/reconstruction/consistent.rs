@@ -9,17 +9,17 @@ use percute_core::simplex::Shape;
 /// faces whose nodes touch at both ends. They are projected into the cone. Where these faces change, the densities
 /// jump.
 #[derive(Debug)]
-pub(super) struct Consistent<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+pub(super) struct Consistent<'p, const D: usize> {
+    problem: &'p Problem<D>,
 }
 
-impl<'p, const D: usize, const N: usize> Consistent<'p, D, N> {
-    pub(super) fn new(problem: &'p Problem<D, N>) -> Self {
+impl<'p, const D: usize> Consistent<'p, D> {
+    pub(super) fn new(problem: &'p Problem<D>) -> Self {
         Self { problem }
     }
 }
 
-impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Consistent<'_, D, N> {
+impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Consistent<'_, D> {
     fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D> {
         let (problem, now, next) = (self.problem, steps.now, steps.next);
         let touches = |k: usize| now.touching[k] && next.touching[k];
@@ -41,7 +41,7 @@ struct BoundaryMass {
 }
 
 impl BoundaryMass {
-    fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, live: &[bool]) -> Self {
+    fn new<const D: usize>(problem: &Problem<D>, live: &[bool]) -> Self {
         let count = problem.surface().nodes().len();
         let mut mass = Self { diagonal: vec![0.0; count], upper: vec![0.0; count] };
         for (face, _) in problem.surface().faces().iter().zip(live).filter(|(_, live)| **live) {
@@ -81,12 +81,7 @@ impl BoundaryMass {
         value
     }
 
-    fn densities<const D: usize, const N: usize>(
-        &self,
-        problem: &Problem<D, N>,
-        live: &[bool],
-        reaction: &[[f64; D]],
-    ) -> Densities<D> {
+    fn densities<const D: usize>(&self, problem: &Problem<D>, live: &[bool], reaction: &[[f64; D]]) -> Densities<D> {
         let nodal = self.solve(reaction);
         Densities::new(problem, |f, face| match live[f] {
             true => face.nodes.map(|k| problem.obstacles()[face.obstacle].project_into_cone(&nodal[k])),

@@ -11,8 +11,8 @@ use std::sync::Arc;
 /// this density at its end: the trapezoidal rule over its three half-step instants. Faces with a node at two planes
 /// wait, see [`CornerSliding`](crate::contact_density::CornerSliding), and those of non-matching interfaces have
 /// [`add_non_matching`].
-pub(super) fn friction<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub(super) fn friction<const D: usize>(
+    problem: &Problem<D>,
     length: f64,
     now: &ForcesKnown<D>,
     next: &MotionKnown<D>,
@@ -46,8 +46,8 @@ pub(super) fn friction<const D: usize, const N: usize>(
 }
 
 /// Adds the same of non-matching interfaces: half of each piece on each of its faces.
-pub(super) fn add_non_matching<const D: usize, const N: usize>(
-    (problem, faces): (&Problem<D, N>, &[NonMatchingFaces]),
+pub(super) fn add_non_matching<const D: usize>(
+    (problem, faces): (&Problem<D>, &[NonMatchingFaces]),
     length: f64,
     now: &ForcesKnown<D>,
     next: &MotionKnown<D>,

@@ -92,7 +92,7 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
     /// reconstruction has its own.
     fn advance(
         &mut self,
-        dynamics: &Dynamics<'_, D, N>,
+        dynamics: &Dynamics<'_, D>,
         simulated: &SimulatedStep<'_, D>,
         pool: &FieldPool<D>,
     ) -> BalancedFields<D> {
@@ -141,7 +141,7 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
     /// `next`; `length` is that of the step (s), `density` F_DA at its end.
     fn friction(
         &self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         length: f64,
         now: &ForcesKnown<D>,
         next: &MotionKnown<D>,
@@ -175,16 +175,16 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
 }
 
 /// About how much memory the reconstruction takes (bytes) that the options name.
-pub(crate) fn memory<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> usize {
+pub(crate) fn memory<const D: usize, const N: usize>(problem: &Problem<D>, options: &Options) -> usize {
     match options.reconstruction {
         Reconstruction::Published | Reconstruction::Consistent => 0,
-        Reconstruction::Corrected => Corrected::memory(problem, options),
+        Reconstruction::Corrected => Corrected::<D, N>::memory(problem, options),
     }
 }
 
 /// The reconstruction that the options name.
 pub(crate) fn new<'p, const D: usize, const N: usize>(
-    problem: &'p Problem<D, N>,
+    problem: &'p Problem<D>,
     times: &'p TimeGrid,
     options: &Options,
 ) -> Box<dyn ReconstructionMethod<D, N> + 'p> {

@@ -12,8 +12,8 @@ const NEIGHBOUR: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// The reconstruction of the paper: reaction over tributary length, from one step after impact to one step before
 /// release.
 #[derive(Debug)]
-pub(super) struct Published<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+pub(super) struct Published<'p, const D: usize> {
+    problem: &'p Problem<D>,
     /// Lengths and neighbours for each node of each candidate face.
     ends: Vec<Vec<End>>,
 }
@@ -29,8 +29,8 @@ struct End {
     neighbours: Vec<usize>,
 }
 
-impl<'p, const D: usize, const N: usize> Published<'p, D, N> {
-    pub(super) fn new(problem: &'p Problem<D, N>) -> Self {
+impl<'p, const D: usize> Published<'p, D> {
+    pub(super) fn new(problem: &'p Problem<D>) -> Self {
         let faces = problem.surface().faces();
         let normals: Vec<_> = faces.iter().map(|f| problem.mesh().normal_in::<D>(f.face).0).collect();
         let mut around = vec![Vec::new(); problem.surface().nodes().len()];
@@ -68,7 +68,7 @@ impl<'p, const D: usize, const N: usize> Published<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Published<'_, D, N> {
+impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Published<'_, D> {
     fn densities(&self, steps: &SurfaceSteps<'_, D>) -> StepDensities<D> {
         let SurfaceSteps { before, now, next, after } = *steps;
         let at_start = |before: &SurfaceStep<D>| self.at(&before.touching, now, Some(&next.touching));

@@ -7,11 +7,11 @@ use crate::residual::Residuals;
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::TriangleProblem;
+use percute_core::problem::Problem;
 
 /// Four edges along the bottom of a block, μ = 0.2.
-fn problem() -> TriangleProblem {
-    Problem::<2, 3>::builder(Mesh::rectangle(0.04, 0.02, 4, 2).unwrap())
+fn problem() -> Problem<2> {
+    Problem::<2>::builder(Mesh::rectangle(0.04, 0.02, 4, 2).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .obstacle(Obstacle::plane([0.0, -1e-4], [0.0, 1.0], 0.2, None).unwrap())
         .build()
@@ -37,9 +37,9 @@ fn residuals(densities: &StepDensities<2>) -> Residuals {
 }
 
 /// The densities that a reconstruction makes of these steps.
-fn made(choice: Reconstruction, problem: &TriangleProblem, steps: &SurfaceSteps<'_, 2>) -> StepDensities<2> {
+fn made(choice: Reconstruction, problem: &Problem<2>, steps: &SurfaceSteps<'_, 2>) -> StepDensities<2> {
     let times = TimeGrid::uniform(1.0, 1).unwrap();
-    new(problem, &times, &Options { reconstruction: choice, ..Options::default() }).densities(steps)
+    new::<2, 3>(problem, &times, &Options { reconstruction: choice, ..Options::default() }).densities(steps)
 }
 
 /// One step without any other.
@@ -229,11 +229,11 @@ fn consistent_is_statically_equivalent() {
 
 /// Two edges, 1 m wide each, that meet at their lowest point; each rises by `slope` (rad). Left and right
 /// end, then the middle, as positions in the surface.
-fn kinked(slope: f64) -> (TriangleProblem, [usize; 3]) {
+fn kinked(slope: f64) -> (Problem<2>, [usize; 3]) {
     let rise = slope.tan();
     let points = vec![[-1.0, rise], [0.0, 0.0], [1.0, rise], [0.0, 2.0]];
     let mesh = Mesh::new(points, &[[0, 1, 3], [1, 2, 3]], &Default::default(), &Default::default()).unwrap();
-    let problem = Problem::<2, 3>::builder(mesh)
+    let problem = Problem::<2>::builder(mesh)
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .obstacle(Obstacle::plane([0.0, -1e-4], [0.0, 1.0], 0.2, None).unwrap())
         .build()

@@ -4,7 +4,7 @@ use super::{Motion, ReferenceError, TrueError, TrueErrorSample};
 use percute_core::contact::Obstacle;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
-use percute_core::problem::{BarProblem, ProblemRef};
+use percute_core::problem::{Problem, ProblemRef};
 use percute_exact::BarImpact;
 
 /// Data of both bars agree to this, relative: they come from the same few numbers.
@@ -44,7 +44,7 @@ pub fn bar_impact_error<'p>(
 }
 
 /// The exact solution must be that of this bar.
-fn check(problem: &BarProblem, exact: &BarImpact) -> Result<(), ReferenceError> {
+fn check(problem: &Problem<1>, exact: &BarImpact) -> Result<(), ReferenceError> {
     let mesh = problem.mesh();
     let low = mesh.points_in::<1>().iter().fold(f64::INFINITY, |m, p| m.min(p[0]));
     let mut pairs = vec![("length", mesh.size(), exact.length), ("start + length", low + mesh.size(), exact.length)];
@@ -65,7 +65,7 @@ fn check(problem: &BarProblem, exact: &BarImpact) -> Result<(), ReferenceError> 
 
 /// Adds one element's share of \[60\], piece by piece if the front cuts it.
 fn add_element(
-    problem: &BarProblem,
+    problem: &Problem<1>,
     exact: &BarImpact,
     element: ElementId,
     u: &[f64],
@@ -99,13 +99,13 @@ mod tests {
     use super::*;
     use percute_core::material::Elastic;
     use percute_core::mesh::Mesh;
-    use percute_core::problem::{Initial, Problem};
+    use percute_core::problem::Initial;
 
     /// c = 3 m/s, t_c = 0.5 s, ρScv₀ = 1.2 N.
     const BAR: BarImpact = BarImpact { length: 6.0, young: 18.0, density: 2.0, section: 0.1, speed: 2.0, gap: 1.0 };
 
-    fn problem(section: f64) -> BarProblem {
-        Problem::<1, 2>::builder(Mesh::uniform_bar(6.0, 3).unwrap())
+    fn problem(section: f64) -> Problem<1> {
+        Problem::<1>::builder(Mesh::uniform_bar(6.0, 3).unwrap())
             .material(Elastic::bar(18.0, 2.0, section).unwrap())
             .initial_velocity(Initial::Uniform([-2.0]))
             .obstacle(Obstacle::plane([-1.0], [1.0], 0.0, None).unwrap())

@@ -76,17 +76,17 @@ impl StateSink for Comparison<'_> {
 
 /// The comparison with a problem of a dimension.
 #[derive(Debug)]
-struct Finer<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
-    coarse: Vec<Coarse<'p, D, N>>,
+struct Finer<'p, const D: usize> {
+    problem: &'p Problem<D>,
+    coarse: Vec<Coarse<'p, D>>,
     /// The last state of the reference.
     before: Option<Instant<D>>,
 }
 
 /// One simulation under comparison.
 #[derive(Debug)]
-struct Coarse<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+struct Coarse<'p, const D: usize> {
+    problem: &'p Problem<D>,
     motion: &'p Motion,
     transfer: Transfer,
     samples: Vec<TrueErrorSample>,
@@ -100,9 +100,9 @@ struct Instant<const D: usize> {
     velocity: Vec<[f64; D]>,
 }
 
-impl<'p, const D: usize, const N: usize> Compare<'p> for Finer<'p, D, N> {
+impl<'p, const D: usize> Compare<'p> for Finer<'p, D> {
     fn add(&mut self, run: ProblemRef<'p>, motion: &'p Motion, nested: bool) -> Result<(), ReferenceError> {
-        let Some(problem) = run.typed::<D, N>() else { return Err(ReferenceError::Dimension) };
+        let Some(problem) = run.typed::<D>() else { return Err(ReferenceError::Dimension) };
         let mesh = (problem.mesh(), self.problem.mesh());
         let transfer = if nested { Transfer::nested(mesh.0, mesh.1)? } else { Transfer::located(mesh.0, mesh.1)? };
         let needed = D * problem.mesh().node_count();
@@ -117,7 +117,7 @@ impl<'p, const D: usize, const N: usize> Compare<'p> for Finer<'p, D, N> {
 
     fn finish(self: Box<Self>) -> Result<Vec<TrueError>, ReferenceError> {
         let reference = self.before.map_or(0.0, |s| s.time);
-        let error = |coarse: Coarse<'_, D, N>| {
+        let error = |coarse: Coarse<'_, D>| {
             let end = coarse.motion.times.last().copied().unwrap_or(0.0);
             if coarse.samples.len() < coarse.motion.times.len() {
                 return Err(ReferenceError::EndsEarly { reference, end });
@@ -128,7 +128,7 @@ impl<'p, const D: usize, const N: usize> Compare<'p> for Finer<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> StateSink for Finer<'_, D, N> {
+impl<const D: usize> StateSink for Finer<'_, D> {
     fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         let displacement = state.step().displacement().to_vec();
         let now = Instant { time: state.step().time, displacement, velocity: vectors(&state.velocity()).to_vec() };
@@ -149,10 +149,10 @@ impl<const D: usize, const N: usize> StateSink for Finer<'_, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> Coarse<'_, D, N> {
+impl<const D: usize> Coarse<'_, D> {
     /// The energies of the difference at the next instant; `weight` is that of `now` in the
     /// reference.
-    fn sample(&self, fine: &Problem<D, N>, before: &Instant<D>, now: &Instant<D>, weight: f64) -> TrueErrorSample {
+    fn sample(&self, fine: &Problem<D>, before: &Instant<D>, now: &Instant<D>, weight: f64) -> TrueErrorSample {
         let (n, mesh) = (self.samples.len(), self.problem.mesh());
         let between = |a: &[f64; D], b: &[f64; D]| std::array::from_fn(|c| (1.0 - weight) * a[c] + weight * b[c]);
         let mut velocity = self.transfer.at_nodes(mesh, vectors(&self.motion.velocity[n]));
@@ -162,14 +162,14 @@ impl<const D: usize, const N: usize> Coarse<'_, D, N> {
         }
         let reference =
             before.displacement.iter().zip(&now.displacement).map(|(a, b)| between(a, b)).collect::<Vec<_>>();
-        let own = gradients::<D, N>(mesh, vectors(&self.motion.displacement[n]));
+        let own = gradients::<D>(mesh, vectors(&self.motion.displacement[n]));
         let mut sample = TrueErrorSample { time: self.motion.times[n], ..Default::default() };
         for (e, coarse) in self.transfer.elements().iter().enumerate() {
             let (id, law) = (ElementId::new(e), fine.material(ElementId::new(e)));
-            let mut gradient = displacement_gradient::<D, N>(fine.mesh(), id, &reference);
+            let mut gradient = displacement_gradient(fine.mesh(), id, &reference);
             let own = &own[coarse.index()];
             (0..D).for_each(|a| (0..D).for_each(|b| gradient[a][b] -= own[a][b]));
-            let nodal: [[f64; D]; N] = fine.mesh().nodes_of::<N>()[e].map(|node| velocity[node.index()]);
+            let nodal: Vec<[f64; D]> = fine.mesh().cell(id).iter().map(|node| velocity[node.index()]).collect();
             let volume = fine.volume(id);
             sample.kinetic += 0.5 * mass_product(law.density() * volume, &nodal, &nodal);
             sample.elastic += volume * law.strain_energy(&gradient);
@@ -179,8 +179,8 @@ impl<const D: usize, const N: usize> Coarse<'_, D, N> {
 }
 
 /// ∂u/∂x of each element.
-fn gradients<const D: usize, const N: usize>(mesh: &Mesh, displacement: &[[f64; D]]) -> Vec<Tensor<D>> {
-    (0..mesh.element_count()).map(|e| displacement_gradient::<D, N>(mesh, ElementId::new(e), displacement)).collect()
+fn gradients<const D: usize>(mesh: &Mesh, displacement: &[[f64; D]]) -> Vec<Tensor<D>> {
+    (0..mesh.element_count()).map(|e| displacement_gradient(mesh, ElementId::new(e), displacement)).collect()
 }
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ pub(crate) type Displacements<'a, const D: usize> = [(&'a [[f64; D]], bool)];
 /// The data of the elements.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Strained<'a, const D: usize, const N: usize> {
-    pub(crate) problem: &'a Problem<D, N>,
+    pub(crate) problem: &'a Problem<D>,
     pub(crate) smoothing: &'a Smoothing,
     pub(crate) elements: &'a [Element<D, N>],
     pub(crate) blocks: &'a ElementBlocks<N>,

@@ -71,7 +71,7 @@ impl EnergyForms {
     #[inline(always)]
     pub(crate) fn prepare<const D: usize, const N: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         elements: impl Iterator<Item = (ElementId, [[f64; D]; N])> + Clone,
     ) -> [usize; LANES] {
         match self {
@@ -86,7 +86,7 @@ impl EnergyForms {
     #[inline(always)]
     pub(crate) fn of<const D: usize, const N: usize>(
         &self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         id: ElementId,
         points: &[[f64; D]; N],
         lane: usize,

@@ -47,7 +47,7 @@ mod tests {
     /// acceleration of the skew one.
     #[test]
     fn stars_sum_up_to_the_lumped_mass() {
-        let problem = Problem::<2, 3>::builder(random_rectangle(0.05, 0.04, 4, 1).unwrap())
+        let problem = Problem::<2>::builder(random_rectangle(0.05, 0.04, 4, 1).unwrap())
             .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 0.3).unwrap())
             .build()
             .unwrap();

@@ -10,7 +10,7 @@ use percute_core::dynamics::simulate;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{BarProblem, Initial, Problem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Motion, TrueError, bar_impact_error};
 use percute_estimator::{Acceleration, Estimate, Estimator, Options, Reconstruction, Request, Sampling};
@@ -35,8 +35,8 @@ fn bar(elements: usize, courant: f64, fraction: f64) -> Bar {
     bar
 }
 
-fn problem(bar: &Bar) -> BarProblem {
-    Problem::<1, 2>::builder(Mesh::uniform_bar(bar.length, bar.elements).unwrap())
+fn problem(bar: &Bar) -> Problem<1> {
+    Problem::<1>::builder(Mesh::uniform_bar(bar.length, bar.elements).unwrap())
         .material(Elastic::bar(bar.young, bar.density, bar.section).unwrap())
         .initial_velocity(Initial::Uniform([-bar.speed]))
         .obstacle(Obstacle::plane([-bar.gap], [1.0], 0.0, None).unwrap())

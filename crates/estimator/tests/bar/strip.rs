@@ -7,7 +7,7 @@ use percute_core::load::Support;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Acceleration, Estimate, Estimator, Options, Reconstruction};
 use percute_exact::{BarEnds, BarMode};
@@ -24,17 +24,17 @@ const MODE: BarMode = BarMode {
     phase: 0.0,
 };
 
-fn bar(elements: usize) -> BarProblem {
+fn bar(elements: usize) -> Problem<1> {
     bar_in_mode(&MODE, elements, &["start", "end"])
 }
 
 /// The same bar as a strip of `rows` rows of cells of height hy = aspect·hx.
-fn strip(elements: usize, rows: usize, aspect: f64) -> TriangleProblem {
+fn strip(elements: usize, rows: usize, aspect: f64) -> Problem<2> {
     let height = aspect * MODE.length / elements as f64 * rows as f64;
     let mesh = Mesh::rectangle(MODE.length, height, elements, rows).unwrap();
     let displacement = mesh.points_in::<2>().iter().map(|p| [MODE.displacement(p[0], 0.0), 0.0]).collect();
     let law = Elastic::plane_stress(MODE.young, 0.0, MODE.density, MODE.section / height).unwrap();
-    let mut builder = Problem::<2, 3>::builder(mesh).material(law).initial_displacement(Initial::Nodal(displacement));
+    let mut builder = Problem::<2>::builder(mesh).material(law).initial_displacement(Initial::Nodal(displacement));
     for group in ["left", "right"] {
         builder = builder.support(Support { group: group.into(), components: [true, false, false], velocity: None });
     }
@@ -42,11 +42,7 @@ fn strip(elements: usize, rows: usize, aspect: f64) -> TriangleProblem {
 }
 
 /// History and estimate over two periods in steps of 0.05 h/c: thin cells have a short critical step.
-fn run<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    elements: usize,
-    acceleration: Acceleration,
-) -> (History, Estimate) {
+fn run<const D: usize>(problem: &Problem<D>, elements: usize, acceleration: Acceleration) -> (History, Estimate) {
     let times = TimeGrid::with_step(4.0 * PI / MODE.angular_frequency(), 0.05 * MODE.length / elements as f64 / 2.0);
     let times = times.unwrap();
     let estimator = Estimator::new(

@@ -7,8 +7,8 @@ use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Estimator, Options, Request};
 
 /// Simulates and estimates; if the observer breaks, the steps done are estimated.
-pub(crate) fn run<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub(crate) fn run<const D: usize>(
+    problem: &Problem<D>,
     times: &TimeGrid,
     options: Options,
     request: &Request,

@@ -3,7 +3,7 @@
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_testkit::rotated;
 
 /// A parallelogram of aluminium, 50 mm along the floor and 40 mm along the wall, which open by an angle (degrees). It
@@ -29,12 +29,12 @@ impl Corner {
         [cos * x - sin * y, sin * x + cos * y]
     }
 
-    pub(crate) fn problem(&self) -> TriangleProblem {
+    pub(crate) fn problem(&self) -> Problem<2> {
         self.at_distance(3e-4)
     }
 
     /// With this gap to the wall (m).
-    pub(crate) fn at_distance(&self, distance: f64) -> TriangleProblem {
+    pub(crate) fn at_distance(&self, distance: f64) -> Problem<2> {
         let (sin, cos) = self.opening.to_radians().sin_cos();
         // At a right angle cos is 6e-17: the planes are exactly orthogonal only if it is 0.
         let cos = if self.opening == 90.0 { 0.0 } else { cos };
@@ -47,7 +47,7 @@ impl Corner {
         let floor = plane([0.0, 1.0], 1e-4, self.friction[0], "bottom");
         let wall = plane([sin, -cos], distance, self.friction[1], "left");
         let planes = if self.wall_first { [wall, floor] } else { [floor, wall] };
-        let builder = TriangleProblem::builder(rotated(&mesh, self.turn).unwrap())
+        let builder = Problem::<2>::builder(rotated(&mesh, self.turn).unwrap())
             .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
             .initial_velocity(Initial::Uniform(self.turned(self.velocity)));
         planes.into_iter().fold(builder, |builder, plane| builder.obstacle(plane)).build().unwrap()
@@ -55,13 +55,13 @@ impl Corner {
 }
 
 /// A rectangle that is turned against the floor, whose wall leans back by 30°.
-pub(crate) fn open_corner(tilt: f64, speed: f64, cells: [usize; 2]) -> TriangleProblem {
+pub(crate) fn open_corner(tilt: f64, speed: f64, cells: [usize; 2]) -> Problem<2> {
     let mesh = Mesh::rectangle(0.05, 0.04, cells[0], cells[1]).unwrap();
     let plane = |angle: f64, gap: f64, group: &str| {
         let normal = [(angle - tilt).cos(), (angle - tilt).sin()];
         Obstacle::plane(normal.map(|n| -gap * n), normal, 0.2, Some(group.to_string())).unwrap()
     };
-    TriangleProblem::builder(mesh)
+    Problem::<2>::builder(mesh)
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([-speed, -speed]))
         .obstacle(plane(90.0_f64.to_radians(), 5e-7 * speed, "bottom"))

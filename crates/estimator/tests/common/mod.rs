@@ -8,13 +8,13 @@ use percute_core::contact::Obstacle;
 use percute_core::load::Support;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_exact::BarMode;
 
 /// The block of §7.2 of the paper: aluminium, 50 × 40 mm, μ = 0.2, plane stress, v = (400, −400)
 /// m/s, at `gap` (m) from a plane below it.
-pub(crate) fn block(cells: [usize; 2], gap: f64) -> TriangleProblem {
-    Problem::<2, 3>::builder(Mesh::rectangle(0.05, 0.04, cells[0], cells[1]).unwrap())
+pub(crate) fn block(cells: [usize; 2], gap: f64) -> Problem<2> {
+    Problem::<2>::builder(Mesh::rectangle(0.05, 0.04, cells[0], cells[1]).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([400.0, -400.0]))
         .obstacle(Obstacle::plane([0.0, -gap], [0.0, 1.0], 0.2, None).unwrap())
@@ -23,10 +23,10 @@ pub(crate) fn block(cells: [usize; 2], gap: f64) -> TriangleProblem {
 }
 
 /// A bar of equal elements let go from its mode, with these ends fixed.
-pub(crate) fn bar_in_mode(mode: &BarMode, elements: usize, fixed: &[&str]) -> BarProblem {
+pub(crate) fn bar_in_mode(mode: &BarMode, elements: usize, fixed: &[&str]) -> Problem<1> {
     let mesh = Mesh::uniform_bar(mode.length, elements).unwrap();
     let displacement = mesh.points_in::<1>().iter().map(|p| [mode.displacement(p[0], 0.0)]).collect();
-    let mut builder = Problem::<1, 2>::builder(mesh)
+    let mut builder = Problem::<1>::builder(mesh)
         .material(Elastic::bar(mode.young, mode.density, mode.section).unwrap())
         .initial_displacement(Initial::Nodal(displacement));
     for group in fixed {

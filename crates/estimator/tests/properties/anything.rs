@@ -4,7 +4,7 @@ use crate::properties::bodies::{aluminium, fixed, gravity, plane_below, steps, s
 use crate::properties::estimating::check;
 use percute_core::load::{Profile, Table, Traction};
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::Random;
 use percute_testkit::strategy::{angle, rectangle};
@@ -18,9 +18,9 @@ fn few() -> ProptestConfig {
 
 /// A body over a plane with whatever `seed` adds: gravity that brings it back, a side held or pulled,
 /// velocities without rule, steps that change.
-fn problem(mesh: Mesh, tilt: f64, friction: f64, seed: u64) -> (TriangleProblem, TimeGrid) {
+fn problem(mesh: Mesh, tilt: f64, friction: f64, seed: u64) -> (Problem<2>, TimeGrid) {
     let mut random = Random::new(seed);
-    let free = Problem::<2, 3>::builder(mesh.clone()).material(aluminium()).build().unwrap();
+    let free = Problem::<2>::builder(mesh.clone()).material(aluminium()).build().unwrap();
     let courant = random.between(0.05, 0.95);
     let step = steps(&free, courant, 1).end();
     let speed = 10.0_f64.powf(random.between(-3.0, 2.5));
@@ -35,7 +35,7 @@ fn problem(mesh: Mesh, tilt: f64, friction: f64, seed: u64) -> (TriangleProblem,
         if is_held { [0.0; 2] } else { [speed * down[0] + wild * any(), speed * down[1] + wild * any()] }
     });
     let velocity = Initial::Nodal(velocity.collect());
-    let mut builder = Problem::<2, 3>::builder(mesh.clone())
+    let mut builder = Problem::<2>::builder(mesh.clone())
         .material(aluminium())
         .initial_velocity(velocity)
         .obstacle(plane_below(&mesh, tilt, gap, friction, None));

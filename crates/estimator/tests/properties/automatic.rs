@@ -4,19 +4,19 @@ use crate::properties::bodies::{plane_below, steps, thrown};
 use crate::properties::estimating::{estimate, estimate_with_maps, history};
 use percute_core::history::History;
 use percute_core::mesh::Mesh;
-use percute_core::problem::TriangleProblem;
+use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Options, Reconstruction, Request, Sampling};
 
 /// A block of so many columns that strikes a plane.
-fn block(columns: usize, tilt: f64) -> TriangleProblem {
+fn block(columns: usize, tilt: f64) -> Problem<2> {
     let mesh = Mesh::rectangle(0.05, 0.04, columns, columns * 4 / 5).unwrap();
     let plane = plane_below(&mesh, tilt, 2e-4, 0.2, None);
     thrown(mesh, [400.0, -400.0], plane).build().unwrap()
 }
 
 /// A flat and a tilted block, with so many steps that every second and every third is a sample.
-fn cases() -> [(TriangleProblem, usize); 2] {
+fn cases() -> [(Problem<2>, usize); 2] {
     [(block(50, 0.0), 90), (block(55, 0.05), 130)]
 }
 

@@ -7,7 +7,7 @@ use percute_core::ids::ElementId;
 use percute_core::load::{BodyForce, Support, Table};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{BarProblem, Builder, Initial, Problem, TriangleProblem};
+use percute_core::problem::{Builder, Initial, Problem};
 use percute_core::time::TimeGrid;
 use std::f64::consts::TAU;
 
@@ -25,13 +25,13 @@ pub(crate) fn plane_below(mesh: &Mesh, tilt: f64, gap: f64, friction: f64, group
 }
 
 /// A body of aluminium with a velocity and a plane.
-pub(crate) fn thrown(mesh: Mesh, velocity: [f64; 2], plane: Obstacle<2>) -> Builder<2, 3> {
-    TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Uniform(velocity)).obstacle(plane)
+pub(crate) fn thrown(mesh: Mesh, velocity: [f64; 2], plane: Obstacle<2>) -> Builder<2> {
+    Problem::<2>::builder(mesh).material(aluminium()).initial_velocity(Initial::Uniform(velocity)).obstacle(plane)
 }
 
 /// A bar of aluminium that a body force presses on a plane at its start again and again.
-pub(crate) fn bouncing_bar(mesh: Mesh) -> BarProblem {
-    Problem::<1, 2>::builder(mesh)
+pub(crate) fn bouncing_bar(mesh: Mesh) -> Problem<1> {
+    Problem::<1>::builder(mesh)
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-20.0]))
         .body_force(gravity([-2e6]))
@@ -41,12 +41,12 @@ pub(crate) fn bouncing_bar(mesh: Mesh) -> BarProblem {
 }
 
 /// `count` equal steps of a fraction of the critical one.
-pub(crate) fn steps<const D: usize, const N: usize>(problem: &Problem<D, N>, courant: f64, count: usize) -> TimeGrid {
+pub(crate) fn steps<const D: usize>(problem: &Problem<D>, courant: f64, count: usize) -> TimeGrid {
     TimeGrid::uniform(courant * critical_time_step(problem) * count as f64, count).unwrap()
 }
 
 /// Steps that swing `waves` times between 0.5 and 0.9 of the critical one.
-pub(crate) fn swinging<const D: usize, const N: usize>(problem: &Problem<D, N>, count: usize, waves: f64) -> TimeGrid {
+pub(crate) fn swinging<const D: usize>(problem: &Problem<D>, count: usize, waves: f64) -> TimeGrid {
     let critical = critical_time_step(problem);
     let step = |n: usize| critical * (0.7 + 0.2 * (TAU * waves * n as f64 / count as f64).sin());
     TimeGrid::from_steps(&(0..count).map(step).collect::<Vec<_>>()).unwrap()

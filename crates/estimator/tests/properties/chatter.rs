@@ -42,7 +42,7 @@ fn bounces() {
 fn slow_bodies() {
     for speed in [1e-2, 1e-4, 1e-6] {
         let mesh = random_rectangle(0.05, 0.04, 4, 5).unwrap();
-        let free = Problem::<2, 3>::builder(mesh.clone()).material(aluminium()).build().unwrap();
+        let free = Problem::<2>::builder(mesh.clone()).material(aluminium()).build().unwrap();
         let times = steps(&free, 0.3, 101);
         let plane = plane_below(&mesh, 0.0, 1.4 * speed * times.step(0), 0.2, None);
         let problem = thrown(mesh, [0.0, -speed], plane).build().unwrap();
@@ -57,7 +57,7 @@ fn thin_strips() {
         let mesh = Mesh::rectangle(0.05, 0.002, nx, 1).unwrap();
         let plane = plane_below(&mesh, 0.01, 1e-4, 0.5, None);
         let soft = Elastic::plane_stress(1e7, 0.45, 1200.0, 0.01).unwrap();
-        let problem = Problem::<2, 3>::builder(mesh)
+        let problem = Problem::<2>::builder(mesh)
             .material(soft)
             .initial_velocity(Initial::Uniform([3.0, -5.0]))
             .obstacle(plane)

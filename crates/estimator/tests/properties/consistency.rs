@@ -4,13 +4,13 @@ use crate::properties::bodies::{aluminium, gravity, plane_below, steps, swinging
 use crate::properties::estimating::{all_choices, estimate, history};
 use percute_core::dynamics::critical_time_step;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Options, Reconstruction, Sampling};
 use percute_testkit::random_rectangle;
 
 /// Problems with friction, gravity and steps that change.
-fn runs() -> Vec<(TriangleProblem, TimeGrid)> {
+fn runs() -> Vec<(Problem<2>, TimeGrid)> {
     let block = |seed| random_rectangle(0.05, 0.04, 5, seed).unwrap();
     let plane = |mesh: &Mesh, tilt| plane_below(mesh, tilt, 6e-4, 0.3, None);
     let fast = thrown(block(1), [400.0, -400.0], plane(&block(1), 0.0)).build().unwrap();
@@ -83,9 +83,9 @@ fn parts_are_not_negative_and_times_increase() {
 }
 
 /// The block of the paper's Table 1, with the gap and steps of the method's §8.
-fn table_block(nx: usize, ny: usize, count: usize) -> (TriangleProblem, TimeGrid) {
+fn table_block(nx: usize, ny: usize, count: usize) -> (Problem<2>, TimeGrid) {
     let mesh = Mesh::rectangle(0.05, 0.04, nx, ny).unwrap();
-    let free = Problem::<2, 3>::builder(mesh.clone()).material(aluminium()).build().unwrap();
+    let free = Problem::<2>::builder(mesh.clone()).material(aluminium()).build().unwrap();
     let step = 0.9 * critical_time_step(&free);
     let plane = plane_below(&mesh, 0.0, 1.3 * step * 400.0, 0.2, Some("bottom"));
     let problem = thrown(mesh, [400.0, -400.0], plane).build().unwrap();
@@ -116,8 +116,7 @@ fn consistent_is_sharper_on_the_flat_block() {
 #[test]
 fn a_translation_has_no_error() {
     let mesh = random_rectangle(0.05, 0.04, 6, 4).unwrap();
-    let problem =
-        Problem::<2, 3>::builder(mesh).material(aluminium()).initial_velocity(Initial::Uniform([123.4, -56.7]));
+    let problem = Problem::<2>::builder(mesh).material(aluminium()).initial_velocity(Initial::Uniform([123.4, -56.7]));
     let problem = problem.build().unwrap();
     let history = history(&problem, &steps(&problem, 0.9, 50));
     for options in all_choices() {
@@ -134,7 +133,7 @@ fn a_translation_has_no_error() {
 fn a_fall_has_no_error_but_rounding() {
     for (seed, tall) in [(4, 1.0), (5, 1e3)] {
         let mesh = random_rectangle(0.05 * tall, 0.04 * tall, 6, seed).unwrap();
-        let problem = Problem::<2, 3>::builder(mesh)
+        let problem = Problem::<2>::builder(mesh)
             .material(aluminium())
             .initial_velocity(Initial::Uniform([30.0, -50.0]))
             .body_force(gravity([0.0, -1e6]))

@@ -5,7 +5,7 @@ use crate::properties::bodies::{steps, swinging};
 use crate::properties::estimating::{all_choices, check, estimate, estimate_with_maps, history};
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_estimator::{Options, Request, Sampling};
 
 const CELLS: [usize; 2] = [6, 5];
@@ -56,7 +56,7 @@ fn a_far_wall_changes_nothing() {
         let normal = [f64::sin(turn), f64::cos(turn)];
         let floor = || Obstacle::plane([0.0, -2e-4], normal, 0.2, Some("bottom".to_string())).unwrap();
         let builder = || {
-            TriangleProblem::builder(far.mesh().clone())
+            Problem::<2>::builder(far.mesh().clone())
                 .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
                 .initial_velocity(Initial::Uniform([-30.0, -200.0]))
                 .obstacle(floor())

@@ -75,7 +75,7 @@ fn bits(estimate: &Estimate) -> Vec<u64> {
     numbers.into_iter().map(f64::to_bits).collect()
 }
 
-fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, times: &TimeGrid) {
+fn check<const D: usize>(what: &str, problem: &Problem<D>, times: &TimeGrid) {
     let history = history(problem, times);
     assert!(reactions::<D>(&history) > 3, "{what}");
     // Energies and works that the steps tell are those of the run.

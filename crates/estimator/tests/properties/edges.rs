@@ -8,7 +8,7 @@ use percute_core::history::History;
 use percute_core::load::{Support, Table};
 use percute_core::mesh::Mesh;
 use percute_core::observer::Progress;
-use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Options, Reconstruction, Request};
 use percute_testkit::{random_rectangle, rotated};
@@ -19,7 +19,7 @@ fn block() -> Mesh {
 }
 
 /// A block that strikes the plane after two to three steps.
-fn impact() -> TriangleProblem {
+fn impact() -> Problem<2> {
     let plane = plane_below(&block(), 0.0, 6e-4, 0.2, None);
     thrown(block(), [100.0, -300.0], plane).build().unwrap()
 }
@@ -86,7 +86,7 @@ fn a_single_step() {
 #[test]
 fn a_single_element() {
     let mesh = Mesh::uniform_bar(0.1, 1).unwrap();
-    let problem = Problem::<1, 2>::builder(mesh)
+    let problem = Problem::<1>::builder(mesh)
         .material(percute_core::material::Elastic::bar(70e9, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([-10.0]))
         .obstacle(Obstacle::plane([-2e-4], [1.0], 0.0, None).unwrap())

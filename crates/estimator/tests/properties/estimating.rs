@@ -3,7 +3,7 @@
 use percute_core::dynamics::{Evaluation, replay, simulate};
 use percute_core::history::{History, SinkError, StateSink, Step, StepError, StepSource};
 use percute_core::observer::Unobserved;
-use percute_core::problem::{Problem, TriangleProblem};
+use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{Acceleration, Estimate, EstimateError, Estimator, Options, Reconstruction, Request, Sampling};
 
@@ -20,7 +20,7 @@ pub(crate) fn all_choices() -> impl Iterator<Item = Options> {
 }
 
 /// The steps of a problem that must run to its end.
-pub(crate) fn history<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> History {
+pub(crate) fn history<const D: usize>(problem: &Problem<D>, times: &TimeGrid) -> History {
     let mut history = History::new(times);
     simulate(problem, times, &mut history, &mut Unobserved).unwrap();
     history
@@ -33,7 +33,7 @@ pub(crate) struct Evaluated<'p> {
 }
 
 impl<'p> Evaluated<'p> {
-    pub(crate) fn new(problem: &'p TriangleProblem, times: &'p TimeGrid, options: Options) -> Self {
+    pub(crate) fn new(problem: &'p Problem<2>, times: &'p TimeGrid, options: Options) -> Self {
         let estimator = Estimator::new(problem, times, options).unwrap();
         Self { evaluation: Evaluation::new(problem, times), estimator }
     }
@@ -52,17 +52,13 @@ pub(crate) fn cause(error: SinkError) -> EstimateError {
 }
 
 /// The estimate of a stored history.
-pub(crate) fn estimate<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    history: &History,
-    options: Options,
-) -> Estimate {
+pub(crate) fn estimate<const D: usize>(problem: &Problem<D>, history: &History, options: Options) -> Estimate {
     estimate_with_maps(problem, history, options, &Request::default())
 }
 
 /// The same with maps.
-pub(crate) fn estimate_with_maps<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub(crate) fn estimate_with_maps<const D: usize>(
+    problem: &Problem<D>,
     history: &History,
     options: Options,
     request: &Request,
@@ -84,7 +80,7 @@ pub(crate) fn assert_admissible(what: &str, estimate: &Estimate) {
 /// Runs a problem and checks the residuals of its estimate under all choices and with samples at
 /// every, every second and every fifth step. Returns the number of reactions, so that a case in
 /// which nothing happens can be seen.
-pub(crate) fn check<const D: usize, const N: usize>(what: &str, problem: &Problem<D, N>, times: &TimeGrid) -> usize {
+pub(crate) fn check<const D: usize>(what: &str, problem: &Problem<D>, times: &TimeGrid) -> usize {
     let history = history(problem, times);
     for (k, options) in all_choices().enumerate() {
         // Each `every` meets each reconstruction; all 20 combinations would cost three times as much.

@@ -2,7 +2,7 @@
 
 use crate::properties::bodies::steps;
 use crate::properties::estimating::{assert_admissible, estimate, history};
-use percute_core::problem::TriangleProblem;
+use percute_core::problem::Problem;
 use percute_estimator::{Options, Sampling};
 use percute_testkit::Roof;
 
@@ -23,7 +23,7 @@ const ROOFS: [(f64, f64, [usize; 2]); 11] = [
 
 /// The estimate of the half times √2 is that of the whole, but for a part `less` of it: supports on the line of
 /// symmetry take tractions across it, as they are in the whole.
-fn check(roof: &str, [whole, half]: [&TriangleProblem; 2], less: f64) {
+fn check(roof: &str, [whole, half]: [&Problem<2>; 2], less: f64) {
     let times = steps(whole, 0.9, 40);
     let options = Options { every: Sampling::Every(1), threads: Some(1), ..Options::default() };
     let [whole, half] = [whole, half].map(|problem| estimate(problem, &history(problem, &times), options));

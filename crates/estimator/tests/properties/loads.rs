@@ -33,7 +33,7 @@ fn supported_and_pulled() {
     for (k, side) in sides.iter().enumerate() {
         for components in [[true, false], [false, true], [true, true]] {
             let next = sides[(k + 1) % 4];
-            let problem = Problem::<2, 3>::builder(block(k as u64))
+            let problem = Problem::<2>::builder(block(k as u64))
                 .material(aluminium())
                 .support(fixed(side, components))
                 .traction(pull(next, pulse([3e8, -1e8]), [20.0, -35.0]))
@@ -49,7 +49,7 @@ fn supported_and_pulled() {
 #[test]
 fn boxes_on_rollers() {
     for sides in [vec!["left", "bottom"], vec!["left", "bottom", "right", "top"]] {
-        let mut builder = Problem::<2, 3>::builder(block(4)).material(aluminium());
+        let mut builder = Problem::<2>::builder(block(4)).material(aluminium());
         for side in &sides {
             builder = builder
                 .support(fixed(side, if ["left", "right"].contains(side) { [true, false] } else { [false, true] }));
@@ -105,7 +105,7 @@ fn a_corner_on_a_roller_touches() {
 #[test]
 fn two_planes() {
     let plane = |point, normal, mu, group: &str| Obstacle::plane(point, normal, mu, Some(group.to_string())).unwrap();
-    let problem = Problem::<2, 3>::builder(block(8))
+    let problem = Problem::<2>::builder(block(8))
         .material(Elastic::plane_strain(70e9, 0.3, 2700.0, 0.5).unwrap())
         .initial_velocity(Initial::Uniform([50.0, -250.0]))
         .obstacle(plane([0.0, -2e-4], [0.0, 1.0], 0.1, "bottom"))
@@ -131,7 +131,7 @@ fn two_materials() {
     for seed in 0..3 {
         let mesh = in_two_groups(&block(seed), |c| c[0] + 0.3 * c[1] < 0.027);
         let plane = plane_below(&mesh, 0.05, 1e-4, 0.2, None);
-        let problem = Problem::<2, 3>::builder(mesh)
+        let problem = Problem::<2>::builder(mesh)
             .material_of("first", Elastic::plane_stress(210e9, 0.28, 7800.0, 0.03).unwrap())
             .material_of("second", Elastic::plane_strain(3e9, 0.4, 1200.0, 0.011).unwrap())
             .initial_velocity(Initial::Uniform([20.0, -150.0]))
@@ -154,7 +154,7 @@ fn uneven_bars() {
     let mesh = in_two_groups(&mesh, |c| c[0] < 0.04);
     let table = |v: [f64; 3]| Table::new(vec![0.0, 8e-6, 3e-5], v.map(|x| [x]).to_vec()).unwrap();
     for end in 0..3 {
-        let builder = Problem::<1, 2>::builder(mesh.clone())
+        let builder = Problem::<1>::builder(mesh.clone())
             .material_of("first", Elastic::bar(70e9, 2700.0, 0.02).unwrap())
             .material_of("second", Elastic::bar(210e9, 7800.0, 0.005).unwrap())
             .initial_velocity(Initial::Uniform([-30.0]))

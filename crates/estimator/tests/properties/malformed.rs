@@ -3,7 +3,7 @@
 use crate::properties::bodies::{plane_below, steps, thrown};
 use crate::properties::estimating::{Evaluated, cause, history};
 use percute_core::history::{Step, StepError};
-use percute_core::problem::TriangleProblem;
+use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{
     Acceleration, EstimateError, Estimator, MOST_THREADS, Options, Reconstruction, Sampling, UnsuitableAcceleration,
@@ -33,7 +33,7 @@ impl Raw {
     }
 }
 
-fn impact() -> TriangleProblem {
+fn impact() -> Problem<2> {
     let mesh = random_rectangle(0.05, 0.04, 5, 1).unwrap();
     let plane = plane_below(&mesh, 0.0, 6e-4, 0.2, None);
     thrown(mesh, [100.0, -300.0], plane).build().unwrap()

@@ -7,7 +7,7 @@ use percute_core::history::History;
 use percute_core::load::{Profile, Table, Traction};
 use percute_core::material::Law;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{
     AdmissibleFields, ElementMap, Estimate, EstimateError, Estimator, Options, Reconstruction, Request, RequestError,
@@ -16,7 +16,7 @@ use percute_estimator::{
 use percute_testkit::random_rectangle;
 
 /// A body that turns, strikes and slides, with steps that change.
-fn impact() -> (TriangleProblem, TimeGrid) {
+fn impact() -> (Problem<2>, TimeGrid) {
     let mesh = random_rectangle(0.05, 0.04, 6, 2).unwrap();
     let plane = plane_below(&mesh, 0.03, 3e-4, 0.3, None);
     let problem = thrown(mesh, [100.0, -300.0], plane).body_force(gravity([0.0, -1e6])).build().unwrap();
@@ -33,7 +33,7 @@ fn fields(map: &ElementMap) -> &AdmissibleFields {
 }
 
 /// What holds of the maps of any estimate: sums, growth, and the instants asked for.
-fn check<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) {
+fn check<const D: usize>(problem: &Problem<D>, times: &TimeGrid) {
     let history = history(problem, times);
     for (k, options) in all_choices().enumerate() {
         let options = Options { every: Sampling::Every(1 + k % 3), ..options };
@@ -157,7 +157,7 @@ fn a_uniform_stress_is_reproduced() {
     let product = |m: [[f64; 2]; 2], x: [f64; 2]| [0, 1].map(|a| m[a][0] * x[0] + m[a][1] * x[1]);
     let displacement: Vec<_> = mesh.points_in::<2>().iter().map(|p| product(strain, *p)).collect();
     let mut builder =
-        Problem::<2, 3>::builder(mesh).material(aluminium()).initial_displacement(Initial::Nodal(displacement.clone()));
+        Problem::<2>::builder(mesh).material(aluminium()).initial_displacement(Initial::Nodal(displacement.clone()));
     for (group, normal) in [("left", [-1.0, 0.0]), ("right", [1.0, 0.0]), ("bottom", [0.0, -1.0]), ("top", [0.0, 1.0])]
     {
         let value = Table::constant(product(given, normal));
@@ -192,7 +192,7 @@ fn accelerations_balance_the_loads() {
     let mesh = random_rectangle(0.05, 0.04, 5, 4).unwrap();
     let end = 1e-5;
     let value = Table::new(vec![0.0, end], vec![[1e8, 0.0], [3e8, -2e8]]).unwrap();
-    let problem = Problem::<2, 3>::builder(mesh)
+    let problem = Problem::<2>::builder(mesh)
         .material(aluminium())
         .traction(Traction { group: "top".to_string(), value: value.clone(), profile: Profile::UNIFORM })
         .body_force(gravity([2e6, -1e6]))
@@ -241,7 +241,7 @@ fn impossible_requests_are_refused() {
 /// More bytes than there are addresses, 2⁴⁷: 9 numbers of each of 1e6 elements at 4e6 steps are 2.9e14.
 #[test]
 fn more_maps_than_memory_are_refused() {
-    let problem = Problem::<1, 2>::builder(Mesh::uniform_bar(1.0, 1_000_000).unwrap())
+    let problem = Problem::<1>::builder(Mesh::uniform_bar(1.0, 1_000_000).unwrap())
         .material(percute_core::material::Elastic::bar(1.0, 1.0, 1.0).unwrap())
         .build()
         .unwrap();
@@ -297,7 +297,7 @@ fn steps_are_spread_evenly() {
     assert_eq!(Request::evenly(&uneven, 3, 1).steps, [0, 1, 5]);
     assert_eq!(Request::evenly(&uneven, 5, 1).steps, [0, 1, 3, 5]);
     let mesh = Mesh::rectangle(1.0, 1.0, 1, 1).unwrap();
-    let problem = Problem::<2, 3>::builder(mesh).material(aluminium()).build().unwrap();
+    let problem = Problem::<2>::builder(mesh).material(aluminium()).build().unwrap();
     for (count, every) in [(1, 1), (3, 1), (7, 3), (50, 7), (99, 1), (1000, 13)] {
         let request = Request::evenly(&times, count, every);
         let options = Options { every: Sampling::Every(every), ..Options::default() };

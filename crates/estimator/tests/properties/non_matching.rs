@@ -6,7 +6,7 @@ use percute_core::border::vectors;
 use percute_core::contact::{Interface, Side};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{EstimateError, Estimator, Options, Reconstruction, Request, Sampling, SurfaceEstimate};
 use percute_testkit::{Random, mirrored, rotated, translated, upside_down};
@@ -55,13 +55,13 @@ impl Blocks {
         rotated(&both, self.angle).unwrap()
     }
 
-    fn between(&self, interface: Interface) -> TriangleProblem {
+    fn between(&self, interface: Interface) -> Problem<2> {
         let (mesh, (sin, cos)) = (self.mesh(), self.angle.sin_cos());
         let turned = |v: [f64; 2]| [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]];
         let upper = (self.cells[0][0] + 1) * (self.cells[0][1] + 1);
         let velocity = |node: usize| turned(self.velocities[usize::from(node >= upper)]);
         let velocity = (0..mesh.node_count()).map(velocity).collect();
-        TriangleProblem::builder(mesh)
+        Problem::<2>::builder(mesh)
             .material_of("upper", self.materials[0])
             .material_of("lower", self.materials[1])
             .initial_velocity(Initial::Nodal(velocity))
@@ -70,7 +70,7 @@ impl Blocks {
             .unwrap()
     }
 
-    fn problem(&self) -> TriangleProblem {
+    fn problem(&self) -> Problem<2> {
         self.between(Interface::non_matching(2, "upper.bottom", "lower.top", self.friction).unwrap())
     }
 }
@@ -90,7 +90,7 @@ fn on_matching_surfaces_multipliers_are_pairs() {
         let half = block.node_count();
         let velocity: Vec<_> = (0..2 * half).map(|node| [0.0, if node < half { -20.0 } else { 20.0 }]).collect();
         let between = |interface: Interface| {
-            TriangleProblem::builder(mesh.clone())
+            Problem::<2>::builder(mesh.clone())
                 .material(material)
                 .initial_velocity(Initial::Nodal(velocity.clone()))
                 .interface(interface)
@@ -217,7 +217,7 @@ fn the_frame_and_the_order_do_not_matter() {
     for (blocks, count) in [(flat, 60), (corner, 90)] {
         let problem = blocks.problem();
         let times = steps(&problem, 0.9, count);
-        let error = |problem: &TriangleProblem, options| estimate(problem, &history(problem, &times), options).error;
+        let error = |problem: &Problem<2>, options| estimate(problem, &history(problem, &times), options).error;
         let expected = error(&problem, Options::default());
         let exchanged = Interface::non_matching(2, "lower.top", "upper.bottom", blocks.friction).unwrap();
         for other in [Blocks { angle: 0.7, ..blocks }.problem(), blocks.between(exchanged)] {
@@ -262,7 +262,7 @@ fn check_images(name: &str, [upper, lower]: [&Mesh; 2], [tip, top]: [&str; 2], c
     let mesh = Mesh::joined(&[("upper", upper), ("lower", lower)]).unwrap();
     let problem = |mesh: Mesh, down: [f64; 2]| {
         let velocity = |node: usize| if node < upper.node_count() { down.map(|part| 20.0 * part) } else { [0.0; 2] };
-        TriangleProblem::builder(mesh.clone())
+        Problem::<2>::builder(mesh.clone())
             .material(aluminium())
             .initial_velocity(Initial::Nodal((0..mesh.node_count()).map(velocity).collect()))
             .interface(Interface::non_matching(2, tip, top, 0.2).unwrap())
@@ -271,7 +271,7 @@ fn check_images(name: &str, [upper, lower]: [&Mesh; 2], [tip, top]: [&str; 2], c
     };
     let one = problem(mesh.clone(), [0.0, -1.0]);
     let times = steps(&one, 0.9, count);
-    let error = |problem: &TriangleProblem| estimate(problem, &history(problem, &times), Options::default()).error;
+    let error = |problem: &Problem<2>| estimate(problem, &history(problem, &times), Options::default()).error;
     let (expected, (sin, cos)) = (error(&one), 0.6_f64.sin_cos());
     assert!(expected.sup > 0.0);
     let turned = problem(rotated(&mesh, 0.6).unwrap(), [sin, -cos]);

@@ -6,7 +6,7 @@ use percute_core::border::vectors;
 use percute_core::contact::{Interface, Obstacle};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{BarProblem, Builder, Initial, TriangleProblem};
+use percute_core::problem::{Builder, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Options, Request, Sampling};
 use percute_testkit::{random_rectangle, rotated, translated, upside_down};
@@ -47,22 +47,22 @@ impl Blocks {
         rotated(&Mesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap(), self.angle).unwrap()
     }
 
-    fn builder(&self) -> Builder<2, 3> {
+    fn builder(&self) -> Builder<2> {
         let (mesh, half, (sin, cos)) = (self.mesh(), self.block.node_count(), self.angle.sin_cos());
         let turned = |v: [f64; 2]| [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]];
         let velocity = |i: usize| turned(self.velocities[usize::from(i >= half)]);
         let velocity = (0..mesh.node_count()).map(velocity).collect();
-        TriangleProblem::builder(mesh)
+        Problem::<2>::builder(mesh)
             .material_of("upper", self.materials[0])
             .material_of("lower", self.materials[1])
             .initial_velocity(Initial::Nodal(velocity))
     }
 
-    fn problem(&self) -> TriangleProblem {
+    fn problem(&self) -> Problem<2> {
         self.between(["upper.bottom", "lower.bottom"])
     }
 
-    fn between(&self, groups: [&str; 2]) -> TriangleProblem {
+    fn between(&self, groups: [&str; 2]) -> Problem<2> {
         let interface = Interface::matching(2, groups[0], groups[1], self.friction).unwrap();
         self.builder().interface(interface).build().unwrap()
     }
@@ -83,13 +83,13 @@ fn mirrored_blocks_have_twice_the_error_of_one() {
         let mesh = Mesh::joined(&[("upper", &upper), ("lower", &lower)]).unwrap();
         let half = upper.node_count();
         let velocity = (0..mesh.node_count()).map(|i| blocks.velocities[usize::from(i >= half)]).collect();
-        let both = TriangleProblem::builder(mesh)
+        let both = Problem::<2>::builder(mesh)
             .material(aluminium())
             .initial_velocity(Initial::Nodal(velocity))
             .interface(Interface::matching(2, "upper.bottom", "lower.bottom", 0.0).unwrap())
             .build()
             .unwrap();
-        let one = TriangleProblem::builder(upper)
+        let one = Problem::<2>::builder(upper)
             .material(aluminium())
             .initial_velocity(Initial::Uniform([0.0, -20.0]))
             .obstacle(Obstacle::plane([0.0, 0.0], [0.0, 1.0], 0.0, Some("bottom".into())).unwrap())
@@ -178,7 +178,7 @@ fn the_roles_of_the_bodies_do_not_matter() {
     };
     let problem = blocks.problem();
     let times = steps(&problem, 0.9, 60);
-    let error = |problem: &TriangleProblem| estimate(problem, &history(problem, &times), Options::default()).error;
+    let error = |problem: &Problem<2>| estimate(problem, &history(problem, &times), Options::default()).error;
     let expected = error(&problem);
     let turned = Blocks { angle: 0.4, ..Blocks { ..blocks } };
     let [exchanged, turned] = [turned.between(["lower.bottom", "upper.bottom"]), turned.problem()].map(|p| error(&p));
@@ -192,14 +192,14 @@ fn the_roles_of_the_bodies_do_not_matter() {
 /// A body s times stiffer and denser tends to a rigid plane, and the difference falls like 1/s.
 #[test]
 fn a_heavy_body_is_a_rigid_plane() {
-    let single = TriangleProblem::builder(translated(&Blocks::head_on().block, [0.0, 2.0 * GAP]).unwrap())
+    let single = Problem::<2>::builder(translated(&Blocks::head_on().block, [0.0, 2.0 * GAP]).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform([5.0, -20.0]))
         .obstacle(Obstacle::plane([0.0, 0.0], [0.0, 1.0], 0.2, Some("bottom".into())).unwrap())
         .build()
         .unwrap();
     let times = steps(&single, 0.9, 60);
-    let error = |problem: &TriangleProblem| estimate(problem, &history(problem, &times), Options::default()).error.sup;
+    let error = |problem: &Problem<2>| estimate(problem, &history(problem, &times), Options::default()).error.sup;
     let rigid = error(&single);
     let differences = [1e3, 1e5].map(|s| {
         let heavy = Elastic::plane_stress(s * 70e9, 0.3, s * 2700.0, 1.0).unwrap();
@@ -222,7 +222,7 @@ fn bars_are_admissible() {
         let first = left.node_count();
         let velocity = (0..mesh.node_count()).map(|i| [if i < first { 10.0 } else { 0.0 }]).collect();
         let law = |section: f64| Elastic::bar(70e9, 2700.0, section).unwrap();
-        let problem = BarProblem::builder(mesh)
+        let problem = Problem::<1>::builder(mesh)
             .material_of("left", law(sections[0]))
             .material_of("right", law(sections[1]))
             .initial_velocity(Initial::Nodal(velocity))

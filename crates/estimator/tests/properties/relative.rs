@@ -5,7 +5,7 @@ use crate::properties::estimating::{all_choices, estimate, history};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
-use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{ErrorMeasures, Options, Sampling};
 use percute_testkit::random_rectangle;
@@ -21,7 +21,7 @@ fn block() -> Mesh {
 }
 
 /// The measures of a problem that flies for some whole steps and 2.4 of them, and goes on for 60.
-fn measures(build: impl Fn(f64) -> TriangleProblem, speed: f64, flight: usize, options: Options) -> ErrorMeasures {
+fn measures(build: impl Fn(f64) -> Problem<2>, speed: f64, flight: usize, options: Options) -> ErrorMeasures {
     let dt = 0.85 * critical_time_step(&build(1.0));
     let problem = build((flight as f64 + 2.4) * speed * dt);
     let steps = flight + 60;
@@ -82,7 +82,7 @@ fn a_body_that_flies_by_changes_no_relative_error() {
                 joined.points_in::<2>().iter().map(|[x, _]| if *x > 0.5 { [600.0, 50.0] } else { [0.0, -20.0] });
             let plane =
                 Obstacle::plane(*plane.as_plane().unwrap().point(), [0.0, 1.0], 0.0, Some("near.bottom".into()));
-            Problem::<2, 3>::builder(joined.clone())
+            Problem::<2>::builder(joined.clone())
                 .material(aluminium())
                 .initial_velocity(Initial::Nodal(velocity.collect()))
                 .obstacle(plane.unwrap())

@@ -4,7 +4,7 @@ use crate::properties::bodies::{aluminium, steps};
 use crate::properties::estimating::{assert_admissible, estimate, history};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Between, Contact, Initial, TriangleProblem};
+use percute_core::problem::{Between, Contact, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Options, Sampling};
 use percute_testkit::{Random, translated};
@@ -31,7 +31,7 @@ impl Three {
         Self { cells: [[20, 16], [7, 11], [9, 12]], aside: 0.0, velocities, friction: 0.2, right: aluminium() }
     }
 
-    fn problem(&self) -> TriangleProblem {
+    fn problem(&self) -> Problem<2> {
         let width = 0.02 - 0.5 * SLIT;
         let block = |k: usize, width: f64, at: [f64; 2]| {
             let mesh = Mesh::rectangle(width, HEIGHT, self.cells[k][0], self.cells[k][1]).unwrap();
@@ -48,7 +48,7 @@ impl Three {
             let groups = Between::Groups(["upper.bottom".to_string(), below.to_string()]);
             Contact::new(2, groups, self.friction, None).unwrap()
         };
-        TriangleProblem::builder(Mesh::joined(&named).unwrap())
+        Problem::<2>::builder(Mesh::joined(&named).unwrap())
             .material_of("upper", aluminium())
             .material_of("left", aluminium())
             .material_of("right", self.right)

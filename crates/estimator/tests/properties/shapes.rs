@@ -69,7 +69,7 @@ fn almost_incompressible_blocks() {
             for tilt in [0.0, 0.1_f64] {
                 let mesh = Mesh::rectangle(0.01 * aspect, 0.0075, 4, 3).unwrap();
                 let build = |plane: Option<Obstacle<2>>| {
-                    let builder = Problem::<2, 3>::builder(mesh.clone())
+                    let builder = Problem::<2>::builder(mesh.clone())
                         .material(Elastic::plane_strain(70e9, ratio, 2700.0, 1.0).unwrap())
                         .initial_velocity(Initial::Uniform([4.0, -4.0]));
                     plane.into_iter().fold(builder, percute_core::problem::Builder::obstacle).build().unwrap()
@@ -118,7 +118,7 @@ fn initial_fields() {
     ];
     for (what, velocity) in fields {
         for prestrain in [0.0, 1e-3] {
-            let problem = Problem::<2, 3>::builder(mesh.clone())
+            let problem = Problem::<2>::builder(mesh.clone())
                 .material(aluminium())
                 .initial_velocity(velocity.clone())
                 .initial_displacement(field(&mut |p| [prestrain * p[0] * p[1] / 0.05, -prestrain * p[0]]))

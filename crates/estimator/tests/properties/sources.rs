@@ -3,11 +3,11 @@
 use crate::properties::bodies::{aluminium, bouncing_bar, plane_below, steps, thrown};
 use crate::properties::estimating::{estimate, history};
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_estimator::{Ablation, Estimate, Options, Reconstruction, Sampling, Separation};
 use percute_testkit::random_rectangle;
 
-fn block(tilt: f64) -> TriangleProblem {
+fn block(tilt: f64) -> Problem<2> {
     let mesh = random_rectangle(0.05, 0.04, 6, 1).unwrap();
     let plane = plane_below(&mesh, tilt, 2e-4, 0.2, None);
     thrown(mesh, [400.0, -400.0], plane).build().unwrap()
@@ -64,11 +64,8 @@ fn they_need_an_auxiliary_solution() {
 fn a_free_body_has_neither_surface_nor_front() {
     let mesh = Mesh::rectangle(1.0, 1.0, 6, 6).unwrap();
     let velocity = mesh.points_in::<2>().iter().map(|[x, y]| [(3.0 * x).cos() * (3.0 * y).sin(), x * y]).collect();
-    let problem = Problem::<2, 3>::builder(mesh)
-        .material(aluminium())
-        .initial_velocity(Initial::Nodal(velocity))
-        .build()
-        .unwrap();
+    let problem =
+        Problem::<2>::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity)).build().unwrap();
     let estimate = estimate(&problem, &history(&problem, &steps(&problem, 0.9, 40)), Options::default());
     check("free", &estimate);
     let Separation { mean, at_sup, .. } = *separation(&estimate);

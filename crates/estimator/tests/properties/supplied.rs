@@ -5,7 +5,7 @@ use crate::properties::estimating::{Evaluated, all_choices, assert_admissible, c
 use percute_core::dynamics::Evaluation;
 use percute_core::history::{History, Step, StepError};
 use percute_core::load::{Support, Table};
-use percute_core::problem::TriangleProblem;
+use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, EstimateError, Options, Reconstruction, Supplied};
 use percute_testkit::random_rectangle;
@@ -16,7 +16,7 @@ type Field = Vec<f64>;
 type Change<'a> = &'a dyn Fn(usize, &Field) -> Field;
 
 /// A body thrown on a plane with friction under gravity, and one driven on it with a roller at its side.
-fn runs() -> Vec<(TriangleProblem, TimeGrid)> {
+fn runs() -> Vec<(Problem<2>, TimeGrid)> {
     let mesh = random_rectangle(0.05, 0.04, 5, 1).unwrap();
     let plane = || plane_below(&mesh, 0.0, 3e-4, 0.3, Some("bottom"));
     let falling = thrown(mesh.clone(), [100.0, -300.0], plane()).body_force(gravity([0.0, -1e6])).build().unwrap();
@@ -31,7 +31,7 @@ fn runs() -> Vec<(TriangleProblem, TimeGrid)> {
 }
 
 /// v_n and a_n of the scheme.
-fn motion(problem: &TriangleProblem, history: &History, times: &TimeGrid) -> Vec<(Field, Field)> {
+fn motion(problem: &Problem<2>, history: &History, times: &TimeGrid) -> Vec<(Field, Field)> {
     let mut evaluation = Evaluation::new(problem, times);
     let at = |n: usize| {
         let step = history.step(n).unwrap();

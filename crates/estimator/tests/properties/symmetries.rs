@@ -11,7 +11,7 @@ use percute_core::ids::{ElementId, NodeId};
 use percute_core::load::{Profile, Support, Table, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::{Mesh, Numbering};
-use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::strategy::{angle, rectangle};
 use percute_testkit::{mirrored, renumbered, rotated};
@@ -38,7 +38,7 @@ struct Throw {
 
 impl Throw {
     fn new(mesh: Mesh, along: f64, speed: f64, friction: f64, driven: bool) -> Self {
-        let free = Problem::<2, 3>::builder(mesh.clone()).material(aluminium()).build().unwrap();
+        let free = Problem::<2>::builder(mesh.clone()).material(aluminium()).build().unwrap();
         let times = steps(&free, 0.85, 50);
         let (velocity, gap) = ([along, -speed], 2.4 * speed * times.step(0));
         // Some 1 % of the stress of the impact, ρ c v.
@@ -47,12 +47,12 @@ impl Throw {
     }
 
     /// The problem after `map` has moved all vectors and the plane's point; the bottom may touch.
-    fn problem(&self, map: impl Fn([f64; 2]) -> [f64; 2]) -> TriangleProblem {
+    fn problem(&self, map: impl Fn([f64; 2]) -> [f64; 2]) -> Problem<2> {
         let [along, down] = self.velocity;
         let value = vec![map([self.pull, 1.5 * self.pull]), map([-self.pull, 0.5 * self.pull])];
         let value = Table::new(vec![0.0, self.times.end()], value).unwrap();
         let bottom = Some("bottom".to_string());
-        let builder = Problem::<2, 3>::builder(self.mesh.clone())
+        let builder = Problem::<2>::builder(self.mesh.clone())
             .material(self.material)
             .initial_velocity(Initial::Uniform(map(self.velocity)))
             .obstacle(Obstacle::plane(map([0.0, -self.gap]), map([0.0, 1.0]), self.friction, bottom).unwrap());
@@ -85,8 +85,8 @@ const SAME: Expected<'static> = Expected { scale: 1.0, element: &|e| e, referenc
 
 /// Compares the estimates of two problems under all choices, to 1e-9.
 fn compare(
-    one: &TriangleProblem,
-    other: &TriangleProblem,
+    one: &Problem<2>,
+    other: &Problem<2>,
     times: &TimeGrid,
     expected: &Expected<'_>,
 ) -> Result<(), TestCaseError> {
@@ -211,10 +211,10 @@ proptest! {
 fn a_symmetric_disc() {
     for speed in [4.0, 100.0] {
         let mesh = Mesh::disc(0.025, 4).unwrap().refined().unwrap();
-        let times = steps(&Problem::<2, 3>::builder(mesh.clone()).material(aluminium()).build().unwrap(), 0.85, 100);
+        let times = steps(&Problem::<2>::builder(mesh.clone()).material(aluminium()).build().unwrap(), 0.85, 100);
         let gap = 2.4 * speed * times.step(0);
         let problem = |mesh: Mesh, map: &dyn Fn([f64; 2]) -> [f64; 2]| {
-            Problem::<2, 3>::builder(mesh)
+            Problem::<2>::builder(mesh)
                 .material(aluminium())
                 .initial_velocity(Initial::Uniform(map([0.0, -speed])))
                 .obstacle(Obstacle::plane(map([0.0, -0.025 - gap]), map([0.0, 1.0]), 0.2, None).unwrap())

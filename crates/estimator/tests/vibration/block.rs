@@ -7,7 +7,7 @@ use percute_core::load::Support;
 use percute_core::material::{Elastic, Law};
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::Motion;
 use percute_estimator::{Acceleration, Estimate, Estimator, Options, Reconstruction};
@@ -33,11 +33,11 @@ fn mode(wave: Wave) -> BlockMode {
     }
 }
 
-fn problem(mode: &BlockMode, cells: usize) -> TriangleProblem {
+fn problem(mode: &BlockMode, cells: usize) -> Problem<2> {
     let mesh = Mesh::rectangle(SIDES[0], SIDES[1], 5 * cells, 4 * cells).unwrap();
     let displacement = mesh.points_in::<2>().iter().map(|p| mode.displacement(*p, 0.0)).collect();
     let law = Elastic::plane_stress(YOUNG, POISSON, mode.density, mode.thickness).unwrap();
-    let mut builder = Problem::<2, 3>::builder(mesh).material(law).initial_displacement(Initial::Nodal(displacement));
+    let mut builder = Problem::<2>::builder(mesh).material(law).initial_displacement(Initial::Nodal(displacement));
     for (group, components) in
         [("left", [true, false]), ("right", [true, false]), ("bottom", [false, true]), ("top", [false, true])]
     {
@@ -59,7 +59,7 @@ const RULE: [(f64, f64); 2] =
 type Exact = ([[f64; 2]; 2], [f64; 2]);
 
 /// Squared energy norm of the difference of P1 fields and exact ones.
-fn square(problem: &TriangleProblem, exact: impl Fn([f64; 2]) -> Exact, u: &[[f64; 2]], v: &[[f64; 2]]) -> f64 {
+fn square(problem: &Problem<2>, exact: impl Fn([f64; 2]) -> Exact, u: &[[f64; 2]], v: &[[f64; 2]]) -> f64 {
     let mesh = problem.mesh();
     let mut sum = 0.0;
     for e in (0..mesh.element_count()).map(ElementId::new) {
@@ -87,7 +87,7 @@ fn square(problem: &TriangleProblem, exact: impl Fn([f64; 2]) -> Exact, u: &[[f6
 }
 
 /// Motion and estimates, one for each Γ_DA, over one period at a Courant number.
-fn run(problem: &TriangleProblem, mode: &BlockMode, courant: f64) -> (Motion, [Estimate; 3]) {
+fn run(problem: &Problem<2>, mode: &BlockMode, courant: f64) -> (Motion, [Estimate; 3]) {
     let step = courant * critical_time_step(problem);
     let times = TimeGrid::with_step(2.0 * PI / mode.angular_frequency(), step).unwrap();
     let estimator = |acceleration| {
@@ -112,11 +112,7 @@ fn run(problem: &TriangleProblem, mode: &BlockMode, courant: f64) -> (Motion, [E
 }
 
 /// True error at the start, its largest value and its mean (J^½), given the exact fields at an instant.
-pub(crate) fn true_error(
-    problem: &TriangleProblem,
-    motion: &Motion,
-    exact: impl Fn([f64; 2], f64) -> Exact,
-) -> [f64; 3] {
+pub(crate) fn true_error(problem: &Problem<2>, motion: &Motion, exact: impl Fn([f64; 2], f64) -> Exact) -> [f64; 3] {
     let instants = motion.times.iter().zip(&motion.displacement).zip(&motion.velocity);
     let squares: Vec<f64> =
         instants.map(|((&t, u), v)| square(problem, |p| exact(p, t), vectors(u), vectors(v))).collect();

@@ -5,7 +5,7 @@ use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{Comparison, Motion};
 use percute_estimator::{Acceleration, Estimate, Estimator, Options};
@@ -38,19 +38,19 @@ fn on_rollers(point: [f64; 2]) -> [f64; 2] {
 }
 
 /// A free body in plane strain with this velocity at its nodes.
-fn thrown(mesh: Mesh, velocity: impl Fn([f64; 2]) -> [f64; 2]) -> TriangleProblem {
+fn thrown(mesh: Mesh, velocity: impl Fn([f64; 2]) -> [f64; 2]) -> Problem<2> {
     let velocity = mesh.points_in::<2>().iter().map(|p| velocity(*p)).collect();
     let law = Elastic::plane_strain(YOUNG, POISSON, DENSITY, 1.0).unwrap();
-    Problem::<2, 3>::builder(mesh).material(law).initial_velocity(Initial::Nodal(velocity)).build().unwrap()
+    Problem::<2>::builder(mesh).material(law).initial_velocity(Initial::Nodal(velocity)).build().unwrap()
 }
 
 /// Steps of at most 0.9 Δt_c to an instant.
-fn grid(problem: &TriangleProblem, end: f64) -> TimeGrid {
+fn grid(problem: &Problem<2>, end: f64) -> TimeGrid {
     TimeGrid::with_step(end, 0.9 * critical_time_step(problem)).unwrap()
 }
 
 /// The motion, and the estimates with `closest` and `split`.
-fn run(problem: &TriangleProblem, times: &TimeGrid) -> (Motion, [Estimate; 2]) {
+fn run(problem: &Problem<2>, times: &TimeGrid) -> (Motion, [Estimate; 2]) {
     let estimator = |acceleration| {
         Estimator::new(problem, times, Options { acceleration: Some(acceleration), ..Options::default() }).unwrap()
     };

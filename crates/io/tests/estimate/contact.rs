@@ -9,7 +9,7 @@ use percute_core::history::{History, StepSource};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{AnyProblem, BarProblem, Initial};
+use percute_core::problem::{AnyProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_io::estimate_file::{contact, open};
 use percute_io::{FileCause, Overwrite, history};
@@ -30,7 +30,7 @@ fn replayed(problem: &AnyProblem, source: &dyn StepSource) -> ContactResults {
 }
 
 fn bar() -> AnyProblem {
-    BarProblem::builder(Mesh::uniform_bar(0.1, 20).unwrap())
+    Problem::<1>::builder(Mesh::uniform_bar(0.1, 20).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-20.0]))
         .obstacle(Obstacle::plane([-1e-5], [1.0], 0.0, None).unwrap())

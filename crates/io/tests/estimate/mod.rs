@@ -6,7 +6,7 @@ use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{AnyProblem, BarProblem, Initial, TriangleProblem};
+use percute_core::problem::{AnyProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimate, Estimator, Options, Request};
 use percute_io::estimate_file::{EstimateContents, EstimateFile, open, write};
@@ -19,7 +19,7 @@ const STATEMENT: &str = "[material]\nyoung = 7e10\n";
 const REPORT: &str = "{\"sup\": 195.1, \"unit\": \"J^½\"}";
 
 fn block() -> AnyProblem {
-    TriangleProblem::builder(Mesh::rectangle(0.05, 0.04, 5, 4).unwrap())
+    Problem::<2>::builder(Mesh::rectangle(0.05, 0.04, 5, 4).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([400.0, -400.0]))
         .obstacle(Obstacle::plane([0.0, -2e-4], [0.0, 1.0], 0.2, None).unwrap())
@@ -116,7 +116,7 @@ fn what_was_estimated_comes_back() {
 #[test]
 fn without_maps_and_fields() {
     let folder = tempfile::tempdir().unwrap();
-    let bar = BarProblem::builder(Mesh::uniform_bar(0.1, 20).unwrap())
+    let bar = Problem::<1>::builder(Mesh::uniform_bar(0.1, 20).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-20.0]))
         .obstacle(Obstacle::plane([-1e-5], [1.0], 0.0, None).unwrap())

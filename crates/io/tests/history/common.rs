@@ -6,7 +6,7 @@ use percute_core::history::{History, StepSource};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{AnyProblem, BarProblem, Initial, TriangleProblem};
+use percute_core::problem::{AnyProblem, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_io::history::{HistoryFile, Plan, open};
 use percute_io::{Case, FileError, Overwrite};
@@ -29,7 +29,7 @@ pub(crate) fn plane_problem(mesh: Mesh, initial: Option<Vec<[f64; 2]>>) -> AnyPr
     let lowest = mesh.points_in::<2>().iter().map(|p| p[1]).fold(f64::INFINITY, f64::min);
     let gap = 0.02 * mesh.size();
     let nodes = mesh.node_count();
-    TriangleProblem::builder(mesh)
+    Problem::<2>::builder(mesh)
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_displacement(Initial::Nodal(initial.unwrap_or(vec![[0.0; 2]; nodes])))
         .initial_velocity(Initial::Uniform([400.0, -400.0]))
@@ -44,7 +44,7 @@ pub(crate) fn block(nx: usize, ny: usize) -> AnyProblem {
 }
 
 pub(crate) fn bar(elements: usize) -> AnyProblem {
-    BarProblem::builder(Mesh::uniform_bar(0.1, elements).unwrap())
+    Problem::<1>::builder(Mesh::uniform_bar(0.1, elements).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 0.02).unwrap())
         .initial_velocity(Initial::Uniform([-20.0]))
         .obstacle(Obstacle::plane([-1e-5], [1.0], 0.0, None).unwrap())

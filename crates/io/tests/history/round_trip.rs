@@ -8,7 +8,7 @@ use percute_core::history::{Discard, History, Step, StepSource};
 use percute_core::ids::FaceId;
 use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
 use percute_core::observer::Unobserved;
-use percute_core::problem::{AnyProblem, Initial, Statement, TriangleProblem};
+use percute_core::problem::{AnyProblem, Initial, Problem, Statement};
 use percute_core::time::TimeGrid;
 use percute_estimator::{Estimator, Options, Request, estimate};
 use percute_io::history::{Plan, open, recover};
@@ -177,7 +177,7 @@ fn without_contact() {
     let path = folder.path().join("free.vtkhdf");
     let mesh = Mesh::rectangle(1.0, 1.0, 2, 2).unwrap();
     let material = percute_core::material::Elastic::plane_strain(1.0, 0.3, 1.0, 1.0).unwrap();
-    let problem = TriangleProblem::builder(mesh).material(material).initial_velocity(Initial::Uniform([1.0, 0.0]));
+    let problem = Problem::<2>::builder(mesh).material(material).initial_velocity(Initial::Uniform([1.0, 0.0]));
     let problem = problem.build().unwrap().into();
     let history = run(&problem, &steps(&problem, 5));
     write(&path, &problem, &history);

@@ -67,17 +67,17 @@ mod tests {
     use percute_core::contact::Interface;
     use percute_core::material::Elastic;
     use percute_core::mesh::Mesh;
-    use percute_core::problem::TriangleProblem;
+    use percute_core::problem::Problem;
     use percute_testkit::translated;
 
     /// A block on another one, of which it covers a half.
-    fn problem() -> TriangleProblem {
+    fn problem() -> Problem<2> {
         let lower = Mesh::rectangle(0.04, 0.025, 8, 2).unwrap();
         let upper = translated(&Mesh::rectangle(0.04, 0.025, 10, 2).unwrap(), [0.02, 0.026]).unwrap();
         let mesh = Mesh::joined(&[("lower", &lower), ("upper", &upper)]).unwrap();
         let material = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
         let interface = Interface::non_matching(2, "lower.top", "upper.bottom", 0.2).unwrap();
-        TriangleProblem::builder(mesh).material(material).interface(interface).build().unwrap()
+        Problem::<2>::builder(mesh).material(material).interface(interface).build().unwrap()
     }
 
     /// The figure, and what is told, of multipliers of 3 N/m everywhere, after a change of the force on each node: with

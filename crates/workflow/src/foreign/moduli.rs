@@ -7,7 +7,7 @@ use super::limits::BALANCE;
 use super::residual::{fit, norm};
 use super::window::{vectors_of, windows};
 use crate::message::trimmed;
-use percute_core::dynamics::AnyStiffness;
+use percute_core::dynamics::Stiffness;
 use percute_core::history::SinkError;
 use percute_core::material::{Elastic, Hypothesis, Law, LinearLaw};
 use percute_core::problem::{AnyProblem, Statement};
@@ -83,7 +83,7 @@ fn fitted(material: &Elastic, factors: [f64; 4]) -> Option<String> {
 /// Scalar products of the terms with their signs (N²), where they do not follow from the balance.
 fn products(diagnosis: &Diagnosis<'_>, sheared: &AnyProblem) -> Result<Products, SinkError> {
     let balance = Balance::new(diagnosis.problem, diagnosis.source.times());
-    let stiffness = AnyStiffness::new(sheared);
+    let stiffness = Stiffness::new(sheared);
     let (problem, residual) = (diagnosis.problem, &diagnosis.evidence.residual);
     let mut products = Products::default();
     windows(diagnosis.source, diagnosis.problem.dimension(), &mut |window| {
@@ -92,7 +92,7 @@ fn products(diagnosis: &Diagnosis<'_>, sheared: &AnyProblem) -> Result<Products,
         let Some(used) = now.acceleration.as_ref().or(derived.as_ref()) else { return Ok(()) };
         let terms = balance.terms(now, used);
         let mut shear = vec![0.0; now.step().displacement.len()];
-        stiffness.subtract_internal_forces(now.step().displacement, &mut shear);
+        stiffness.subtract_from_rows(now.step().displacement, &mut shear);
         let mut shear = vectors_of(&shear, problem.dimension());
         let mut force = terms.load.clone();
         for (contact, reaction) in problem.contact_nodes().iter().zip(&now.reaction) {

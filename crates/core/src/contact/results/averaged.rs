@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 /// the depth m/(ρℓ) of the tributary area ℓ, half of the element. Of two nodes that touch, the mass is 1/(1/m + 1/m'),
 /// and 1/(ρc) the sum of both.
 #[must_use]
-pub fn stopping_times<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<f64> {
+pub fn stopping_times<const D: usize>(problem: &Problem<D>) -> Vec<f64> {
     let (mesh, surface) = (problem.mesh(), problem.surface());
     // ρcℓ.
     let mut impedance = vec![0.0; surface.nodes().len()];
@@ -61,7 +61,7 @@ struct Average {
 }
 
 impl Averages {
-    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub(super) fn new<const D: usize>(problem: &Problem<D>) -> Self {
         let average = |time: f64| Average { time: 2.0 * time, past: VecDeque::new() };
         Self { nodes: stopping_times(problem).into_iter().map(average).collect(), peak: None }
     }

@@ -86,8 +86,8 @@ trait Record: fmt::Debug + Send {
 
 /// The recorder with its dimension.
 #[derive(Debug)]
-struct Recorder<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+struct Recorder<'p, const D: usize> {
+    problem: &'p Problem<D>,
     times: &'p TimeGrid,
     laws: Vec<TangentialLaw>,
     now: Vec<NodeState<D>>,
@@ -110,8 +110,8 @@ struct NodeState<const D: usize> {
     status: Status,
 }
 
-impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
-    fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid) -> Self {
+impl<'p, const D: usize> Recorder<'p, D> {
+    fn new(problem: &'p Problem<D>, times: &'p TimeGrid) -> Self {
         let nodes = points(problem);
         let start = NodeState { relative: [0.0; D], force: [0.0; D], status: Status::Free };
         let results = ContactResults {
@@ -208,7 +208,7 @@ impl<'p, const D: usize, const N: usize> Recorder<'p, D, N> {
     }
 }
 
-impl<const D: usize, const N: usize> Record for Recorder<'_, D, N> {
+impl<const D: usize> Record for Recorder<'_, D> {
     fn keep_steps(&mut self) -> Result<(), ContactMemoryError> {
         let (nodes, instants) = (self.now.len(), self.times.step_count() + 1);
         let rows = nodes.saturating_mul(instants);
@@ -262,7 +262,7 @@ impl<const D: usize, const N: usize> Record for Recorder<'_, D, N> {
 }
 
 /// The nodes of the contact surface with their shares of the candidate faces.
-fn points<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<ContactPoint> {
+fn points<const D: usize>(problem: &Problem<D>) -> Vec<ContactPoint> {
     let surface = problem.surface();
     let point = |(at, area): (usize, f64)| {
         let (node, obstacle, point) = (surface.nodes()[at].node, surface.nodes()[at].obstacle, surface.point(at));
@@ -273,7 +273,7 @@ fn points<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Contac
 }
 
 /// The shortest edge of each node that may touch another body (m), infinite at others.
-fn shortest_edges<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<f64> {
+fn shortest_edges<const D: usize>(problem: &Problem<D>) -> Vec<f64> {
     let (surface, mut shortest) = (problem.surface(), vec![f64::INFINITY; problem.surface().nodes().len()]);
     for face in surface.faces().iter().filter(|_| D > 1) {
         let (_, length) = problem.mesh().normal_in::<D>(face.face);
@@ -298,7 +298,7 @@ enum TangentialLaw {
 
 impl TangentialLaw {
     /// One for each node of the contact surface.
-    fn of_surface<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Self> {
+    fn of_surface<const D: usize>(problem: &Problem<D>) -> Vec<Self> {
         let law = |contact: &crate::contact::ContactNode| {
             if !contact.guided {
                 return Self::Friction(problem.obstacles()[contact.obstacle].law());

@@ -26,7 +26,7 @@ fn wide(name: &'static str, at: [f64; 2], velocity: [f64; 2]) -> Block {
     block(name, [0.04, 0.02], [4, 2], at, velocity)
 }
 
-fn bodies(blocks: &[Block]) -> Builder<2, 3> {
+fn bodies(blocks: &[Block]) -> Builder<2> {
     let mesh = |block: &Block| {
         let ([width, height], [nx, ny]) = (block.size, block.cells);
         Mesh::rectangle(width, height, nx, ny).unwrap().placed(&block.at, 0.0).unwrap()
@@ -36,7 +36,7 @@ fn bodies(blocks: &[Block]) -> Builder<2, 3> {
     let velocity = Initial::Nodal(velocity.collect());
     let joined = Mesh::joined(&meshes.iter().map(|(name, mesh)| (*name, mesh)).collect::<Vec<_>>()).unwrap();
     let law = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
-    Problem::<2, 3>::builder(joined).material(law).initial_velocity(velocity).automatic_contact()
+    Problem::<2>::builder(joined).material(law).initial_velocity(velocity).automatic_contact()
 }
 
 fn all(friction: f64) -> Contact {
@@ -48,7 +48,7 @@ fn of(first: &str, second: &str) -> Contact {
 }
 
 /// The groups of all interfaces, and whether they match.
-fn found(builder: Builder<2, 3>) -> Vec<(String, String, bool)> {
+fn found(builder: Builder<2>) -> Vec<(String, String, bool)> {
     let problem = builder.build().unwrap();
     let interfaces = problem.conditions().interfaces.iter().map(|interface| {
         let [first, second] = interface.groups().map(str::to_string);
@@ -87,7 +87,7 @@ fn surfaces_end_beyond_the_other_body() {
     let falls = |cells, x, velocity| block("block", [0.03, 0.02], cells, [x, 0.021], velocity);
     let problem = bodies(&[plate, falls([4, 3], 0.07, [0.0, -10.0])]).contact(all(0.2)).build().unwrap();
     let mesh = problem.mesh();
-    let edges = |problem: &Problem<2, 3>, group: &str| {
+    let edges = |problem: &Problem<2>, group: &str| {
         let faces = problem.mesh().face_groups()[group].iter();
         let mut ends: Vec<f64> = faces
             .flat_map(|f| problem.mesh().face_nodes::<2>(*f))
@@ -140,7 +140,7 @@ fn a_named_contact_has_its_own_friction() {
         .conditions()
         .interfaces
         .iter()
-        .fold(Problem::<2, 3>::builder(problem.mesh().clone()), |b, i| b.interface(i.clone()));
+        .fold(Problem::<2>::builder(problem.mesh().clone()), |b, i| b.interface(i.clone()));
     let again =
         again.material(problem.materials()[0]).initial_velocity(Initial::Nodal(problem.initial_velocity().to_vec()));
     assert_eq!(again.build().unwrap().surface().nodes(), problem.surface().nodes());
@@ -150,7 +150,7 @@ fn a_named_contact_has_its_own_friction() {
 fn what_cannot_be_found_is_an_error() {
     let at = |k: usize| [0.0, 0.021 * k as f64];
     let stack = || bodies(&[wide("a", at(0), [0.0; 2]), wide("b", at(1), [0.0; 2]), wide("c", at(2), [0.0, -1.0])]);
-    let cause = |builder: Builder<2, 3>| builder.build().unwrap_err().cause;
+    let cause = |builder: Builder<2>| builder.build().unwrap_err().cause;
     let pair = |a: &str, b: &str| [a.to_string(), b.to_string()];
     assert_eq!(cause(stack()), Cause::NoFriction { bodies: pair("a", "b") });
     assert_eq!(cause(stack().contact(all(0.2)).contact(all(0.1))), Cause::TwoDefaults);
@@ -178,7 +178,7 @@ fn a_block_on_two_blocks_has_one_interface() {
             wide("c", [0.0205, 0.02 + gap], [0.0, -1.0]),
         ]
     };
-    let expected = |problem: &Problem<2, 3>| {
+    let expected = |problem: &Problem<2>| {
         let interfaces: Vec<_> = problem.conditions().interfaces.iter().map(|interface| interface.groups()).collect();
         assert_eq!(interfaces, [["a facing b", "b facing a"], ["a and b towards c", "c.bottom"]]);
         let non_matching = &problem.surface().non_matching()[0];

@@ -13,9 +13,7 @@ const ROUNDING: f64 = 1e-9;
 /// An edge next to a surface that faces the other surface at the start without belonging to its own, because a support
 /// holds one of its nodes across the contact: the other body may enter there without a force. Of surfaces that the user
 /// names, the edges are chosen.
-pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-) -> Option<PlausibilityWarning> {
+pub(super) fn plausibility_warnings<const D: usize>(problem: &Problem<D>) -> Option<PlausibilityWarning> {
     let (mesh, surface) = (problem.mesh(), problem.surface());
     let held: BTreeSet<(NodeId, usize)> = problem.prescribed().iter().map(|p| (p.node, p.component)).collect();
     // None of them has a node that is held.

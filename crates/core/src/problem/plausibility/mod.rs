@@ -39,7 +39,7 @@ pub fn plausibility_warnings<'p>(problem: impl Into<ProblemRef<'p>>, times: &Tim
     on_problem!(problem.into(), problem => all(problem, times))
 }
 
-fn all<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Vec<PlausibilityWarning> {
+fn all<const D: usize>(problem: &Problem<D>, times: &TimeGrid) -> Vec<PlausibilityWarning> {
     let mut all: Vec<_> = moved::plausibility_warnings(problem).collect();
     all.extend(units::plausibility_warnings(problem));
     // Checks that use the wave speed are left out if the units of the mesh or of a material are already in question.

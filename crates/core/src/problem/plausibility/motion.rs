@@ -12,8 +12,8 @@ const SAME: f64 = 1e-9;
 /// A plane so many times the size of the body away is more likely one in other units.
 const FAR: f64 = 10.0;
 
-pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub(super) fn plausibility_warnings<const D: usize>(
+    problem: &Problem<D>,
     times: &TimeGrid,
 ) -> Vec<PlausibilityWarning> {
     let mut all: Vec<PlausibilityWarning> = [initial_speed(problem), at_rest(problem)].into_iter().flatten().collect();
@@ -26,7 +26,7 @@ pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
 }
 
 /// The slowest wave of all materials (m/s).
-fn wave_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> f64 {
+fn wave_speed<const D: usize>(problem: &Problem<D>) -> f64 {
     problem.materials().iter().map(|material| material.wave_speed()).fold(f64::INFINITY, f64::min)
 }
 
@@ -42,7 +42,7 @@ fn too_fast(speed: f64, wave_speed: f64) -> Option<(String, String)> {
     Some((format!("a speed of {shown} m/s, above that of waves"), message))
 }
 
-fn initial_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<PlausibilityWarning> {
+fn initial_speed<const D: usize>(problem: &Problem<D>) -> Option<PlausibilityWarning> {
     let speed = |v: &[f64; D]| dot(v, v).sqrt();
     let largest = problem.initial_velocity().iter().map(speed).fold(0.0, f64::max);
     let (brief, message) = too_fast(largest, wave_speed(problem))?;
@@ -50,7 +50,7 @@ fn initial_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Opt
 }
 
 /// A body that moves against others, and for which no contact with any of them is stated.
-fn no_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<PlausibilityWarning> {
+fn no_contact<const D: usize>(problem: &Problem<D>) -> Option<PlausibilityWarning> {
     if problem.mesh().parts() < 2 {
         return None;
     }
@@ -76,7 +76,7 @@ fn no_contact<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option
     ))
 }
 
-fn support_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<PlausibilityWarning> {
+fn support_speed<const D: usize>(problem: &Problem<D>) -> Option<PlausibilityWarning> {
     let waves = wave_speed(problem);
     problem.conditions().supports.iter().enumerate().find_map(|(index, support)| {
         let largest = support.velocity.as_ref()?.value().iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
@@ -86,7 +86,7 @@ fn support_speed<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Opt
 }
 
 /// Whether nothing will ever move: no velocity, no load, no moving support, and no strain that is released.
-fn at_rest<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Option<PlausibilityWarning> {
+fn at_rest<const D: usize>(problem: &Problem<D>) -> Option<PlausibilityWarning> {
     let still = |field: &[[f64; D]]| field.iter().flatten().all(|x| *x == 0.0);
     let moving = problem.motions().iter().any(|motion| motion.acting_components()[0]);
     if problem.is_loaded() || moving || !still(problem.initial_velocity()) || !still(problem.initial_displacement()) {
@@ -104,7 +104,7 @@ struct Flight<const D: usize> {
 }
 
 /// The flight of each body, if nothing strains them; `None` if that cannot be told beforehand.
-fn flights<const D: usize, const N: usize>(problem: &Problem<D, N>, bodies: &SeparateBodies) -> Option<Vec<Flight<D>>> {
+fn flights<const D: usize>(problem: &Problem<D>, bodies: &SeparateBodies) -> Option<Vec<Flight<D>>> {
     let velocity = bodies.uniform(problem.initial_velocity())?;
     bodies.uniform(problem.initial_displacement())?;
     let steady = |motion: &crate::load::Table| motion.value().iter().all(|v| v == &motion.value()[0]);
@@ -137,7 +137,7 @@ struct SeparateBodies {
 }
 
 impl SeparateBodies {
-    fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
+    fn new<const D: usize>(problem: &Problem<D>) -> Self {
         let mesh = problem.mesh();
         let of_node = if mesh.parts() == 1 { vec![0; mesh.node_count()] } else { mesh.part_numbers() };
         let mut nodes = vec![Vec::new(); mesh.parts()];
@@ -183,7 +183,7 @@ struct Encounter {
 
 /// Bodies in flight that reach no plane and no other body before the end, or the first of them from very far. Their
 /// motion after a first touch is not predicted, nor where surfaces face each other that do not do so at the start.
-fn no_touch<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid) -> Option<PlausibilityWarning> {
+fn no_touch<const D: usize>(problem: &Problem<D>, times: &TimeGrid) -> Option<PlausibilityWarning> {
     let bodies = SeparateBodies::new(problem);
     let flights = flights(problem, &bodies)?;
     let on = |obstacle: usize| {
@@ -242,11 +242,7 @@ fn closing_time(gap: f64, speed: f64, push: f64) -> f64 {
     if root > 0.0 { 2.0 * gap / root } else { f64::INFINITY }
 }
 
-fn never<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    first: &Encounter,
-    end: f64,
-) -> Option<PlausibilityWarning> {
+fn never<const D: usize>(problem: &Problem<D>, first: &Encounter, end: f64) -> Option<PlausibilityWarning> {
     let Encounter { obstacle, what, gap, speed, time } = *first;
     let place = problem.place_of_obstacle(obstacle);
     let (gap, towards, end) = (short(gap), short(speed), short(end));
@@ -287,11 +283,7 @@ fn never<const D: usize, const N: usize>(
     Some(plausibility_warning(place, "never_touches", brief, message))
 }
 
-fn far<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    first: &Encounter,
-    size: f64,
-) -> Option<PlausibilityWarning> {
+fn far<const D: usize>(problem: &Problem<D>, first: &Encounter, size: f64) -> Option<PlausibilityWarning> {
     let Encounter { obstacle, what, gap, time, .. } = *first;
     if gap <= FAR * size {
         return None;

@@ -4,8 +4,8 @@ use super::{PlausibilityWarning, at, plausibility_warning};
 use crate::message::short;
 use crate::problem::{MovedPlane, Problem};
 
-pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub(super) fn plausibility_warnings<const D: usize>(
+    problem: &Problem<D>,
 ) -> impl Iterator<Item = PlausibilityWarning> + '_ {
     problem.moved_planes().iter().map(|&MovedPlane { plane, distance, speed, step }| {
         let [distance, speed, step] = [distance, speed, step].map(short);

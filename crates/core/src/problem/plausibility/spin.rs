@@ -10,8 +10,8 @@ use crate::time::TimeGrid;
 pub const SMALL_ROTATION: f64 = 0.05;
 
 /// The body that turns most until the end by its initial spin, if that is too far. Supports may end a spin.
-pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub(super) fn plausibility_warnings<const D: usize>(
+    problem: &Problem<D>,
     times: &TimeGrid,
 ) -> Option<PlausibilityWarning> {
     let (mesh, spins) =

@@ -14,8 +14,8 @@ const UNUSED: f64 = 0.01;
 /// A table that is shorter than so many times the run may extend beyond the end on purpose.
 const LONGER: f64 = 100.0;
 
-pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub(super) fn plausibility_warnings<const D: usize>(
+    problem: &Problem<D>,
     times: &TimeGrid,
 ) -> Vec<PlausibilityWarning> {
     let mut all: Vec<PlausibilityWarning> = steps(times.step_count(), times.end()).into_iter().collect();

@@ -35,9 +35,7 @@ const ROUGH: f64 = 2.0;
 /// From here on triangles in plane strain are far too stiff.
 const INCOMPRESSIBLE: f64 = 0.49;
 
-pub(super) fn plausibility_warnings<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-) -> Vec<PlausibilityWarning> {
+pub(super) fn plausibility_warnings<const D: usize>(problem: &Problem<D>) -> Vec<PlausibilityWarning> {
     let size = problem.mesh().size();
     // An import warning of the mesh file names the key that corrects it.
     let reported = problem.mesh().import_warnings().iter().any(|import_warning| import_warning.name == "large_mesh");

@@ -4,7 +4,7 @@ use crate::found::{Body, problem};
 use crate::solution::run::{Run, run};
 use percute_core::dynamics::critical_time_step;
 use percute_core::mesh::Mesh;
-use percute_core::problem::TriangleProblem;
+use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 
 fn block(width: f64, cells: [usize; 2]) -> Mesh {
@@ -12,7 +12,7 @@ fn block(width: f64, cells: [usize; 2]) -> Mesh {
 }
 
 /// The impulse on the second body (N s) and the energy gained, over that at the start.
-fn strike(problem: &TriangleProblem, end: f64) -> ([f64; 2], f64) {
+fn strike(problem: &Problem<2>, end: f64) -> ([f64; 2], f64) {
     let run = run(problem, &TimeGrid::with_step(end, 0.8 * critical_time_step(problem)).unwrap());
     let (last, start) = (run.last(), kinetic(&run, 0));
     let impulse = momentum(&run, last - 1, 1, 0);
@@ -23,13 +23,13 @@ fn strike(problem: &TriangleProblem, end: f64) -> ([f64; 2], f64) {
     (impulse, (kinetic(&run, last - 1) + run.strain_energy(last)) / start - 1.0)
 }
 
-fn kinetic(run: &Run<'_, 2, 3>, n: usize) -> f64 {
+fn kinetic(run: &Run<'_, 2>, n: usize) -> f64 {
     let velocity = run.half_velocity(n);
     velocity.iter().zip(run.problem.mass()).map(|(v, m)| 0.5 * m * (v[0] * v[0] + v[1] * v[1])).sum()
 }
 
 /// The momentum of a body at a step less that at another one (N s).
-fn momentum(run: &Run<'_, 2, 3>, n: usize, body: usize, from: usize) -> [f64; 2] {
+fn momentum(run: &Run<'_, 2>, n: usize, body: usize, from: usize) -> [f64; 2] {
     let numbers = run.problem.mesh().part_numbers();
     let [now, before] = [n, from].map(|n| run.half_velocity(n));
     let mut change = [0.0; 2];

@@ -8,12 +8,12 @@ use percute_core::ids::NodeId;
 use percute_core::load::{Profile, Support, Table, Traction};
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{Between, Builder, Contact, Initial, TriangleProblem, plausibility_warnings};
+use percute_core::problem::{Between, Builder, Contact, Initial, Problem, plausibility_warnings};
 use percute_testkit::{Roof, translated};
 use std::collections::BTreeMap;
 
 /// Drives far sides of the roof inwards, from the speed of all (m/s) up to another one within 5 µs.
-fn driven(builder: Builder<2, 3>, sides: &[(&str, f64)], [along, speed]: [f64; 2]) -> Builder<2, 3> {
+fn driven(builder: Builder<2>, sides: &[(&str, f64)], [along, speed]: [f64; 2]) -> Builder<2> {
     sides.iter().filter(|_| speed != 0.0).fold(builder, |builder, (group, sign)| {
         let speeds = [0.0, 1.0, 1.0].map(|part| [along + sign * part * speed, 0.0]);
         let velocity = Some(Table::new(vec![0.0, 5e-6, 1.0], speeds.to_vec()).unwrap());
@@ -90,7 +90,7 @@ fn nodes_in_contact_touch() {
     let mesh = Mesh::joined(&[("plate", &plate), ("block", &block)]).unwrap();
     let velocity = |node: usize| [0.0, if node < plate.node_count() { 0.0 } else { -20.0 }];
     let velocity = Initial::Nodal((0..mesh.node_count()).map(velocity).collect());
-    let problem = TriangleProblem::builder(mesh)
+    let problem = Problem::<2>::builder(mesh)
         .material(aluminium())
         .initial_velocity(velocity)
         .interface(Interface::non_matching(2, "block.bottom", "plate.top", 0.2).unwrap())
@@ -130,10 +130,10 @@ fn block(height: f64, rise: f64) -> Mesh {
 }
 
 /// Two bodies of which the second one comes down at 20 m/s, with supports.
-fn falling(lower: &Mesh, upper: &Mesh, supports: &[(&str, [bool; 2])]) -> Builder<2, 3> {
+fn falling(lower: &Mesh, upper: &Mesh, supports: &[(&str, [bool; 2])]) -> Builder<2> {
     let mesh = Mesh::joined(&[("lower", lower), ("upper", upper)]).unwrap();
     let velocity = [vec![[0.0; 2]; lower.node_count()], vec![[0.0, -20.0]; upper.node_count()]].concat();
-    let builder = TriangleProblem::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity));
+    let builder = Problem::<2>::builder(mesh).material(aluminium()).initial_velocity(Initial::Nodal(velocity));
     supports.iter().fold(builder, |builder, (group, components)| {
         builder.support(Support {
             group: group.to_string(),
@@ -168,7 +168,7 @@ fn a_tip_on_a_line_of_symmetry_is_missed() {
 }
 
 /// The normal of automatic contact of a problem, and the names of its warnings.
-fn found(builder: Builder<2, 3>) -> ([f64; 2], Vec<&'static str>) {
+fn found(builder: Builder<2>) -> ([f64; 2], Vec<&'static str>) {
     let contact = Contact::new(2, Between::All, 0.2, None).unwrap();
     let problem = builder.automatic_contact().contact(contact).build().unwrap();
     let warnings = plausibility_warnings(&problem, &steps(&problem, 20e-6));

@@ -3,13 +3,13 @@
 use super::setup::{Blocks, steps};
 use crate::solution::run::{difference, largest, run};
 use percute_core::contact::Interface;
-use percute_core::problem::TriangleProblem;
+use percute_core::problem::Problem;
 use percute_testkit::{mirrored, renumbered, rotated};
 
 const END: f64 = 14e-6;
 
 /// The image of a problem under a map of places and velocities has the image of the solution.
-fn is_invariant(blocks: Blocks, image: &TriangleProblem, back: impl Fn([f64; 2]) -> [f64; 2]) {
+fn is_invariant(blocks: Blocks, image: &Problem<2>, back: impl Fn([f64; 2]) -> [f64; 2]) {
     let problem = blocks.problem();
     let times = steps(&problem, END);
     let (straight, other) = (run(&problem, &times), run(image, &times));
@@ -63,7 +63,7 @@ fn numbers_do_not_matter() {
     let problem = blocks.problem();
     let (mesh, new) = renumbered(&blocks.mesh(), 7).unwrap();
     let velocity = percute_core::problem::Initial::Nodal(new.nodal(problem.initial_velocity()));
-    let image = TriangleProblem::builder(mesh)
+    let image = Problem::<2>::builder(mesh)
         .material_of("upper", blocks.materials[0])
         .material_of("lower", blocks.materials[1])
         .initial_velocity(velocity)

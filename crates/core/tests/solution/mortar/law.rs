@@ -15,7 +15,7 @@ pub(super) struct Seen {
 }
 
 /// The displacements of step n + 1 without the reactions of step n.
-fn predicted(run: &Run<'_, 2, 3>, n: usize) -> Vec<[f64; 2]> {
+fn predicted(run: &Run<'_, 2>, n: usize) -> Vec<[f64; 2]> {
     let mut displacement = run.displacement(n + 1).to_vec();
     let h = if n == 0 { 0.5 * run.step(0) } else { 0.5 * (run.step(n - 1) + run.step(n)) };
     let step = run.history.step(n).unwrap();
@@ -28,7 +28,7 @@ fn predicted(run: &Run<'_, 2, 3>, n: usize) -> Vec<[f64; 2]> {
 
 /// The weighted value of a multiplier, of a nodal field on the slave less that on the master, along a direction.
 fn weighted(
-    run: &Run<'_, 2, 3>,
+    run: &Run<'_, 2>,
     (non_matching, coupling): (&NonMatchingSurfaces<2>, &Coupling),
     k: usize,
     field: &[[f64; 2]],
@@ -44,14 +44,14 @@ fn weighted(
 }
 
 /// Momentum, the law of contact for each multiplier, and the balance of energy with equal steps.
-fn check(run: &Run<'_, 2, 3>) -> Seen {
+fn check(run: &Run<'_, 2>) -> Seen {
     let seen = check_steps(run);
     check_energy(run);
     seen
 }
 
 /// Momentum, and the law of contact for each multiplier.
-pub(super) fn check_steps(run: &Run<'_, 2, 3>) -> Seen {
+pub(super) fn check_steps(run: &Run<'_, 2>) -> Seen {
     let start = run.momentum(0);
     let scale = run.problem.mass().iter().sum::<f64>() * fastest(run);
     for n in 0..run.last() {
@@ -63,7 +63,7 @@ pub(super) fn check_steps(run: &Run<'_, 2, 3>) -> Seen {
 }
 
 /// The law of contact for each multiplier, at each step.
-pub(super) fn check_law(run: &Run<'_, 2, 3>) -> Seen {
+pub(super) fn check_law(run: &Run<'_, 2>) -> Seen {
     let mut seen = Seen::default();
     for n in 0..run.last() {
         for non_matching in run.problem.surface().non_matching() {
@@ -74,12 +74,12 @@ pub(super) fn check_law(run: &Run<'_, 2, 3>) -> Seen {
 }
 
 /// The largest component of a velocity at the start (m/s).
-fn fastest(run: &Run<'_, 2, 3>) -> f64 {
+fn fastest(run: &Run<'_, 2>) -> f64 {
     run.problem.initial_velocity().iter().flatten().fold(0.0, |most, v| most.max(v.abs()))
 }
 
 /// The law of contact in the step from t_n.
-fn check_multipliers(run: &Run<'_, 2, 3>, n: usize, non_matching: &NonMatchingSurfaces<2>, seen: &mut Seen) {
+fn check_multipliers(run: &Run<'_, 2>, n: usize, non_matching: &NonMatchingSurfaces<2>, seen: &mut Seen) {
     let surface = run.problem.surface();
     let (step, next) = (run.history.step(n).unwrap(), run.history.step(n + 1).unwrap());
     let coupling = non_matching.coupling(surface, &predicted(run, n));
@@ -126,7 +126,7 @@ fn check_multipliers(run: &Run<'_, 2, 3>, n: usize, non_matching: &NonMatchingSu
 
 /// Normal forces on both sides have no resultant, and no couple at their places ξ in the step.
 fn check_couple(
-    run: &Run<'_, 2, 3>,
+    run: &Run<'_, 2>,
     (non_matching, coupling): (&NonMatchingSurfaces<2>, &Coupling),
     reaction: &[[f64; 2]],
 ) {
@@ -148,7 +148,7 @@ fn check_couple(
 }
 
 /// v_{n−½}·M v_{n+½}/2 + ½u·Ku less the work of the recorded forces is constant.
-pub(super) fn check_energy(run: &Run<'_, 2, 3>) {
+pub(super) fn check_energy(run: &Run<'_, 2>) {
     let (mut work, mut start, mut scale) = (0.0, None, 0.0_f64);
     let nodes = run.contact_nodes();
     for n in 1..run.last() {

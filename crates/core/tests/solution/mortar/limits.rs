@@ -6,7 +6,7 @@ use percute_core::contact::{ContactRecorder, Interface, Obstacle};
 use percute_core::history::StepSource;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{BarProblem, Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_testkit::{translated, upside_down};
 
 /// Two blocks of the same nodes that meet as mirror images do not slide: mortar is pairs, row by row.
@@ -19,7 +19,7 @@ fn matching_surfaces_are_pairs() {
     let half = upper.node_count();
     let velocity: Vec<_> = (0..mesh.node_count()).map(|i| [3.0, if i < half { -20.0 } else { 20.0 }]).collect();
     let problem = |interface| {
-        TriangleProblem::builder(mesh.clone())
+        Problem::<2>::builder(mesh.clone())
             .material(aluminium())
             .initial_velocity(Initial::Nodal(velocity.clone()))
             .interface(interface)
@@ -32,7 +32,7 @@ fn matching_surfaces_are_pairs() {
     let times = steps(&pairs, 25e-6);
     let (expected, found) = (run(&pairs, &times), run(&mortar, &times));
     // Rows by their nodes: the order along the surface is another one.
-    let rows = |run: &crate::solution::run::Run<'_, 2, 3>, n: usize| {
+    let rows = |run: &crate::solution::run::Run<'_, 2>, n: usize| {
         let step = run.history.step(n).unwrap();
         let mut rows = vec![([0.0; 2], false); run.problem.mesh().node_count()];
         for (at, node) in run.contact_nodes().into_iter().enumerate() {
@@ -70,7 +70,7 @@ fn a_heavy_stiff_master_is_a_rigid_plane() {
     let times = steps(&problem, 20e-6);
     let both = run(&problem, &times);
     let upper = Mesh::rectangle(0.04, HEIGHT, 14, 11).unwrap();
-    let alone = TriangleProblem::builder(translated(&upper, [0.005, HEIGHT + GAP]).unwrap())
+    let alone = Problem::<2>::builder(translated(&upper, [0.005, HEIGHT + GAP]).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Uniform([8.0, -20.0]))
         .obstacle(Obstacle::plane([0.0, HEIGHT], [0.0, 1.0], 0.2, None).unwrap())
@@ -91,7 +91,7 @@ fn bars_are_pairs() {
     let mesh = Mesh::joined(&[("left", &bar(-0.3)), ("right", &bar(1e-4))]).unwrap();
     let interface = Interface::non_matching(1, "left.end", "right.start", 0.0).unwrap();
     assert!(interface.is_matching());
-    let problem = BarProblem::builder(mesh)
+    let problem = Problem::<1>::builder(mesh)
         .material(Elastic::bar(70e9, 2700.0, 1e-4).unwrap())
         .interface(interface)
         .build()

@@ -7,11 +7,11 @@ use percute_core::dynamics::{SimulationError, check_start};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
-use percute_core::problem::{Builder, Cause, Initial, InputError, TriangleProblem};
+use percute_core::problem::{Builder, Cause, Initial, InputError, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::translated;
 
-fn cause(problem: Result<TriangleProblem, InputError>) -> Option<Cause> {
+fn cause(problem: Result<Problem<2>, InputError>) -> Option<Cause> {
     problem.err().map(|error| error.cause)
 }
 
@@ -33,26 +33,26 @@ fn wrong_groups_are_refused() {
 
 /// Two bodies of 20 mm that face each other along a surface of this height above its level, with supports across x;
 /// `tilt` is the slope of their sides.
-fn facing(height: impl Fn(f64) -> [f64; 2], tilt: f64, supports: &[&str]) -> Result<TriangleProblem, InputError> {
+fn facing(height: impl Fn(f64) -> [f64; 2], tilt: f64, supports: &[&str]) -> Result<Problem<2>, InputError> {
     let place = |side: usize, [x, y]: [f64; 2]| [x + tilt * y, y + height(x)[side]];
     placed(place, supports)
 }
 
 /// The same with the places of the points of each body in the undeformed blocks, the upper one first.
-fn placed(place: impl Fn(usize, [f64; 2]) -> [f64; 2], supports: &[&str]) -> Result<TriangleProblem, InputError> {
+fn placed(place: impl Fn(usize, [f64; 2]) -> [f64; 2], supports: &[&str]) -> Result<Problem<2>, InputError> {
     let builder = joined(place).interface(Interface::non_matching(2, "upper.bottom", "lower.top", 0.2).unwrap());
     let support = |group: &str| Support { group: group.into(), components: [true, false, false], velocity: None };
     supports.iter().fold(builder, |builder, group| builder.support(support(group))).build()
 }
 
 /// Both bodies without contact.
-fn joined(place: impl Fn(usize, [f64; 2]) -> [f64; 2]) -> Builder<2, 3> {
+fn joined(place: impl Fn(usize, [f64; 2]) -> [f64; 2]) -> Builder<2> {
     let body = |side: usize, up: f64| {
         let block = translated(&Mesh::rectangle(0.02, 0.02, 4, 4).unwrap(), [0.0, up]).unwrap();
         block.mapped(|p| place(side, *p)).unwrap()
     };
     let mesh = Mesh::joined(&[("upper", &body(0, 0.02 + GAP)), ("lower", &body(1, 0.0))]).unwrap();
-    TriangleProblem::builder(mesh).material(aluminium())
+    Problem::<2>::builder(mesh).material(aluminium())
 }
 
 /// Two slopes at a line of symmetry have no normal there that is one of both, unless they are nearly level. A support
@@ -93,7 +93,7 @@ fn slopes_of_a_cell_count_at_their_own_line() {
 /// surface does not, nor do two that open. Edges of which one node touches do not count, and corners do.
 #[test]
 fn chevrons_lean_together() {
-    let slope = |problem: &TriangleProblem, ends: bool| {
+    let slope = |problem: &Problem<2>, ends: bool| {
         let (surface, mesh) = (problem.surface(), problem.mesh());
         let apex = |at: usize| (mesh.points_in::<2>()[surface.nodes()[at].node.index()][0] - 0.01).abs() < 1e-9;
         let inclination = |inside: bool| Inclination::new(surface, mesh, vec![inside; surface.nodes().len()]);
@@ -242,6 +242,6 @@ fn edges_above_each_other_are_refused() {
     let mesh = Mesh::new(points, &cells, &groups, &ElementGroups::new()).unwrap();
     assert_eq!(mesh.parts(), 2);
     let interface = Interface::non_matching(2, "up", "down", 0.0).unwrap();
-    let problem = TriangleProblem::builder(mesh).material(aluminium()).interface(interface).build();
+    let problem = Problem::<2>::builder(mesh).material(aluminium()).interface(interface).build();
     assert!(matches!(cause(problem), Some(Cause::Covered { .. })));
 }

@@ -4,7 +4,7 @@ use super::setup::steel;
 use crate::solution::run::aluminium;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Between, Contact, Initial, TriangleProblem};
+use percute_core::problem::{Between, Contact, Initial, Problem};
 use percute_testkit::rotated;
 
 /// A block: its name, place, height and material.
@@ -19,7 +19,7 @@ fn slave(blocks: [Block; 2], degrees: f64) -> String {
     let (sin, cos) = degrees.to_radians().sin_cos();
     let falls = |block: &Block| if block.1[1] > 0.0 { [20.0 * sin, -20.0 * cos] } else { [0.0; 2] };
     let velocity = (0..2).flat_map(|k| vec![falls(&blocks[k]); meshes[k].node_count()]).collect();
-    let problem = TriangleProblem::builder(rotated(&joined, degrees.to_radians()).unwrap())
+    let problem = Problem::<2>::builder(rotated(&joined, degrees.to_radians()).unwrap())
         .material_of(blocks[0].0, blocks[0].3)
         .material_of(blocks[1].0, blocks[1].3)
         .initial_velocity(Initial::Nodal(velocity))

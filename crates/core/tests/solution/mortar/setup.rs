@@ -5,7 +5,7 @@ use percute_core::contact::Interface;
 use percute_core::dynamics::critical_time_step;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Builder, Initial, TriangleProblem};
+use percute_core::problem::{Builder, Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::translated;
 
@@ -60,10 +60,10 @@ impl Blocks {
     }
 
     /// The bodies on a mesh of theirs, moved and turned perhaps; `map` does the same to velocities.
-    pub(crate) fn bodies(&self, mesh: Mesh, map: impl Fn([f64; 2]) -> [f64; 2]) -> Builder<2, 3> {
+    pub(crate) fn bodies(&self, mesh: Mesh, map: impl Fn([f64; 2]) -> [f64; 2]) -> Builder<2> {
         let upper = (self.cells[0][0] + 1) * (self.cells[0][1] + 1);
         let velocity = (0..mesh.node_count()).map(|node| map(self.velocities[usize::from(node >= upper)])).collect();
-        TriangleProblem::builder(mesh)
+        Problem::<2>::builder(mesh)
             .material_of("upper", self.materials[0])
             .material_of("lower", self.materials[1])
             .initial_velocity(Initial::Nodal(velocity))
@@ -73,12 +73,12 @@ impl Blocks {
         Interface::non_matching(2, "upper.bottom", "lower.top", self.friction).unwrap()
     }
 
-    pub(crate) fn problem(&self) -> TriangleProblem {
+    pub(crate) fn problem(&self) -> Problem<2> {
         self.bodies(self.mesh(), |v| v).interface(self.interface()).build().unwrap()
     }
 }
 
 /// Steps of 0.9 of the critical one until `end` (s).
-pub(crate) fn steps(problem: &TriangleProblem, end: f64) -> TimeGrid {
+pub(crate) fn steps(problem: &Problem<2>, end: f64) -> TimeGrid {
     TimeGrid::with_step(end, 0.9 * critical_time_step(problem)).unwrap()
 }

@@ -5,7 +5,7 @@ use super::setup::{GAP, HEIGHT, steel, steps};
 use crate::solution::run::{Run, aluminium, run};
 use percute_core::contact::Obstacle;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Between, Contact, Initial, TriangleProblem};
+use percute_core::problem::{Between, Contact, Initial, Problem};
 use percute_testkit::translated;
 
 /// Distance between the lower blocks (m).
@@ -34,7 +34,7 @@ const OBLIQUE: Three = Three {
 };
 
 impl Three {
-    fn problem(&self, on_floor: bool) -> TriangleProblem {
+    fn problem(&self, on_floor: bool) -> Problem<2> {
         let width = 0.02 - 0.5 * SLIT;
         let block = |k: usize, width: f64, at: [f64; 2]| {
             let mesh = Mesh::rectangle(width, HEIGHT, self.cells[k][0], self.cells[k][1]).unwrap();
@@ -52,7 +52,7 @@ impl Three {
             Contact::new(2, groups, self.friction, None).unwrap()
         };
         let [first, second] = if self.right_first { ["right", "left"] } else { ["left", "right"] };
-        let mut builder = TriangleProblem::builder(Mesh::joined(&named).unwrap())
+        let mut builder = Problem::<2>::builder(Mesh::joined(&named).unwrap())
             .material_of("upper", aluminium())
             .material_of("left", aluminium())
             .material_of("right", steel())
@@ -67,7 +67,7 @@ impl Three {
 }
 
 /// The displacements at the last instant.
-fn last(run: &Run<'_, 2, 3>) -> Vec<[f64; 2]> {
+fn last(run: &Run<'_, 2>) -> Vec<[f64; 2]> {
     run.displacement(run.last()).to_vec()
 }
 

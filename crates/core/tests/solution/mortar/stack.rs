@@ -5,14 +5,14 @@ use super::setup::{GAP, HEIGHT, steel, steps};
 use crate::solution::run::{aluminium, run};
 use percute_core::contact::{Interface, Obstacle};
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_testkit::translated;
 
 /// Cells of the blocks from below, along and across.
 const CELLS: [[usize; 2]; 3] = [[14, 9], [19, 12], [25, 16]];
 
 /// The blocks with these velocities (m/s), on a plane perhaps. The middle one is of steel.
-fn stack(velocities: [[f64; 2]; 3], plane: Option<Obstacle<2>>) -> TriangleProblem {
+fn stack(velocities: [[f64; 2]; 3], plane: Option<Obstacle<2>>) -> Problem<2> {
     let block = |k: usize| {
         let [nx, ny] = CELLS[k];
         let mesh = Mesh::rectangle(0.04, HEIGHT, nx, ny).unwrap();
@@ -25,7 +25,7 @@ fn stack(velocities: [[f64; 2]; 3], plane: Option<Obstacle<2>>) -> TriangleProbl
     let between = |below: &str, above: &str| {
         Interface::non_matching(2, format!("{above}.bottom"), format!("{below}.top"), 0.2).unwrap()
     };
-    let mut builder = TriangleProblem::builder(Mesh::joined(&bodies).unwrap())
+    let mut builder = Problem::<2>::builder(Mesh::joined(&bodies).unwrap())
         .material_of("lower", aluminium())
         .material_of("middle", steel())
         .material_of("upper", aluminium())

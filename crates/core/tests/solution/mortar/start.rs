@@ -7,7 +7,7 @@ use percute_core::contact::Interface;
 use percute_core::load::{BodyForce, Profile, Table, Traction};
 use percute_core::material::Elastic;
 use percute_core::mesh::{Mesh, MeshError};
-use percute_core::problem::{BarProblem, Builder, Cause, TriangleProblem};
+use percute_core::problem::{Builder, Cause, Problem};
 
 /// Blocks that touch and move along together.
 fn together() -> Blocks {
@@ -15,13 +15,13 @@ fn together() -> Blocks {
 }
 
 /// Body forces that press one onto the other (N/m³).
-fn pressed(builder: Builder<2, 3>) -> TriangleProblem {
+fn pressed(builder: Builder<2>) -> Problem<2> {
     let force = |group: &str, value: f64| BodyForce { group: Some(group.into()), value: Table::constant([0.0, value]) };
     builder.body_force(force("upper", -1e9)).body_force(force("lower", 1e9)).build().unwrap()
 }
 
 /// The law of contact, and the status at t_0: all touch if `all`, else none.
-fn check(problem: &TriangleProblem, all: bool) {
+fn check(problem: &Problem<2>, all: bool) {
     assert!(!problem.mesh().touching_elements().is_empty());
     let run = run(problem, &steps(problem, 30e-6));
     let seen = check_steps(&run);
@@ -96,7 +96,7 @@ fn bodies_that_only_touch_do_not_act_on_each_other() {
 #[test]
 fn touching_bodies_need_contact_where_they_touch() {
     let blocks = together();
-    let cause = |builder: Builder<2, 3>| builder.build().err().map(|error| error.cause);
+    let cause = |builder: Builder<2>| builder.build().err().map(|error| error.cause);
     let alone = cause(blocks.bodies(blocks.mesh(), |v| v));
     let Some(Cause::TouchUnstated { elements: [first, second] }) = alone else { panic!("{alone:?}") };
     assert!(first < 2 * 14 * 11 && second >= 2 * 14 * 11);
@@ -132,7 +132,7 @@ fn bodies_must_not_overlap() {
     let bar = Mesh::uniform_bar(1.0, 4).unwrap();
     let beside = |start: f64| Mesh::joined(&[("a", &bar), ("b", &bar.mapped(|p| [p[0] + start]).unwrap())]);
     assert!(beside(0.99).is_err());
-    let problem = BarProblem::builder(beside(1.0).unwrap())
+    let problem = Problem::<1>::builder(beside(1.0).unwrap())
         .material(Elastic::bar(70e9, 2700.0, 1e-4).unwrap())
         .interface(Interface::matching(1, "a.end", "b.start", 0.0).unwrap());
     problem.build().unwrap();

@@ -6,16 +6,16 @@ use percute_core::border::{cut, vectors};
 use percute_core::contact::ContactRecorder;
 use percute_core::history::StepSource;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Between, Contact, Initial, TriangleProblem};
+use percute_core::problem::{Between, Contact, Initial, Problem};
 
 /// A block of 6 × 6 cells that is turned by an angle (degrees), 20 µm above a plate of 9 × 5.
-fn tilted(degrees: f64, speed: f64) -> TriangleProblem {
+fn tilted(degrees: f64, speed: f64) -> Problem<2> {
     let plate = Mesh::rectangle(0.04, 0.02, 9, 5).unwrap();
     let turned = Mesh::rectangle(0.02, 0.02, 6, 6).unwrap().placed(&[0.0; 2], degrees).unwrap();
     let low = turned.points_in::<2>().iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
     let block = turned.placed(&[0.012, 0.020_02 - low], 0.0).unwrap();
     let velocity = [vec![[0.0; 2]; plate.node_count()], vec![[0.0, -speed]; block.node_count()]].concat();
-    TriangleProblem::builder(Mesh::joined(&[("plate", &plate), ("block", &block)]).unwrap())
+    Problem::<2>::builder(Mesh::joined(&[("plate", &plate), ("block", &block)]).unwrap())
         .material(aluminium())
         .initial_velocity(Initial::Nodal(velocity))
         .automatic_contact()

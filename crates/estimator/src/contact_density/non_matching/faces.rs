@@ -28,7 +28,7 @@ pub(crate) struct NonMatchingFaces {
 
 impl NonMatchingFaces {
     /// Those of all non-matching interfaces.
-    pub(crate) fn all<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Self> {
+    pub(crate) fn all<const D: usize>(problem: &Problem<D>) -> Vec<Self> {
         let surface = problem.surface();
         let mut starts_at = vec![None; surface.nodes().len()];
         for (f, face) in surface.faces().iter().enumerate() {
@@ -60,12 +60,12 @@ impl NonMatchingFaces {
 /// C over the thickness, with the energy C ℓ ∫r² ds of a traction r without resultant and moment on an edge of length
 /// ℓ: (0.3 + max(0, cot θ)²)/E with the smaller angle θ of the element at the edge. It is above the largest eigenvalue
 /// of the edge in nine shapes of triangles.
-fn spread<const D: usize, const N: usize>(problem: &Problem<D, N>, face: usize) -> f64 {
+fn spread<const D: usize>(problem: &Problem<D>, face: usize) -> f64 {
     let (mesh, face) = (problem.mesh(), problem.surface().faces()[face].face);
     let owner: ElementId = mesh.face(face).owner;
     let (points, law) = (mesh.points_in::<D>(), problem.material(owner));
     let ends = mesh.face_nodes::<D>(face);
-    let apex = mesh.nodes_of::<N>()[owner.index()].iter().find(|node| !ends.contains(node)).copied().unwrap_or(ends[0]);
+    let apex = mesh.cell(owner).iter().find(|node| !ends.contains(node)).copied().unwrap_or(ends[0]);
     let arm = |from: usize, to: usize| -> [f64; D] { std::array::from_fn(|c| points[to][c] - points[from][c]) };
     let cotangent = |k: usize| {
         let (near, far) = (ends[k].index(), ends[D - 1 - k].index());

@@ -22,11 +22,7 @@ const SLENDER: f64 = 0.0077;
 pub(super) type Stresses = Vec<(ElementId, ResidualStress)>;
 
 /// The stress of one edge.
-pub(super) fn of_edge<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    edge: &EdgeFace,
-    load: &Load<D>,
-) -> Stresses {
+pub(super) fn of_edge<const D: usize>(problem: &Problem<D>, edge: &EdgeFace, load: &Load<D>) -> Stresses {
     let (id, rest) = (owner(problem, edge), load.rest(edge));
     let mut least = vec![(id, ResidualStress::inside((edge.spread * rest).sqrt()))];
     if rest <= SMALL * load.square(edge) {
@@ -49,8 +45,8 @@ pub(super) fn of_edge<const D: usize, const N: usize>(
 /// The stress of a load with a peak close to the node at an end, in two steps: first that of its difference to a linear
 /// traction on a part of the edge, in the similar part of the element, then that of this traction in the star of the
 /// node.
-fn close_to_a_node<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+fn close_to_a_node<const D: usize>(
+    problem: &Problem<D>,
     edge: &EdgeFace,
     (end, place): (usize, f64),
     load: &Load<D>,
@@ -68,19 +64,16 @@ fn close_to_a_node<const D: usize, const N: usize>(
 }
 
 /// The stress in the star of the node at an end of the edge; none if rounding spoils it.
-fn in_star<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
-    edge: &EdgeFace,
-    end: usize,
-    load: &Load<D>,
-) -> Option<Stresses> {
+fn in_star<const D: usize>(problem: &Problem<D>, edge: &EdgeFace, end: usize, load: &Load<D>) -> Option<Stresses> {
     let (mesh, candidate) = (problem.mesh(), &problem.surface().faces()[edge.face]);
     let node = problem.surface().nodes()[candidate.nodes[edge.ends[end]]].node;
     let star = mesh.stars().star(node);
     let corners = |&id: &ElementId| {
-        let (points, own) = (mesh.corners::<D, N>(id), mesh.local_node(id, node).unwrap_or(0));
-        let arm = |next: usize| [0, D - 1].map(|c| points[(own + next) % N][c] - points[own][c]);
-        StarElement { ends: [arm(1), arm(N - 1)], law: problem.material(id) }
+        let (points, cell) = (mesh.points_in::<D>(), mesh.cell(id));
+        let (corners, own) = (cell.len(), mesh.local_node(id, node).unwrap_or(0));
+        let point = |next: usize| points[cell[(own + next) % corners].index()];
+        let arm = |next: usize| [0, D - 1].map(|c| point(next)[c] - point(0)[c]);
+        StarElement { ends: [arm(1), arm(corners - 1)], law: problem.material(id) }
     };
     let elements: Vec<_> = star.elements.iter().map(corners).collect();
     let supported = [star.links.first(), star.links.last()].map(|link| {
@@ -100,18 +93,18 @@ fn in_star<const D: usize, const N: usize>(
 }
 
 /// The corners of the element of an edge: its first and its second end, and the one opposite.
-fn corners<const D: usize, const N: usize>(problem: &Problem<D, N>, edge: &EdgeFace) -> [[f64; 2]; 3] {
+fn corners<const D: usize>(problem: &Problem<D>, edge: &EdgeFace) -> [[f64; 2]; 3] {
     let (mesh, candidate) = (problem.mesh(), &problem.surface().faces()[edge.face]);
     let ends = edge.ends.map(|end| problem.surface().nodes()[candidate.nodes[end]].node);
-    let cell = &mesh.nodes_of::<N>()[owner(problem, edge).index()];
+    let cell = mesh.cell(owner(problem, edge));
     let apex = cell.iter().find(|node| !ends.contains(node)).copied().unwrap_or(ends[0]);
     [ends[0], ends[1], apex].map(|node| [0, D - 1].map(|c| mesh.points_in::<D>()[node.index()][c]))
 }
 
 /// The stress in a triangle on an edge, cut from a place on the edge to the corner opposite; none if a part would be
 /// slender. A support of the edge is not made use of.
-fn in_cut_triangle<const D: usize, const N: usize>(
-    (problem, edge): (&Problem<D, N>, &EdgeFace),
+fn in_cut_triangle<const D: usize>(
+    (problem, edge): (&Problem<D>, &EdgeFace),
     [a, b, opposite]: [[f64; 2]; 3],
     place: f64,
     load: &Load<D>,
@@ -147,7 +140,7 @@ fn cut_fan([a, b, c]: [[f64; 2]; 3]) -> [[[f64; 2]; 2]; 4] {
     [[a, d], [d, b], [b, e], [e, c]]
 }
 
-fn owner<const D: usize, const N: usize>(problem: &Problem<D, N>, edge: &EdgeFace) -> ElementId {
+fn owner<const D: usize>(problem: &Problem<D>, edge: &EdgeFace) -> ElementId {
     problem.mesh().face(problem.surface().faces()[edge.face].face).owner
 }
 

@@ -5,14 +5,14 @@ use crate::contact_density::{Densities, FaceDensity, face_power};
 use percute_core::contact::{Interface, Side};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::TriangleProblem;
+use percute_core::problem::Problem;
 use percute_testkit::Random;
 
 /// Two blocks, one above the other, with the same nodes on both sides of their interface.
-fn blocks(interface: Interface) -> TriangleProblem {
+fn blocks(interface: Interface) -> Problem<2> {
     let block = |y: f64| Mesh::rectangle(0.3, 0.2, 3, 2).unwrap().mapped(|p| [p[0], p[1] + y]).unwrap();
     let mesh = Mesh::joined(&[("upper", &block(0.201)), ("lower", &block(0.0))]).unwrap();
-    TriangleProblem::builder(mesh)
+    Problem::<2>::builder(mesh)
         .material(Elastic::plane_strain(70e9, 0.3, 2700.0, 0.7).unwrap())
         .interface(interface)
         .build()
@@ -29,7 +29,7 @@ fn on_matching_surfaces_they_are_those_of_pairs() {
     let velocity: Vec<[f64; 2]> = (0..nodes).map(|_| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)]).collect();
     // Tractions (Pa) at places along the interface, on the upper block.
     let traction: Vec<[f64; 2]> = (0..4).map(|_| [random.between(-0.3, 0.3), random.between(1.0, 2.0)]).collect();
-    let at = |problem: &TriangleProblem, at: usize| {
+    let at = |problem: &Problem<2>, at: usize| {
         let upper = problem.surface().point(at)[1] > 0.2005;
         let value = traction[(problem.surface().point(at)[0] / 0.1).round() as usize];
         if upper { value } else { value.map(|f| -f) }

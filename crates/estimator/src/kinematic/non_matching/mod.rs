@@ -61,7 +61,7 @@ pub(crate) struct NonMatchingInstant {
 }
 
 impl NonMatchingMotion {
-    pub(crate) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, index: usize, span: usize) -> Self {
+    pub(crate) fn new<const D: usize>(problem: &Problem<D>, index: usize, span: usize) -> Self {
         let non_matching = &problem.surface().non_matching()[index];
         Self {
             index,
@@ -77,9 +77,9 @@ impl NonMatchingMotion {
     ///
     /// # Errors
     /// A temporary file that fails.
-    pub(crate) fn push<const D: usize, const N: usize>(
+    pub(crate) fn push<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         half: f64,
         motion: impl Fn(usize) -> [[f64; D]; 2],
     ) -> Result<(), ScratchError> {
@@ -88,12 +88,7 @@ impl NonMatchingMotion {
     }
 
     /// Takes in which nodes of the contact surface touch at a step.
-    pub(crate) fn touch<const D: usize, const N: usize>(
-        &mut self,
-        problem: &Problem<D, N>,
-        step: usize,
-        touching: &[bool],
-    ) {
+    pub(crate) fn touch<const D: usize>(&mut self, problem: &Problem<D>, step: usize, touching: &[bool]) {
         let slave = problem.surface().non_matching()[self.index].slave();
         self.record.touch(step, |node| touching[slave.position(node)]);
     }
@@ -103,9 +98,9 @@ impl NonMatchingMotion {
     ///
     /// # Errors
     /// A temporary file that fails.
-    pub(crate) fn finish<const D: usize, const N: usize>(
+    pub(crate) fn finish<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         residuals: &mut Residuals,
         write: impl FnMut(usize, usize, &[Pair]) -> Result<(), ScratchError>,
     ) -> Result<(), ScratchError> {
@@ -156,9 +151,9 @@ impl NonMatchingMotion {
     }
 
     /// The penetration of the motion so far.
-    fn penetration<const D: usize, const N: usize>(
+    fn penetration<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         change: &mut Changes,
     ) -> Result<Penetration, ScratchError> {
         let non_matching = &problem.surface().non_matching()[self.index];
@@ -185,9 +180,9 @@ impl NonMatchingMotion {
     ///
     /// # Errors
     /// A temporary file that fails.
-    pub(crate) fn instants<const D: usize, const N: usize>(
+    pub(crate) fn instants<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         instants: Range<usize>,
         change: impl Fn(usize, usize) -> f64,
     ) -> Result<Vec<NonMatchingInstant>, ScratchError> {
@@ -223,7 +218,7 @@ impl NonMatchingMotion {
 const SIGNS: [f64; 2] = [1.0, -1.0];
 
 /// ρc² of the elements at a surface (Pa), the least of them.
-fn stiffness<const D: usize, const N: usize>(problem: &Problem<D, N>, side: &Side) -> f64 {
+fn stiffness<const D: usize>(problem: &Problem<D>, side: &Side) -> f64 {
     let element = |face: &ContactFace<D>| problem.mesh().face(face.face).owner;
     let own = |face: &&ContactFace<D>| side.node_at(face.nodes[0]).is_some();
     let stiffness = |face| problem.material(element(face)).wave_modulus();
@@ -281,9 +276,9 @@ impl Changes {
     }
 
     /// Shares δ out at each instant; displacements follow by the trapezoidal rule.
-    fn share<const D: usize, const N: usize>(
+    fn share<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         non_matching: &NonMatchingSurfaces<D>,
         record: &mut Record,
     ) -> Result<(), ScratchError> {

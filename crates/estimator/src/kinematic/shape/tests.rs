@@ -9,7 +9,7 @@ use percute_core::load::{BodyForce, Table};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
-use percute_core::problem::{Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
 use percute_testkit::{Random, disc, random_rectangle};
 
@@ -135,9 +135,9 @@ fn long_windows() {
 }
 
 /// A body that a body force `g` (N/m³) brings back to a plane of slope `lean`.
-fn chattering(mesh: &Mesh, speed: f64, g: f64, lean: f64) -> TriangleProblem {
+fn chattering(mesh: &Mesh, speed: f64, g: f64, lean: f64) -> Problem<2> {
     let lowest = mesh.points_in::<2>().iter().fold(f64::INFINITY, |m, p| m.min(p[1] + lean * p[0]));
-    Problem::<2, 3>::builder(mesh.clone())
+    Problem::<2>::builder(mesh.clone())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Uniform([1.0, -speed]))
         .body_force(BodyForce { group: None, value: Table::constant([0.0, -g]) })

@@ -18,7 +18,7 @@ use percute_core::history::Step;
 /// motion in `track` for all of them.
 fn checked(track: &ContactMotion) -> Residuals {
     let (problem, times) = impact();
-    let equilibration = Equilibration::new(&problem);
+    let equilibration = Equilibration::<2, 3>::new(&problem);
     let tracks = vec![track.clone(); problem.surface().nodes().len()];
     let shared = SharedData {
         problem: &problem,

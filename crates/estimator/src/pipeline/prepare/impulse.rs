@@ -16,9 +16,9 @@ pub(crate) struct Impulse {
 
 impl Impulse {
     /// Adds the step from t_n on: the admissible force is linear over it, the simulation has h_n R_n.
-    pub(super) fn add<const D: usize, const N: usize>(
+    pub(super) fn add<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         times: &TimeGrid,
         n: usize,
         densities: &StepDensities<D>,
@@ -30,9 +30,9 @@ impl Impulse {
     }
 
     /// Adds the simulation's impulse over the last half step, ½Δt_{N−1} R_N.
-    pub(super) fn add_last<const D: usize, const N: usize>(
+    pub(super) fn add_last<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         times: &TimeGrid,
         last: usize,
         reaction: &[[f64; D]],
@@ -42,7 +42,7 @@ impl Impulse {
 }
 
 /// Sum of the normal components of forces on the nodes of the contact surface (N).
-pub(super) fn normal_sum<const D: usize, const N: usize>(problem: &Problem<D, N>, forces: &[[f64; D]]) -> f64 {
+pub(super) fn normal_sum<const D: usize>(problem: &Problem<D>, forces: &[[f64; D]]) -> f64 {
     let surface = problem.surface().nodes().iter().zip(forces);
     surface.map(|(contact, f)| problem.obstacles()[contact.obstacle].flat_frame().split(f).0).sum()
 }

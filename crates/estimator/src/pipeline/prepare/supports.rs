@@ -18,9 +18,9 @@ pub(super) struct SupportCheck {
 
 impl SupportCheck {
     /// Goes on to t_n, and returns the largest relative miss of u_CA there.
-    pub(super) fn advance<const D: usize, const N: usize>(
+    pub(super) fn advance<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         times: &TimeGrid,
         n: usize,
         motion: &NodalMotion<D>,

@@ -20,7 +20,7 @@ fn wrong_initial_conditions_show() {
     let (problem, times) = driven();
     let mesh = problem.mesh().clone();
     let law = problem.materials()[0];
-    let builder = || Problem::<2, 3>::builder(mesh.clone()).material(law);
+    let builder = || Problem::<2>::builder(mesh.clone()).material(law);
     let velocity = |v: f64| Initial::Nodal(problem.initial_velocity().iter().map(|x| [x[0], v * x[1]]).collect());
     let faster = builder().initial_velocity(velocity(1.01)).build().unwrap();
     let moved = builder().initial_velocity(velocity(1.0)).initial_displacement(Initial::Uniform([1e-5, 0.0]));
@@ -35,7 +35,7 @@ fn wrong_initial_conditions_show() {
         acceleration: None,
     };
     for (other, shows) in [(&problem, false), (&faster, true), (&moved, true)] {
-        let mut preparation = Preparation::new(&problem, &times, &Options::default());
+        let mut preparation = Preparation::<2, 3>::new(&problem, &times, &Options::default());
         preparation.motion = NodalTrajectory::new(other, &FieldPool::new(other.mesh().node_count()));
         let mut evaluation = Evaluation::new(&problem, &times);
         preparation.push(&evaluation.advance(&step).unwrap()).unwrap();

@@ -15,7 +15,7 @@ pub(crate) struct Vibration {
 }
 
 impl Vibration {
-    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub(super) fn new<const D: usize>(problem: &Problem<D>) -> Self {
         Self { rigid: RigidMotion::new(problem), strain: 0.0, kinetic: 0.0, total: 0.0 }
     }
 

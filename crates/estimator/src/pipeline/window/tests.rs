@@ -14,12 +14,12 @@ struct Run<'p> {
 }
 
 /// Nothing changed yet.
-fn run<'p>(problem: &'p Problem<2, 3>, times: &'p TimeGrid) -> Run<'p> {
+fn run<'p>(problem: &'p Problem<2>, times: &'p TimeGrid) -> Run<'p> {
     run_with(problem, times, &Options { reconstruction: Reconstruction::Consistent, ..Options::default() })
 }
 
 /// The same with other options.
-fn run_with<'p>(problem: &'p Problem<2, 3>, times: &'p TimeGrid, options: &Options) -> Run<'p> {
+fn run_with<'p>(problem: &'p Problem<2>, times: &'p TimeGrid, options: &Options) -> Run<'p> {
     let mut preparation = prepared_with(problem, times, options);
     let maps = Maps::new(Request::default(), problem).unwrap();
     let window = LevelWindow::new(problem, times, options, maps);

@@ -44,7 +44,7 @@ struct Pending<const D: usize> {
 }
 
 impl<const D: usize> ImpulseSmoothing<D> {
-    pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub(super) fn new(problem: &Problem<D>) -> Self {
         let time = stopping_times(problem);
         Self { pending: vec![VecDeque::new(); time.len()], time }
     }
@@ -57,9 +57,9 @@ impl<const D: usize> ImpulseSmoothing<D> {
     /// The forces (N) of step n, of which reactions and total accelerations are given, and the nodes that forces of
     /// non-matching interfaces stop. All their impulse is kept, but for the rest after the last step. Nothing depends
     /// on the length of later steps.
-    pub(super) fn advance<const N: usize>(
+    pub(super) fn advance(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         times: &TimeGrid,
         n: usize,
         reaction: &[[f64; D]],
@@ -115,8 +115,8 @@ impl<const D: usize> ImpulseSmoothing<D> {
 
 /// The part of the acceleration of a node at two planes that the reaction of the first one causes, along its normal, if
 /// both act. `across` is the acceleration along this normal.
-fn stopped_in_corner<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+fn stopped_in_corner<const D: usize>(
+    problem: &Problem<D>,
     slots: [usize; 2],
     reaction: &[[f64; D]],
     across: f64,
@@ -147,11 +147,10 @@ mod tests {
     use percute_core::contact::Obstacle;
     use percute_core::material::Elastic;
     use percute_core::mesh::Mesh;
-    use percute_core::problem::BarProblem;
 
     /// h = ½, c = 2, ρS = 3: m = ¾ at the end of the bar, ρcS = 6, so that τ = ⅛.
-    fn bar() -> BarProblem {
-        Problem::<1, 2>::builder(Mesh::uniform_bar(1.0, 2).unwrap())
+    fn bar() -> Problem<1> {
+        Problem::<1>::builder(Mesh::uniform_bar(1.0, 2).unwrap())
             .material(Elastic::bar(12.0, 3.0, 1.0).unwrap())
             .obstacle(Obstacle::plane([-1.0], [1.0], 0.0, None).unwrap())
             .build()

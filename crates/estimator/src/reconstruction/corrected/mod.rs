@@ -46,7 +46,7 @@ use traction_minimisation::TractionMinimisation;
 /// The reconstruction that drops no reaction, except at nodes with a contact of their own.
 #[derive(Debug)]
 pub(super) struct Corrected<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+    problem: &'p Problem<D>,
     times: &'p TimeGrid,
     /// Tributary area (m²) of each node of the contact surface.
     tributary: Vec<f64>,
@@ -54,7 +54,7 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     auxiliary_forces: AuxiliaryForces<D>,
     moment_correction: Option<MomentCorrection<D>>,
     impulse_smoothing: Option<ImpulseSmoothing<D>>,
-    non_matching: NonMatchingForces<'p, D, N>,
+    non_matching: NonMatchingForces<'p, D>,
     auxiliary: Option<AuxiliarySolutions<'p, D, N>>,
     /// ΣF²k and ΣF² over the nodes at the last level (N²).
     halvings: [f64; 2],
@@ -69,7 +69,7 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
 }
 
 /// Whether tractions of nodes are concentrated.
-fn concentrates<const D: usize, const N: usize>(problem: &Problem<D, N>, options: &Options) -> bool {
+fn concentrates<const D: usize>(problem: &Problem<D>, options: &Options) -> bool {
     let possible = match problem.mesh().shape() {
         Shape::Bar => false,
         Shape::Triangle => true,
@@ -78,7 +78,7 @@ fn concentrates<const D: usize, const N: usize>(problem: &Problem<D, N>, options
 }
 
 impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
-    pub(super) fn new(problem: &'p Problem<D, N>, times: &'p TimeGrid, options: &Options) -> Self {
+    pub(super) fn new(problem: &'p Problem<D>, times: &'p TimeGrid, options: &Options) -> Self {
         let keeps = |part: Ablation| options.ablation != part;
         let shares = if keeps(Ablation::Correction) { Shares::ALL } else { Shares::NONE };
         let smoothing = Arc::new(Smoothing::new(problem));
@@ -108,7 +108,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     }
 
     /// About how much memory it takes (bytes), known before it is made.
-    pub(super) fn memory(problem: &Problem<D, N>, options: &Options) -> usize {
+    pub(super) fn memory(problem: &Problem<D>, options: &Options) -> usize {
         let mesh = problem.mesh();
         let of_stars = || Concentration::new(problem).memory(problem);
         let concentration = concentrates(problem, options).then(of_stars).unwrap_or(0);
@@ -155,7 +155,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     /// The fields of the simulation, where there is no auxiliary solution.
     fn balance_simulation(
         &self,
-        dynamics: &Dynamics<'_, D, N>,
+        dynamics: &Dynamics<'_, D>,
         state: &State<'_>,
         [contact, sudden]: [Vec<[f64; D]>; 2],
         around: &SurfaceInstant<'_>,
@@ -170,7 +170,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         accelerate(problem, inverse_mass, &mut acceleration, &pull);
         let split = self.splits.then(|| SplitFields {
             lumped: pool.copy(&acceleration),
-            skew: pool.copy(&skew_acceleration(problem, inverse_mass, &acceleration)),
+            skew: pool.copy(&skew_acceleration::<D, N>(problem, inverse_mass, &acceleration)),
         });
         let (inertia, densities) = (KnownInertia::Acceleration(acceleration), Some(densities));
         BalancedFields { displacement, inertia, contact, densities, split, smoothed: false }
@@ -289,7 +289,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     /// The balance is that of the auxiliary solution, which then goes on to the next step.
     fn advance(
         &mut self,
-        dynamics: &Dynamics<'_, D, N>,
+        dynamics: &Dynamics<'_, D>,
         simulated: &SimulatedStep<'_, D>,
         pool: &FieldPool<D>,
     ) -> BalancedFields<D> {
@@ -352,7 +352,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
 
     fn friction(
         &self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         length: f64,
         now: &ForcesKnown<D>,
         next: &MotionKnown<D>,

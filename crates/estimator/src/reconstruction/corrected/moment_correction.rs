@@ -47,7 +47,7 @@ pub(super) struct MomentCorrection<const D: usize> {
 }
 
 impl<const D: usize> MomentCorrection<D> {
-    pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub(super) fn new(problem: &Problem<D>) -> Self {
         match problem.mesh().shape() {
             Shape::Bar => return Self { groups: Vec::new() },
             Shape::Triangle => {}
@@ -159,7 +159,7 @@ fn factors(nodes: &[CorrectedNode], normal: &[f64], missing: f64) -> Vec<f64> {
 }
 
 /// Centroid of each node's shape function on the candidate faces (m).
-fn centroids<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<[f64; D]> {
+fn centroids<const D: usize>(problem: &Problem<D>) -> Vec<[f64; D]> {
     let (points, surface) = (problem.mesh().points_in::<D>(), problem.surface());
     let place = |k: usize| points[surface.nodes()[k].node.index()];
     let mut centroids = vec![[0.0; D]; surface.nodes().len()];

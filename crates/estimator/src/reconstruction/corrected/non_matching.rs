@@ -22,8 +22,8 @@ use std::sync::Arc;
 
 /// The forces of all non-matching interfaces.
 #[derive(Debug)]
-pub(super) struct NonMatchingForces<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+pub(super) struct NonMatchingForces<'p, const D: usize> {
+    problem: &'p Problem<D>,
     faces: Arc<[NonMatchingFaces]>,
     /// Mean impedance ρc over slave and master of each pair of surfaces, times the thickness (kg/(m s)).
     impedance: Vec<[f64; 2]>,
@@ -33,9 +33,9 @@ pub(super) struct NonMatchingForces<'p, const D: usize, const N: usize> {
     on_line: Vec<bool>,
 }
 
-impl<'p, const D: usize, const N: usize> NonMatchingForces<'p, D, N> {
-    pub(super) fn new(problem: &'p Problem<D, N>) -> Self {
-        let mean = |non_matching: &NonMatchingSurfaces<D>, of: fn(&Problem<D, N>, ElementId) -> f64| {
+impl<'p, const D: usize> NonMatchingForces<'p, D> {
+    pub(super) fn new(problem: &'p Problem<D>) -> Self {
+        let mean = |non_matching: &NonMatchingSurfaces<D>, of: fn(&Problem<D>, ElementId) -> f64| {
             [non_matching.slave(), non_matching.master()]
                 .map(|side| mean(problem, side, |element| of(problem, element)))
         };
@@ -238,7 +238,7 @@ pub(super) fn mobility(
 }
 
 /// The mean over a surface, by length.
-fn mean<const D: usize, const N: usize>(problem: &Problem<D, N>, side: &Side, value: impl Fn(ElementId) -> f64) -> f64 {
+fn mean<const D: usize>(problem: &Problem<D>, side: &Side, value: impl Fn(ElementId) -> f64) -> f64 {
     let positions = side.position(0)..side.position(side.len());
     let (mut sum, mut length) = (0.0, 0.0);
     for face in problem.surface().faces().iter().filter(|face| positions.contains(&face.nodes[0])) {
@@ -251,13 +251,13 @@ fn mean<const D: usize, const N: usize>(problem: &Problem<D, N>, side: &Side, va
 }
 
 /// ρc times the thickness (kg/(m s)).
-fn impedance<const D: usize, const N: usize>(problem: &Problem<D, N>, element: ElementId) -> f64 {
+fn impedance<const D: usize>(problem: &Problem<D>, element: ElementId) -> f64 {
     let law = problem.material(element);
     law.density() * law.wave_speed() * law.extent()
 }
 
 /// 1 over plane modulus and thickness (m/N).
-fn compliance<const D: usize, const N: usize>(problem: &Problem<D, N>, element: ElementId) -> f64 {
+fn compliance<const D: usize>(problem: &Problem<D>, element: ElementId) -> f64 {
     let (law, (alpha, beta)) = (problem.material(element), problem.material(element).compliance::<D>());
     (alpha - beta) / law.extent()
 }

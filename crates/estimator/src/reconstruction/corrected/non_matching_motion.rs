@@ -87,17 +87,17 @@ mod tests {
     use percute_core::contact::Interface;
     use percute_core::material::Elastic;
     use percute_core::mesh::Mesh;
-    use percute_core::problem::TriangleProblem;
+    use percute_core::problem::Problem;
     use percute_testkit::Random;
 
     /// A narrow block that sticks out of a wide one, with other nodes.
-    fn blocks() -> TriangleProblem {
+    fn blocks() -> Problem<2> {
         let block = |width: f64, cells: usize, place: [f64; 2]| {
             let mesh = Mesh::rectangle(width, 0.2, cells, 2).unwrap();
             mesh.mapped(|p| [p[0] + place[0], p[1] + place[1]]).unwrap()
         };
         let both = [("upper", &block(0.2, 3, [0.13, 0.21])), ("lower", &block(0.3, 5, [0.0; 2]))];
-        TriangleProblem::builder(Mesh::joined(&both).unwrap())
+        Problem::<2>::builder(Mesh::joined(&both).unwrap())
             .material(Elastic::plane_strain(70e9, 0.3, 2700.0, 0.7).unwrap())
             .interface(Interface::non_matching(2, "upper.bottom", "lower.top", 0.4).unwrap())
             .build()

@@ -9,7 +9,7 @@ use percute_core::problem::Problem;
 /// lumping the mass is for a motion w (m/s²), d_i from the centroid; 0 on prescribed components, whose supports carry
 /// any force.
 pub(super) fn skew_acceleration<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+    problem: &Problem<D>,
     inverse_mass: &[f64],
     w: &[[f64; D]],
 ) -> Vec<[f64; D]> {

@@ -8,10 +8,10 @@ use proptest::prelude::*;
 /// Nodal displacement (m) and velocity (m/s).
 type Fields = [Vec<[f64; 2]>; 2];
 
-fn problem(mesh: &Mesh) -> Problem<2, 3> {
+fn problem(mesh: &Mesh) -> Problem<2> {
     // Kinetic and elastic energies of the same size.
     let law = Elastic::plane_stress(1.0, 0.3, 1.0, 1.0).unwrap();
-    Problem::<2, 3>::builder(mesh.clone()).material(law).build().unwrap()
+    Problem::<2>::builder(mesh.clone()).material(law).build().unwrap()
 }
 
 /// The energies of the difference of fields on two meshes.

@@ -24,7 +24,7 @@ pub(crate) struct TriangleForm {
 
 impl ElementForm {
     /// That of an element, which it shares with no other.
-    pub(crate) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, id: ElementId) -> Self {
+    pub(crate) fn new<const D: usize, const N: usize>(problem: &Problem<D>, id: ElementId) -> Self {
         let points = problem.mesh().corners::<D, N>(id);
         let mut forms = EnergyForms::new(problem.mesh().shape());
         let [lane, ..] = forms.prepare(problem, std::iter::once((id, points)));
@@ -77,7 +77,6 @@ impl TriangleForm {
 mod tests {
     use super::*;
     use percute_core::material::Elastic;
-    use percute_core::problem::TriangleProblem;
     use percute_testkit::{Random, random_rectangle};
 
     /// The form that is kept gives the bits of the form that is made anew, among others.
@@ -85,7 +84,7 @@ mod tests {
     fn a_form_that_is_kept_is_that_of_the_element() {
         let mesh = random_rectangle(1.0, 1.0, 4, 7).unwrap();
         let law = Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap();
-        let problem = TriangleProblem::builder(mesh).material(law).build().unwrap();
+        let problem = Problem::<2>::builder(mesh).material(law).build().unwrap();
         let mut random = Random::new(3);
         let ids: Vec<ElementId> = (0..8).map(ElementId::new).collect();
         let points = |id: &ElementId| problem.mesh().corners::<2, 3>(*id);
@@ -96,7 +95,7 @@ mod tests {
             let loading =
                 Loading { traction: [(); 3].map(|()| [vector(), vector()]), volume: [(); 3].map(|()| vector()) };
             let made = forms.of(&problem, *id, &points(id), lane).fluctuation(&loading);
-            let kept = ElementForm::new(&problem, *id).fluctuation(&loading);
+            let kept = ElementForm::new::<2, 3>(&problem, *id).fluctuation(&loading);
             assert!(made.energy() > 0.0);
             assert_eq!((made.edges, made.nodes), (kept.edges, kept.nodes), "{id:?}");
         }

@@ -67,14 +67,14 @@ mod tests {
     use percute_core::history::History;
     use percute_core::mesh::Mesh;
     use percute_core::observer::Unobserved;
-    use percute_core::problem::{Initial, TriangleProblem};
+    use percute_core::problem::{Initial, Problem};
     use percute_core::time::TimeGrid;
 
     /// A disc of 10 mm that comes down on a plane at this speed (m/s), until the force is about largest.
     fn lands(rings: usize, speed: f64) -> Option<NarrowContact> {
         let mesh = Mesh::disc(0.01, rings).unwrap();
         let build = |gap: f64| {
-            TriangleProblem::builder(mesh.clone())
+            Problem::<2>::builder(mesh.clone())
                 .material(Elastic::plane_strain(70e9, 0.3, 2700.0, 0.5).unwrap())
                 .initial_velocity(Initial::Uniform([0.0, -speed]))
                 .obstacle(Obstacle::plane([0.0, -0.01 - gap], [0.0, 1.0], 0.0, None).unwrap())

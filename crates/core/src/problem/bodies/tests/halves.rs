@@ -8,13 +8,13 @@ use crate::problem::{Builder, Cause, Initial, Problem};
 
 /// A half of two bodies of 20 mm, 4 cells wide, beside the line of symmetry x = 0: a height above the level of each
 /// surface (m), their gap at the line (m), and a place of the line on the level of the lower one (m).
-fn halves(heights: impl Fn(f64) -> [f64; 2], gap: f64, place: [f64; 2]) -> Builder<2, 3> {
+fn halves(heights: impl Fn(f64) -> [f64; 2], gap: f64, place: [f64; 2]) -> Builder<2> {
     let held = |group: &str| Support { group: group.into(), components: [true, false, false], velocity: None };
     flush(heights, gap, place).support(held("lower.left")).support(held("upper.left"))
 }
 
 /// The same without supports.
-fn flush(heights: impl Fn(f64) -> [f64; 2], gap: f64, [x, y]: [f64; 2]) -> Builder<2, 3> {
+fn flush(heights: impl Fn(f64) -> [f64; 2], gap: f64, [x, y]: [f64; 2]) -> Builder<2> {
     let block = |side: usize, up: f64| {
         let mesh = Mesh::rectangle(0.02, 0.01, 4, 2).unwrap();
         mesh.mapped(|p| [x + p[0], y + up + p[1] + heights(p[0])[side]]).unwrap()
@@ -23,7 +23,7 @@ fn flush(heights: impl Fn(f64) -> [f64; 2], gap: f64, [x, y]: [f64; 2]) -> Build
     let velocity = [vec![[0.0; 2]; lower.node_count()], vec![[0.0, -20.0]; upper.node_count()]].concat();
     // Those that touch have no speed, which would be an impact at the start.
     let velocity = velocity.into_iter().map(|v| if gap > 0.0 { v } else { [0.0; 2] }).collect();
-    Problem::<2, 3>::builder(Mesh::joined(&[("lower", &lower), ("upper", &upper)]).unwrap())
+    Problem::<2>::builder(Mesh::joined(&[("lower", &lower), ("upper", &upper)]).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Nodal(velocity))
         .automatic_contact()
@@ -87,7 +87,7 @@ fn clamped_bodies_are_whole() {
         // Nodes of the support have its velocity.
         let velocity =
             velocity.iter().enumerate().map(|(node, v)| if node < 3 && components[0] { [0.0; 2] } else { *v });
-        Problem::<2, 3>::builder(Mesh::joined(&[("left", &left), ("right", &right)]).unwrap())
+        Problem::<2>::builder(Mesh::joined(&[("left", &left), ("right", &right)]).unwrap())
             .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
             .initial_velocity(Initial::Nodal(velocity.collect()))
             .support(held("left.bottom"))

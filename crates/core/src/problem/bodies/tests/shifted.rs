@@ -11,8 +11,7 @@ fn decimal(x: f64) -> f64 {
 /// The groups of all interfaces with their faces, for blocks that are all moved so far (m).
 fn found(blocks: &[Block], by: [f64; 2]) -> Vec<(String, Vec<usize>)> {
     let moved = |one: &Block| Block { at: [one.at[0] + by[0], one.at[1] + by[1]], ..*one };
-    let problem: Problem<2, 3> =
-        bodies(&blocks.iter().map(moved).collect::<Vec<_>>()).contact(all(0.2)).build().unwrap();
+    let problem: Problem<2> = bodies(&blocks.iter().map(moved).collect::<Vec<_>>()).contact(all(0.2)).build().unwrap();
     let groups = problem.conditions().interfaces.iter().flat_map(|interface| interface.groups().map(str::to_string));
     let faces = |name: &String| problem.mesh().face_groups()[name].iter().map(|face| face.index()).collect();
     groups.map(|name| (name.clone(), faces(&name))).collect()

@@ -6,10 +6,10 @@ use crate::mesh::Mesh;
 use crate::problem::{Cause, Initial, Problem};
 
 /// Bodies with their names and velocities, of which the contact is found.
-fn problem(of: &[(&str, &Mesh, [f64; 2])]) -> Result<Problem<2, 3>, Cause> {
+fn problem(of: &[(&str, &Mesh, [f64; 2])]) -> Result<Problem<2>, Cause> {
     let meshes: Vec<_> = of.iter().map(|&(name, mesh, _)| (name, mesh)).collect();
     let velocity = of.iter().flat_map(|(_, mesh, velocity)| vec![*velocity; mesh.node_count()]).collect();
-    let builder = Problem::<2, 3>::builder(Mesh::joined(&meshes).unwrap())
+    let builder = Problem::<2>::builder(Mesh::joined(&meshes).unwrap())
         .material(Elastic::plane_stress(70e9, 0.3, 2700.0, 1.0).unwrap())
         .initial_velocity(Initial::Nodal(velocity));
     builder.automatic_contact().contact(all(0.2)).build().map_err(|error| error.cause)
@@ -20,7 +20,7 @@ fn has_one_interface(of: &[(&str, &Mesh, [f64; 2])], what: &str) {
     let problem = problem(of).unwrap_or_else(|cause| panic!("{what}: {cause}"));
     let interfaces = &problem.conditions().interfaces;
     assert_eq!(interfaces.len(), 1, "{what}");
-    let refined = Problem::<2, 3>::builder(problem.mesh().refined().unwrap()).material(problem.materials()[0]);
+    let refined = Problem::<2>::builder(problem.mesh().refined().unwrap()).material(problem.materials()[0]);
     let refined = refined.interface(interfaces[0].clone()).build();
     assert!(!matches!(&refined, Err(error) if matches!(error.cause, Cause::TurnedAway { .. })), "{what}, refined");
 }

@@ -113,8 +113,8 @@ impl<const D: usize> Mobility<D> {
 
 /// The foreseen motion of all contact nodes over the next step.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::reconstruction::corrected) struct Foreseen<'a, const D: usize, const N: usize> {
-    pub(super) problem: &'a Problem<D, N>,
+pub(in crate::reconstruction::corrected) struct Foreseen<'a, const D: usize> {
+    pub(super) problem: &'a Problem<D>,
     pub(super) near: &'a ContactElements<D>,
     pub(super) operator: PatchOperator<'a>,
     pub(super) factors: Factors,
@@ -122,7 +122,7 @@ pub(in crate::reconstruction::corrected) struct Foreseen<'a, const D: usize, con
     pub(super) square: f64,
 }
 
-impl<const D: usize, const N: usize> Foreseen<'_, D, N> {
+impl<const D: usize> Foreseen<'_, D> {
     /// That without a contact force.
     pub(in crate::reconstruction::corrected) fn free(&self) -> &[FreeFlight<D>] {
         &self.near.free
@@ -222,12 +222,7 @@ pub(super) struct ContactElements<const D: usize> {
 }
 
 impl<const D: usize> ContactElements<D> {
-    pub(super) fn new<const N: usize>(
-        problem: &Problem<D, N>,
-        blocks: &Blocks,
-        all: &Pairs,
-        smoothing: &Smoothing,
-    ) -> Self {
+    pub(super) fn new(problem: &Problem<D>, blocks: &Blocks, all: &Pairs, smoothing: &Smoothing) -> Self {
         let (surface, contacts) = (problem.surface(), problem.surface().nodes());
         let pairs = (0..blocks.count()).flat_map(|block| {
             let nodes = blocks.nodes(block);
@@ -255,12 +250,7 @@ impl<const D: usize> ContactElements<D> {
         }
     }
 
-    fn response<const N: usize>(
-        &self,
-        problem: &Problem<D, N>,
-        operator: PatchOperator<'_>,
-        at: usize,
-    ) -> &Response<D> {
+    fn response(&self, problem: &Problem<D>, operator: PatchOperator<'_>, at: usize) -> &Response<D> {
         self.responses[at].get_or_init(|| {
             let facing = [Some(at), problem.surface().nodes()[at].partner].into_iter().flatten();
             let facing: Vec<(u32, u32)> = facing.map(|at| (self.places[at], at as u32)).collect();
@@ -269,7 +259,7 @@ impl<const D: usize> ContactElements<D> {
     }
 
     /// Foresees the motions of all contact nodes until t_{n+1} without a contact force.
-    pub(super) fn foresee<const N: usize>(&mut self, problem: &Problem<D, N>, before: &BeforePass<'_, D>) {
+    pub(super) fn foresee(&mut self, problem: &Problem<D>, before: &BeforePass<'_, D>) {
         let Self { patch, places, free, .. } = self;
         let BeforePass { operator, surface, fields, external, due, factors, steps: [step, length] } = *before;
         let PatchOperator { laws, weights } = operator;

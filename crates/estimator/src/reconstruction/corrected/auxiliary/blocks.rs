@@ -1,7 +1,6 @@
 //! Consecutive elements in blocks, so that nodes are finished one block after the other.
 
-use percute_core::ids::NodeId;
-use percute_core::mesh::Strips;
+use percute_core::mesh::{Mesh, Strips};
 use std::ops::Range;
 
 /// Fewest elements of a block: the nodes of six blocks are in work at a time and should stay in a cache.
@@ -16,14 +15,14 @@ pub(super) struct Blocks {
 }
 
 impl Blocks {
-    /// Those of elements with these nodes, of at least so many elements each.
-    pub(super) fn with_fewest<const N: usize>(cells: &[[NodeId; N]], node_count: usize, fewest: usize) -> Self {
-        Self { strips: Strips::with_fewest(cells, fewest), node_count }
+    /// Those of a mesh, of at least so many elements each.
+    pub(super) fn with_fewest(mesh: &Mesh, fewest: usize) -> Self {
+        Self { strips: Strips::with_fewest(mesh, fewest), node_count: mesh.node_count() }
     }
 
     /// Those of the usual size.
-    pub(super) fn new<const N: usize>(cells: &[[NodeId; N]], node_count: usize) -> Self {
-        Self::with_fewest(cells, node_count, FEWEST)
+    pub(super) fn new(mesh: &Mesh) -> Self {
+        Self::with_fewest(mesh, FEWEST)
     }
 
     pub(super) fn count(&self) -> usize {
@@ -85,7 +84,7 @@ impl Blocks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::mesh::Mesh;
+    use percute_core::ids::NodeId;
     use percute_testkit::random_rectangle;
 
     /// Turns begin and finish each node once, before the first and after the last of its elements.
@@ -115,21 +114,22 @@ mod tests {
         for (nx, ny) in [(4, 30), (5, 31), (3, 1)] {
             let mesh = Mesh::rectangle(1.0, 1.0, nx, ny).unwrap();
             for fewest in [1, 7, 16, 40, 10_000] {
-                let blocks = Blocks::with_fewest(mesh.nodes_of::<3>(), mesh.node_count(), fewest);
+                let blocks = Blocks::with_fewest(&mesh, fewest);
                 check(mesh.nodes_of::<3>(), mesh.node_count(), &blocks);
             }
         }
         let mesh = Mesh::rectangle(1.0, 1.0, 4, 30).unwrap();
-        assert!(Blocks::with_fewest(mesh.nodes_of::<3>(), mesh.node_count(), 8).count() > 5);
+        assert!(Blocks::with_fewest(&mesh, 8).count() > 5);
     }
 
     /// Without locality there is one block.
     #[test]
     fn any_order_will_do() {
         let mesh = random_rectangle(1.0, 1.0, 8, 3).unwrap();
-        let mut cells = mesh.nodes_of::<3>().to_vec();
+        let mut cells: Vec<_> = mesh.nodes_of::<3>().iter().map(|cell| cell.map(NodeId::index)).collect();
         cells.reverse();
-        let blocks = Blocks::with_fewest(&cells, mesh.node_count(), 1);
-        check(&cells, mesh.node_count(), &blocks);
+        let points = mesh.points_in::<2>().to_vec();
+        let mesh = Mesh::new(points, &cells, &Default::default(), &Default::default()).unwrap();
+        check(mesh.nodes_of::<3>(), mesh.node_count(), &Blocks::with_fewest(&mesh, 1));
     }
 }

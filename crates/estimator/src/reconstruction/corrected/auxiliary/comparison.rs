@@ -35,7 +35,7 @@ struct PlainLevel<const D: usize> {
 /// M⁻¹(M − M_c) of a nodal field, 0 on prescribed components: an element gives m/(D+2) times the distance to the mean
 /// of its nodes.
 fn lumping_difference<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+    problem: &Problem<D>,
     inverse_mass: &[f64],
     field: &[[f64; D]],
 ) -> Vec<[f64; D]> {
@@ -56,8 +56,8 @@ fn lumping_difference<const D: usize, const N: usize>(
 }
 
 /// (K − K_s) u by the definition of σ̄: means over the elements of one material at each edge and around each node.
-fn softening<const D: usize, const N: usize>(problem: &Problem<D, N>, u: &[[f64; D]]) -> Vec<[f64; D]> {
-    let (mesh, elements, smoothing) = (problem.mesh(), elements(problem), Smoothing::new(problem));
+fn softening<const D: usize, const N: usize>(problem: &Problem<D>, u: &[[f64; D]]) -> Vec<[f64; D]> {
+    let (mesh, elements, smoothing) = (problem.mesh(), elements::<D, N>(problem), Smoothing::new(problem));
     let mut forces = vec![[0.0; D]; u.len()];
     if !smoothing.smooths() {
         return forces;
@@ -95,12 +95,12 @@ fn softening<const D: usize, const N: usize>(problem: &Problem<D, N>, u: &[[f64;
 }
 
 impl<const D: usize> Plain<D> {
-    fn new<const N: usize>(problem: &Problem<D, N>, shares: Shares) -> Self {
+    fn new(problem: &Problem<D>, shares: Shares) -> Self {
         let (displacement, half_step) = (problem.initial_displacement().to_vec(), problem.initial_velocity().to_vec());
         Self { displacement, half_step, shares, from_rest: false }
     }
 
-    fn from_rest<const N: usize>(problem: &Problem<D, N>) -> Self {
+    fn from_rest(problem: &Problem<D>) -> Self {
         let zero = vec![[0.0; D]; problem.mesh().node_count()];
         Self { displacement: zero.clone(), half_step: zero, shares: Shares::NONE, from_rest: true }
     }
@@ -108,7 +108,7 @@ impl<const D: usize> Plain<D> {
     /// The level n under contact forces (N), and the step to the next one.
     fn advance<const N: usize>(
         &mut self,
-        dynamics: &Dynamics<'_, D, N>,
+        dynamics: &Dynamics<'_, D>,
         times: &TimeGrid,
         n: usize,
         contact: &[[f64; D]],
@@ -121,7 +121,7 @@ impl<const D: usize> Plain<D> {
             dynamics.forces_without_contact(n, &self.displacement, &mut force);
         }
         let Shares { space, time } = self.shares;
-        for (force, less) in force.iter_mut().zip(softening(problem, &self.displacement)) {
+        for (force, less) in force.iter_mut().zip(softening::<D, N>(problem, &self.displacement)) {
             (0..D).for_each(|c| force[c] += space * less[c]);
         }
         let mut plain = force;
@@ -129,9 +129,9 @@ impl<const D: usize> Plain<D> {
         if self.from_rest {
             problem.prescribed().iter().for_each(|p| plain[p.node.index()][p.component] = 0.0);
         }
-        let once = lumping_difference(problem, inverse, &plain);
-        let twice = lumping_difference(problem, inverse, &once);
-        let thrice = lumping_difference(problem, inverse, &twice);
+        let once = lumping_difference::<D, N>(problem, inverse, &plain);
+        let twice = lumping_difference::<D, N>(problem, inverse, &once);
+        let thrice = lumping_difference::<D, N>(problem, inverse, &twice);
         let mut internal = vec![[0.0; D]; inverse.len()];
         dynamics.stiffness().subtract_internal_forces(&plain, &mut internal);
         problem.prescribed().iter().for_each(|p| internal[p.node.index()][p.component] = 0.0);
@@ -156,7 +156,7 @@ impl<const D: usize> Plain<D> {
             (0..inverse.len()).map(|i| std::array::from_fn(|c| of(mass(i)[0], plain[i][c], once[i][c]))).collect()
         };
         let lumped = split(&|first, plain, once| (1.0 - first) * plain + first * once);
-        let skew = skew_acceleration(problem, inverse, &lumped);
+        let skew = skew_acceleration::<D, N>(problem, inverse, &lumped);
         let split = match D {
             1 => [plain, vec![[0.0; D]; inverse.len()], once],
             _ => [split(&|first, plain, once| plain + first * once), lumped, skew],
@@ -167,12 +167,12 @@ impl<const D: usize> Plain<D> {
 
 /// ½∫σ:ε + ½∫ρ y·z, element by element.
 fn energy<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+    problem: &Problem<D>,
     [a, b]: [&[Vec<[f64; D]>; 2]; 2],
     wanted: impl Fn(usize) -> bool,
 ) -> f64 {
     let mut sum = 0.0;
-    for (e, element) in elements(problem).iter().enumerate().filter(|(e, _)| wanted(*e)) {
+    for (e, element) in elements::<D, N>(problem).iter().enumerate().filter(|(e, _)| wanted(*e)) {
         let stress = problem.material(ElementId::new(e)).stress(&element.gradient(&element.gather(&a[0])));
         let gradient = element.gradient(&element.gather(&b[0]));
         let work: f64 = stress.iter().flatten().zip(gradient.iter().flatten()).map(|(s, g)| s * g).sum();
@@ -200,7 +200,7 @@ fn random_field<const D: usize>(count: usize, scale: f64, random: &mut Random) -
 }
 
 /// The motions one by one, in the order of the lanes.
-fn plain<const D: usize, const N: usize>(problem: &Problem<D, N>) -> [Plain<D>; MOTIONS] {
+fn plain<const D: usize>(problem: &Problem<D>) -> [Plain<D>; MOTIONS] {
     let quarters = Shares { space: 0.75, time: 0.75 };
     let one = |shares| Plain::new(problem, shares);
     [one(Shares::ALL), one(quarters), one(Shares { space: 0.0, ..quarters }), Plain::from_rest(problem)]
@@ -208,12 +208,12 @@ fn plain<const D: usize, const N: usize>(problem: &Problem<D, N>) -> [Plain<D>; 
 
 /// Checks fields, forces and energies of all levels, under any contact forces and a random motion in place of the
 /// simulation.
-fn compare<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &TimeGrid, fewest: usize) {
+fn compare<const D: usize, const N: usize>(problem: &Problem<D>, times: &TimeGrid, fewest: usize) {
     let dynamics = Dynamics::new(problem, times);
     let count = problem.mesh().node_count();
-    let blocks = Blocks::with_fewest(problem.mesh().nodes_of::<3>(), count, fewest);
+    let blocks = Blocks::with_fewest(problem.mesh(), fewest);
     let smoothing = Arc::new(Smoothing::new(problem));
-    let mut motions = AuxiliarySolutions::on_blocks(problem, times, smoothing, Shares::ALL, blocks);
+    let mut motions = AuxiliarySolutions::<D, N>::on_blocks(problem, times, smoothing, Shares::ALL, blocks);
     motions.prepare(&elements(problem));
     let mut plain = plain(problem);
     let (mut random, contacts) = (Random::new(5), problem.surface().nodes().len());
@@ -244,12 +244,12 @@ fn compare<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Time
         motions.differ([&simulated[0], &simulated[1]], [0.0; 2]);
 
         let mut released = plain[0].clone();
-        released.advance(&dynamics, times, n, &none);
+        released.advance::<N>(&dynamics, times, n, &none);
         let contact: Vec<[f64; D]> =
             reaction.iter().zip(&pull).map(|(r, p)| std::array::from_fn(|c| r[c] - p[c])).collect();
         let forces = [&pull, &pull, &reaction, &contact];
         let levels: [PlainLevel<D>; MOTIONS] =
-            std::array::from_fn(|l| plain[l].advance(&dynamics, times, n, forces[l]));
+            std::array::from_fn(|l| plain[l].advance::<N>(&dynamics, times, n, forces[l]));
         let own = &levels[0];
         // On a bar the fields are ã, 0 and o.
         let expected = [&own.displacement, &own.split[0], &own.split[1], &own.split[2]];
@@ -257,14 +257,14 @@ fn compare<const D: usize, const N: usize>(problem: &Problem<D, N>, times: &Time
         // Rounding of some fifty terms grows with the steps.
         misses.for_each(|(found, expected)| assert!(miss(found, expected) < 1e-11, "{n}"));
         compare_approaches(problem, &approaches, [&released.displacement, &plain[0].displacement], &pull);
-        compare_energies(problem, motions.differences().last().unwrap(), simulated, levels);
+        compare_energies::<D, N>(problem, motions.differences().last().unwrap(), simulated, levels);
     }
     assert_eq!(motions.differences().len(), times.step_count() + 1);
 }
 
 /// Checks the gaps at t_{n+1} without and with these contact forces (N), from the displacements then (m).
-fn compare_approaches<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+fn compare_approaches<const D: usize>(
+    problem: &Problem<D>,
     approaches: &[[Approach<D>; 2]],
     next: [&[[f64; D]]; 2],
     pull: &[[f64; D]],
@@ -284,7 +284,7 @@ fn compare_approaches<const D: usize, const N: usize>(
 }
 
 fn compare_energies<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+    problem: &Problem<D>,
     found: &Difference,
     simulated: [Vec<[f64; D]>; 2],
     levels: [PlainLevel<D>; MOTIONS],
@@ -295,11 +295,11 @@ fn compare_energies<const D: usize, const N: usize>(
     };
     let [own, halved_elements, halved_step, contact] = levels.map(|level| [level.displacement, level.velocity]);
     let differences = [minus(&simulated, &own), contact, minus(&halved_elements, &own), minus(&halved_step, &own)];
-    let product = |a: usize, b: usize| energy(problem, [&differences[a], &differences[b]], |_| true);
+    let product = |a: usize, b: usize| energy::<D, N>(problem, [&differences[a], &differences[b]], |_| true);
     let [whole, square] = [product(0, 0), product(1, 1)];
     let pairs = [
         (found.energy, whole, whole),
-        (found.near, energy(problem, [&differences[0]; 2], touches), whole),
+        (found.near, energy::<D, N>(problem, [&differences[0]; 2], touches), whole),
         // The product may be small beside the two energies.
         (found.contact, product(0, 1), (whole * square).sqrt()),
         (found.dispersion, whole - 2.0 * product(0, 1) + square, whole + square),
@@ -318,7 +318,7 @@ fn loaded<const D: usize, const N: usize>(
     mesh: &Mesh,
     laws: [Elastic; 2],
     [fixed, driven, loaded]: [&str; 3],
-) -> Problem<D, N> {
+) -> Problem<D> {
     let faces = mesh.face_groups().iter().map(|(name, faces)| {
         let nodes = faces.iter().map(|f| mesh.face_nodes::<D>(*f).map(|n| n.index()));
         (name.clone(), nodes.collect())
@@ -352,7 +352,7 @@ fn loaded<const D: usize, const N: usize>(
 }
 
 /// Steps that become longer, and shorter again, of at most the critical one.
-fn uneven<const D: usize, const N: usize>(problem: &Problem<D, N>, count: usize) -> TimeGrid {
+fn uneven<const D: usize>(problem: &Problem<D>, count: usize) -> TimeGrid {
     let step = |n: usize| critical_time_step(problem) * (0.6 + 0.3 * (0.3 * n as f64).sin());
     TimeGrid::from_steps(&(0..count).map(step).collect::<Vec<_>>()).unwrap()
 }
@@ -369,7 +369,7 @@ fn triangles() {
         (Mesh::rectangle(1.0, 0.8, 2, 170).unwrap(), 1),
     ] {
         let problem = loaded::<2, 3>(&mesh, laws, ["left", "top", "right"]);
-        compare(&problem, &uneven(&problem, 30), fewest);
+        compare::<2, 3>(&problem, &uneven(&problem, 30), fewest);
     }
 }
 
@@ -381,7 +381,8 @@ fn responses_are_symmetric() {
         [[70.0, 0.3, 2.0], [20.0, 0.45, 3.0]].map(|[e, nu, rho]| Elastic::plane_strain(e, nu, rho, 0.5).unwrap());
     let problem = loaded::<2, 3>(&random_rectangle(1.0, 0.8, 6, 3).unwrap(), laws, ["left", "top", "right"]);
     let (times, nodes) = (uneven(&problem, 5), problem.surface().nodes());
-    let mut motions = AuxiliarySolutions::new(&problem, &times, Arc::new(Smoothing::new(&problem)), Shares::ALL);
+    let mut motions =
+        AuxiliarySolutions::<2, 3>::new(&problem, &times, Arc::new(Smoothing::new(&problem)), Shares::ALL);
     motions.begin(&Dynamics::new(&problem, &times), 0);
     let foreseen = motions.foresee(0);
     let none = vec![[0.0; 2]; nodes.len()];
@@ -415,18 +416,18 @@ fn responses_are_symmetric() {
 fn bars() {
     let laws = [Elastic::bar(3.0, 1.0, 0.5).unwrap(), Elastic::bar(1.0, 2.0, 0.7).unwrap()];
     let problem = loaded::<1, 2>(&Mesh::uniform_bar(1.0, 23).unwrap(), laws, ["start", "end", "start"]);
-    compare(&problem, &uneven(&problem, 30), 2);
+    compare::<1, 2>(&problem, &uneven(&problem, 30), 2);
 }
 
 /// Displacements, forces and differences with so many threads.
-fn with_threads(problem: &Problem<2, 3>, threads: usize) -> (Vec<[f64; 2]>, Vec<Difference>) {
+fn with_threads(problem: &Problem<2>, threads: usize) -> (Vec<[f64; 2]>, Vec<Difference>) {
     let times = uneven(problem, 10);
     let dynamics = Dynamics::new(problem, &times);
-    let blocks = Blocks::with_fewest(problem.mesh().nodes_of::<3>(), problem.mesh().node_count(), 1);
+    let blocks = Blocks::with_fewest(problem.mesh(), 1);
     let smoothing = Arc::new(Smoothing::new(problem));
-    let mut motions = AuxiliarySolutions::on_blocks(problem, &times, smoothing, Shares::ALL, blocks);
+    let mut motions = AuxiliarySolutions::<2, 3>::on_blocks(problem, &times, smoothing, Shares::ALL, blocks);
     assert!(motions.plan.chunks.len() >= 4);
-    motions.prepare(&elements(problem));
+    motions.prepare(&elements::<2, 3>(problem));
     let (count, contacts) = (problem.mesh().node_count(), problem.surface().nodes().len());
     let mut random = Random::new(9);
     let [velocity, pull, reaction] = [count, contacts, contacts].map(|n| random_field::<2>(n, 1.0, &mut random));
@@ -454,7 +455,7 @@ fn with_threads(problem: &Problem<2, 3>, threads: usize) -> (Vec<[f64; 2]>, Vec<
 fn threads_do_not_change_bits() {
     let laws =
         [[70.0, 0.3, 2.0], [20.0, 0.45, 3.0]].map(|[e, nu, rho]| Elastic::plane_strain(e, nu, rho, 0.5).unwrap());
-    let problem = loaded(&Mesh::rectangle(1.0, 0.8, 2, 170).unwrap(), laws, ["left", "top", "right"]);
+    let problem = loaded::<2, 3>(&Mesh::rectangle(1.0, 0.8, 2, 170).unwrap(), laws, ["left", "top", "right"]);
     let one = with_threads(&problem, 1);
     for threads in [2, 3, 8] {
         assert_eq!(one, with_threads(&problem, threads), "{threads}");

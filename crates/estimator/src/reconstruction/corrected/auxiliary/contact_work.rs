@@ -30,14 +30,14 @@ impl ContactWork {
 }
 
 /// Whether loads or supports may give and take energy, too.
-pub(super) fn is_driven<const D: usize, const N: usize>(problem: &Problem<D, N>) -> bool {
+pub(super) fn is_driven<const D: usize>(problem: &Problem<D>) -> bool {
     problem.is_loaded() || !problem.prescribed().is_empty()
 }
 
 /// The work (J) of the normal parts of forces (N) on the contact nodes over half of this time (s), at the velocities of
 /// the half step; of whole forces where the problem is driven. Forces along supports act on these.
-pub(super) fn half_work<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+pub(super) fn half_work<const D: usize>(
+    problem: &Problem<D>,
     surface: &SurfaceForces,
     fields: &MotionFields,
     forces: &[[f64; D]],
@@ -59,7 +59,7 @@ pub(super) fn half_work<const D: usize, const N: usize>(
 pub(super) struct FreeDirections<const D: usize>(Vec<[f64; D]>);
 
 impl<const D: usize> FreeDirections<D> {
-    pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub(super) fn new(problem: &Problem<D>) -> Self {
         /// Normals whose difference is below this are parallel: far above rounding.
         const PARALLEL: f64 = 1e-6;
         let planes = problem.obstacles().iter().filter(|obstacle| obstacle.as_plane().is_some());
@@ -82,7 +82,7 @@ impl<const D: usize> FreeDirections<D> {
     }
 
     /// The kinetic energy of the common velocity along them (J).
-    pub(super) fn energy<const N: usize>(&self, problem: &Problem<D, N>, velocity: &[[f64; D]]) -> f64 {
+    pub(super) fn energy(&self, problem: &Problem<D>, velocity: &[[f64; D]]) -> f64 {
         if self.0.is_empty() {
             return 0.0;
         }
@@ -103,12 +103,11 @@ mod tests {
     use percute_core::dynamics::critical_time_step;
     use percute_core::load::Support;
     use percute_core::material::Elastic;
-    use percute_core::problem::TriangleProblem;
     use percute_testkit::{Random, random_rectangle};
 
     /// A body with a support, and with a plane that all its boundary may touch.
-    fn held() -> TriangleProblem {
-        TriangleProblem::builder(random_rectangle(1.0, 0.8, 5, 3).unwrap())
+    fn held() -> Problem<2> {
+        Problem::<2>::builder(random_rectangle(1.0, 0.8, 5, 3).unwrap())
             .material(Elastic::plane_strain(70.0, 0.3, 2.0, 0.5).unwrap())
             .obstacle(Obstacle::plane([0.0, -10.0], [0.0, 1.0], 0.0, None).unwrap())
             .support(Support { group: "left".into(), components: [false, true, false], velocity: None })
@@ -124,7 +123,8 @@ mod tests {
         let dt = 0.7 * critical_time_step(&problem);
         let times = TimeGrid::uniform(dt * steps as f64, steps).unwrap();
         let dynamics = Dynamics::new(&problem, &times);
-        let mut motions = AuxiliarySolutions::new(&problem, &times, Arc::new(Smoothing::new(&problem)), Shares::NONE);
+        let mut motions =
+            AuxiliarySolutions::<2, 3>::new(&problem, &times, Arc::new(Smoothing::new(&problem)), Shares::NONE);
         let (count, mut random) = (problem.mesh().node_count(), Random::new(4));
         let (mut displacements, mut sums) = (Vec::new(), Vec::new());
         for n in 0..=steps {
@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn a_common_velocity_counts_where_a_plane_stops_it() {
         let energy = |normals: &[[f64; 2]]| {
-            let mut builder = TriangleProblem::builder(random_rectangle(1.0, 0.8, 5, 3).unwrap())
+            let mut builder = Problem::<2>::builder(random_rectangle(1.0, 0.8, 5, 3).unwrap())
                 .material(Elastic::plane_strain(70.0, 0.3, 2.0, 0.5).unwrap());
             for (normal, group) in normals.iter().zip(["bottom", "top"]) {
                 let point = normal.map(|x| -10.0 * x);

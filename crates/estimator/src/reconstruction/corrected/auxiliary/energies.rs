@@ -18,12 +18,12 @@ use std::ops::Range;
 /// The energies need the elements with a node that may touch apart.
 #[derive(Debug)]
 pub(super) struct Energies<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+    problem: &'p Problem<D>,
     near: Vec<(ElementId, Element<D, N>)>,
 }
 
 impl<'p, const D: usize, const N: usize> Energies<'p, D, N> {
-    pub(super) fn new(problem: &'p Problem<D, N>, elements: &[Element<D, N>]) -> Self {
+    pub(super) fn new(problem: &'p Problem<D>, elements: &[Element<D, N>]) -> Self {
         let mut touches = vec![false; problem.mesh().node_count()];
         problem.surface().nodes().iter().for_each(|contact| touches[contact.node.index()] = true);
         let near = elements.iter().enumerate().filter(|(_, e)| e.nodes.iter().any(|n| touches[n.index()]));

@@ -79,7 +79,7 @@ const UNSTABLE: f64 = 1e6;
 /// The four motions, advanced beside the simulation's steps.
 #[derive(Debug)]
 pub(super) struct AuxiliarySolutions<'p, const D: usize, const N: usize> {
-    problem: &'p Problem<D, N>,
+    problem: &'p Problem<D>,
     times: &'p TimeGrid,
     smoothing: Arc<Smoothing>,
     blocks: Blocks,
@@ -196,19 +196,14 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
     }
 
     /// Before the first level, with these shares of the corrections of the auxiliary solution.
-    pub(super) fn new(
-        problem: &'p Problem<D, N>,
-        times: &'p TimeGrid,
-        smoothing: Arc<Smoothing>,
-        shares: Shares,
-    ) -> Self {
-        let blocks = Blocks::new(problem.mesh().nodes_of::<3>(), problem.mesh().node_count());
+    pub(super) fn new(problem: &'p Problem<D>, times: &'p TimeGrid, smoothing: Arc<Smoothing>, shares: Shares) -> Self {
+        let blocks = Blocks::new(problem.mesh());
         Self::on_blocks(problem, times, smoothing, shares, blocks)
     }
 
     /// The same with blocks of another size.
     fn on_blocks(
-        problem: &'p Problem<D, N>,
+        problem: &'p Problem<D>,
         times: &'p TimeGrid,
         smoothing: Arc<Smoothing>,
         shares: Shares,
@@ -246,7 +241,7 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
     }
 
     /// Takes in the loads and supports of a level. Levels come in order.
-    pub(super) fn begin(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize) {
+    pub(super) fn begin(&mut self, dynamics: &Dynamics<'_, D>, n: usize) {
         if !self.external.is_empty() {
             self.problem.external_forces(self.times.instants()[n], &mut self.external);
         }
@@ -260,7 +255,7 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
     }
 
     /// Foresees the motion of the auxiliary solution at all contact nodes until t_{n+1}, after `begin`.
-    pub(super) fn foresee(&mut self, n: usize) -> Foreseen<'_, D, N> {
+    pub(super) fn foresee(&mut self, n: usize) -> Foreseen<'_, D> {
         let Self { problem, times, pairs, surface, near, fields, external, due, weights, .. } = self;
         let operator = PatchOperator { laws: &pairs.laws, weights };
         let (factors, steps) = (Factors::new(&weights.at(times, n)), [times.step(n), times.velocity_step(n)]);
@@ -272,7 +267,7 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
     /// and fills in the fields of the auxiliary solution.
     pub(super) fn advance(
         &mut self,
-        dynamics: &Dynamics<'_, D, N>,
+        dynamics: &Dynamics<'_, D>,
         n: usize,
         simulated: &SimulatedLevel<'_, D>,
         pull: &[[f64; D]],
@@ -361,7 +356,7 @@ fn start_of(part: &Part, pairs: &Pairs, smoothing: &Smoothing) -> Start {
 }
 
 impl MotionFields {
-    fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, smoothing: &Smoothing, places: usize) -> Self {
+    fn new<const D: usize>(problem: &Problem<D>, smoothing: &Smoothing, places: usize) -> Self {
         let count = problem.mesh().node_count();
         Self {
             displacement: problem.initial_displacement().iter().map(Nodal::all_but_contact).collect(),

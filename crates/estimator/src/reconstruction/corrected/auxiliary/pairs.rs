@@ -75,8 +75,8 @@ pub(super) struct Pairs {
 
 impl Pairs {
     /// Those of motions with these shares of smoothed strains.
-    pub(super) fn new<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
+    pub(super) fn new<const D: usize>(
+        problem: &Problem<D>,
         blocks: &Blocks,
         smoothing: &Smoothing,
         shares: &[Shares; MOTIONS],
@@ -111,9 +111,9 @@ impl Pairs {
         made
     }
 
-    fn add_around<const D: usize, const N: usize>(
+    fn add_around<const D: usize>(
         &mut self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         blocks: &Blocks,
         smoothing: &Smoothing,
         elements: &[[Option<ElementId>; 2]],
@@ -168,8 +168,8 @@ impl Pairs {
 
 impl PairSurroundings {
     /// What is around a pair whose elements have these places, but for patches.
-    fn new<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
+    fn new<const D: usize>(
+        problem: &Problem<D>,
         smoothing: &Smoothing,
         pair: [Option<ElementId>; 2],
         places: &[u32],
@@ -183,12 +183,11 @@ impl PairSurroundings {
         };
         for (which, element) in pair.into_iter().enumerate() {
             let Some(element) = element else { continue };
-            for (k, face) in problem.mesh().faces_of::<N>()[element.index()].iter().enumerate() {
+            for (k, face) in problem.mesh().cell_faces(element).iter().enumerate() {
                 let other = Smoothing::beyond(problem, element, *face);
                 let volume = problem.volume(element) + problem.volume(other);
                 made.beyond[which][k] = places[other.index()];
-                made.weights[which][k] =
-                    smoothing.edge_weight(problem.mesh().nodes_of::<N>()[element.index()][0], volume);
+                made.weights[which][k] = smoothing.edge_weight(problem.mesh().cell(element)[0], volume);
             }
         }
         made
@@ -196,7 +195,7 @@ impl PairSurroundings {
 }
 
 impl Laws {
-    fn new<const D: usize, const N: usize>(problem: &Problem<D, N>, shares: &[Shares; MOTIONS]) -> Self {
+    fn new<const D: usize>(problem: &Problem<D>, shares: &[Shares; MOTIONS]) -> Self {
         let shape = problem.mesh().shape();
         let plain: Vec<Moduli> = problem.materials().iter().map(|law| Moduli::new(law, shape)).collect();
         let smoothed = shares.map(|share| share.space);
@@ -211,15 +210,15 @@ impl Laws {
 
 /// The free neighbour with the lowest number of an element, in this range and of its law, and the local node that it
 /// does not have.
-fn partner<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+fn partner<const D: usize>(
+    problem: &Problem<D>,
     e: usize,
     range: &Range<usize>,
     taken: &[bool],
 ) -> (usize, Option<ElementId>) {
     let (mesh, laws, id) = (problem.mesh(), problem.element_material(), ElementId::new(e));
     let mut found: (usize, Option<ElementId>) = (1, None);
-    for (apart, &face) in mesh.faces_of::<N>()[e].iter().enumerate() {
+    for (apart, &face) in mesh.cell_faces(id).iter().enumerate() {
         let face = &mesh.face(face);
         let Some(other) = face.across(id) else { continue };
         let o = other.index();
@@ -232,28 +231,22 @@ fn partner<const D: usize, const N: usize>(
 
 impl TrianglePair {
     /// An element and its partner, which does not have the local node `apart`.
-    fn new<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
-        first: ElementId,
-        apart: usize,
-        second: Option<ElementId>,
-    ) -> Self {
+    fn new<const D: usize>(problem: &Problem<D>, first: ElementId, apart: usize, second: Option<ElementId>) -> Self {
         let mesh = problem.mesh();
-        let cell = &mesh.nodes_of::<N>()[first.index()];
-        let local = |i: usize| cell[(apart + N - 1 + i) % N];
+        let cell = mesh.cell(first);
+        let local = |i: usize| cell[(apart + cell.len() - 1 + i) % cell.len()];
         // Nodes 1 and 3 are those apart.
         let shape = mesh.shape();
         let shared = match shape {
             Shape::Bar => local(0),
             Shape::Triangle => local(2),
         };
-        let other =
-            second.and_then(|second| mesh.nodes_of::<N>()[second.index()].iter().find(|node| !cell.contains(node)));
+        let other = second.and_then(|second| mesh.cell(second).iter().find(|node| !cell.contains(node)));
         let nodes = [local(0), local(1), shared, *other.unwrap_or(&local(0))];
         let gradient = |element: Option<ElementId>, node: NodeId| {
             let mut gradient = [0.0; 2];
             if let Some(element) = element.filter(|_| node != nodes[0]) {
-                let at = mesh.local_node(element, node).map(|i| mesh.geometry::<D, N>(element).gradients[i]);
+                let at = mesh.local_node(element, node).map(|i| mesh.gradients_in::<D>(element)[i]);
                 let root = problem.volume(element).sqrt();
                 at.iter().flatten().zip(&mut gradient).for_each(|(g, to)| *to = root * g);
             }

@@ -224,7 +224,7 @@ mod tests {
     #[test]
     fn a_plan_does_all_turns() {
         let mesh = Mesh::rectangle(1.0, 1.0, 2, 400).unwrap();
-        let blocks = Blocks::with_fewest(mesh.nodes_of::<3>(), mesh.node_count(), 1);
+        let blocks = Blocks::with_fewest(&mesh, 1);
         let (turns, blocks_in_all) = (blocks.turns(), blocks.count());
         for fewest in [10, 13, 40, 1000] {
             let plan = Plan::with_fewest(&blocks, fewest);

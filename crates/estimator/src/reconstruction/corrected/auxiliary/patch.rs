@@ -115,8 +115,8 @@ impl Strains {
 
 impl Patch {
     /// The elements around these nodes of a mesh.
-    pub(super) fn new<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
+    pub(super) fn new<const D: usize>(
+        problem: &Problem<D>,
         smoothing: &Smoothing,
         nodes: impl Iterator<Item = usize>,
         pairs: impl Iterator<Item = Near> + Clone,

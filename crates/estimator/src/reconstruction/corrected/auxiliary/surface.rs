@@ -27,7 +27,7 @@ struct Support {
 }
 
 impl SurfaceForces {
-    pub(super) fn new<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub(super) fn new<const D: usize>(problem: &Problem<D>) -> Self {
         let contacts = problem.surface().nodes().iter().zip(0..);
         let mut nodes: Vec<(u32, u32)> = contacts.map(|(contact, at)| (contact.node.index() as u32, at)).collect();
         nodes.sort_unstable();
@@ -37,7 +37,7 @@ impl SurfaceForces {
     }
 
     /// Takes in the motion of the supports at t_n.
-    pub(super) fn hold<const D: usize, const N: usize>(&mut self, dynamics: &Dynamics<'_, D, N>, n: usize) {
+    pub(super) fn hold<const D: usize>(&mut self, dynamics: &Dynamics<'_, D>, n: usize) {
         let mass = dynamics.problem().mass();
         for support in &mut self.supports {
             support.force = mass[support.node as usize] * dynamics.prescribed_acceleration(n, support.at);

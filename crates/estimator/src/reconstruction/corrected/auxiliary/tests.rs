@@ -3,27 +3,27 @@ use percute_core::dynamics::critical_time_step;
 use percute_core::load::Support;
 use percute_core::material::{Elastic, LinearLaw};
 use percute_core::mesh::Mesh;
-use percute_core::problem::{BarProblem, Initial, Problem, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use percute_testkit::{Random, random_rectangle};
 use std::f64::consts::PI;
 
 /// All displacements of an auxiliary solution under no contact.
 fn motion<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+    problem: &Problem<D>,
     times: &TimeGrid,
     corrected: bool,
 ) -> Vec<Vec<[f64; D]>> {
-    motion_with(problem, times, if corrected { Shares::ALL } else { Shares::NONE })
+    motion_with::<D, N>(problem, times, if corrected { Shares::ALL } else { Shares::NONE })
 }
 
 /// The same with these shares of the corrections.
 fn motion_with<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+    problem: &Problem<D>,
     times: &TimeGrid,
     shares: Shares,
 ) -> Vec<Vec<[f64; D]>> {
     let dynamics = Dynamics::new(problem, times);
-    let mut motions = AuxiliarySolutions::new(problem, times, Arc::new(Smoothing::new(problem)), shares);
+    let mut motions = AuxiliarySolutions::<D, N>::new(problem, times, Arc::new(Smoothing::new(problem)), shares);
     let still = vec![[0.0; D]; problem.mesh().node_count()];
     let none = vec![[0.0; D]; problem.surface().nodes().len()];
     let mut advance = |n: usize| {
@@ -40,10 +40,10 @@ fn motion_with<const D: usize, const N: usize>(
 const ELEMENTS: usize = 12;
 
 /// A bar with E = ρ = S = L = 1, held at its ends, in its second mode.
-fn held_bar() -> BarProblem {
+fn held_bar() -> Problem<1> {
     let mesh = Mesh::uniform_bar(1.0, ELEMENTS).unwrap();
     let shape = mesh.points_in::<1>().iter().map(|p| [(2.0 * PI * p[0]).sin()]).collect();
-    let mut builder = Problem::<1, 2>::builder(mesh)
+    let mut builder = Problem::<1>::builder(mesh)
         .material(Elastic::bar(1.0, 1.0, 1.0).unwrap())
         .initial_displacement(Initial::Nodal(shape));
     for group in ["start", "end"] {
@@ -68,7 +68,7 @@ fn dispersion_is_of_fourth_order() {
             let omega = 2.0 / dt * (0.5 * dt * (lambda * (1.0 + left)).sqrt()).asin();
             // Of Taylor's series the next terms: about (kh)⁴/480 and (kh)²/24.
             assert!((omega / k - 1.0).abs() < most, "{courant}, {corrected}: {omega} for {k}");
-            for (n, u) in motion(&problem, &times, corrected).iter().enumerate() {
+            for (n, u) in motion::<1, 2>(&problem, &times, corrected).iter().enumerate() {
                 let found = u[3][0] / problem.initial_displacement()[3][0];
                 // Rounding of 1e-16 grows with the square of the steps.
                 assert!((found - (omega * dt * n as f64).cos()).abs() < 1e-10, "{courant}, step {n}: {found}");
@@ -85,7 +85,7 @@ fn three_quarters_are_a_halving() {
         let mesh = Mesh::uniform_bar(1.0, elements).unwrap();
         let shape = mesh.points_in::<1>().iter().map(|p| [(2.0 * PI * p[0]).sin()]).collect();
         let law = Elastic::bar(1.0, 1.0, 1.0).unwrap();
-        let mut builder = Problem::<1, 2>::builder(mesh).material(law).initial_displacement(Initial::Nodal(shape));
+        let mut builder = Problem::<1>::builder(mesh).material(law).initial_displacement(Initial::Nodal(shape));
         for group in ["start", "end"] {
             builder =
                 builder.support(Support { group: group.into(), components: [true, false, false], velocity: None });
@@ -94,13 +94,13 @@ fn three_quarters_are_a_halving() {
     };
     let (coarse, fine, steps) = (bar(24), bar(48), 200);
     let grid = |count| TimeGrid::uniform(6.0, count).unwrap();
-    let plain = motion(&coarse, &grid(steps), false);
+    let plain = motion::<1, 2>(&coarse, &grid(steps), false);
     let halved = [
-        (Shares { space: 0.0, time: 0.75 }, motion(&coarse, &grid(2 * steps), false), 1),
-        (Shares { space: 0.75, time: 0.75 }, motion(&fine, &grid(2 * steps), false), 2),
+        (Shares { space: 0.0, time: 0.75 }, motion::<1, 2>(&coarse, &grid(2 * steps), false), 1),
+        (Shares { space: 0.75, time: 0.75 }, motion::<1, 2>(&fine, &grid(2 * steps), false), 2),
     ];
     for (shares, halved, every) in halved {
-        let predicted = motion_with(&coarse, &grid(steps), shares);
+        let predicted = motion_with::<1, 2>(&coarse, &grid(steps), shares);
         let (mut change, mut miss) = (0.0_f64, 0.0_f64);
         for n in 0..=steps {
             for k in 0..=24 {
@@ -120,7 +120,7 @@ fn three_quarters_are_a_halving() {
 fn the_shortest_wave_of_a_bar_does_not_grow() {
     let mesh = Mesh::uniform_bar(1.0, ELEMENTS).unwrap();
     let zigzag = (0..=ELEMENTS).map(|k| [if k % 2 == 0 { 1.0 } else { -1.0 }]).collect();
-    let problem = Problem::<1, 2>::builder(mesh)
+    let problem = Problem::<1>::builder(mesh)
         .material(Elastic::bar(1.0, 1.0, 1.0).unwrap())
         .initial_velocity(Initial::Nodal(zigzag))
         .build()
@@ -128,7 +128,7 @@ fn the_shortest_wave_of_a_bar_does_not_grow() {
     let times = TimeGrid::uniform(10.0, 10 * ELEMENTS).unwrap();
     let dt = times.step(0);
     let omega = 2.0 / dt * (1.0 - 4.0 / 9.0 / 36.0_f64).sqrt().asin();
-    let (alike, auxiliary) = (motion(&problem, &times, false), motion(&problem, &times, true));
+    let (alike, auxiliary) = (motion::<1, 2>(&problem, &times, false), motion::<1, 2>(&problem, &times, true));
     for (n, (plain, u)) in alike.iter().zip(&auxiliary).enumerate() {
         // (−1)ⁿ⁻¹nΔt, and the same wave with velocity 1 at t_½ as the auxiliary solution has it.
         let grown = plain[0][0].abs();
@@ -147,21 +147,21 @@ fn uneven_steps_leave_the_corrections_out() {
     let rough = (0..=ELEMENTS).map(|_| [random.between(-1.0, 1.0)]).collect();
     let law = Elastic::bar(1.0, 1.0, 1.0).unwrap();
     let problem =
-        Problem::<1, 2>::builder(mesh).material(law).initial_displacement(Initial::Nodal(rough)).build().unwrap();
+        Problem::<1>::builder(mesh).material(law).initial_displacement(Initial::Nodal(rough)).build().unwrap();
     let step = |n: usize| if n.is_multiple_of(2) { 0.7 } else { 0.6 } / ELEMENTS as f64;
     let times = TimeGrid::from_steps(&(0..1000).map(step).collect::<Vec<_>>()).unwrap();
-    let all = motion(&problem, &times, true);
+    let all = motion::<1, 2>(&problem, &times, true);
     let largest = all.iter().flatten().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
     // All modes together, each at its largest; corrected to the end, 1.17 for each pair of steps would make 1e34.
     assert!(largest < 100.0, "{largest}");
 }
 
-fn rough_block() -> TriangleProblem {
+fn rough_block() -> Problem<2> {
     let mesh = random_rectangle(1.0, 0.8, 6, 3).unwrap();
     let mut random = Random::new(7);
     let rough = mesh.points_in::<2>().iter().map(|_| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)]).collect();
     let law = Elastic::plane_stress(70.0, 0.3, 2.0, 1.0).unwrap();
-    Problem::<2, 3>::builder(mesh).material(law).initial_displacement(Initial::Nodal(rough)).build().unwrap()
+    Problem::<2>::builder(mesh).material(law).initial_displacement(Initial::Nodal(rough)).build().unwrap()
 }
 
 #[test]
@@ -170,7 +170,7 @@ fn stable_up_to_the_critical_step() {
     for courant in [0.5, 0.98, 0.999] {
         // The critical step is known to 1e-3 from below.
         let times = TimeGrid::uniform(3000.0 * courant * critical_time_step(&problem), 3000).unwrap();
-        let all = motion(&problem, &times, true);
+        let all = motion::<2, 3>(&problem, &times, true);
         let largest = |u: &Vec<[f64; 2]>| u.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
         let late = all[2900..].iter().map(largest).fold(0.0, f64::max);
         // All modes together, each at its largest, and the slow growth near the limit; unstable it would be 1e20.
@@ -185,9 +185,9 @@ fn a_translation_is_not_touched() {
     let law = Elastic::plane_stress(70.0, 0.3, 2.0, 1.0).unwrap();
     let velocity = [3.0, -2.0];
     let problem =
-        Problem::<2, 3>::builder(mesh).material(law).initial_velocity(Initial::Uniform(velocity)).build().unwrap();
+        Problem::<2>::builder(mesh).material(law).initial_velocity(Initial::Uniform(velocity)).build().unwrap();
     let times = TimeGrid::uniform(1.0, 50).unwrap();
-    let end = motion(&problem, &times, true).pop().unwrap();
+    let end = motion::<2, 3>(&problem, &times, true).pop().unwrap();
     for u in &end {
         // All nodes have the same displacement to the last bit: no strain at all.
         assert_eq!(u, &end[0]);
@@ -200,7 +200,7 @@ fn a_translation_is_not_touched() {
 fn supports_move_as_prescribed() {
     let problem = held_bar();
     let times = TimeGrid::uniform(2.0, 40).unwrap();
-    for u in motion(&problem, &times, true) {
+    for u in motion::<1, 2>(&problem, &times, true) {
         let first = problem.initial_displacement();
         assert_eq!((u[0], u[ELEMENTS]), (first[0], first[ELEMENTS]));
     }
@@ -214,7 +214,7 @@ fn wave_errors(kh: f64, shares: Shares) -> [f64; 2] {
     let mesh = Mesh::rectangle(side, side, cells, cells).unwrap();
     let centre = mesh.points_in::<2>().iter().position(|p| *p == [0.5 * side; 2]).unwrap();
     let law = Elastic::plane_stress(1.0, 0.3, 1.0, 1.0).unwrap();
-    let problem = Problem::<2, 3>::builder(mesh).material(law).build().unwrap();
+    let problem = Problem::<2>::builder(mesh).material(law).build().unwrap();
     let (lambda, shear) = law.moduli();
     let step = 0.9 * critical_time_step(&problem);
     let times = TimeGrid::uniform(2.0 * step, 2).unwrap();
@@ -226,7 +226,8 @@ fn wave_errors(kh: f64, shares: Shares) -> [f64; 2] {
         let k = [kh * angle.cos(), kh * angle.sin()];
         // The columns of the symbol: minus the accelerations under waves of each component.
         let column = |c: usize| {
-            let mut motions = AuxiliarySolutions::new(&problem, &times, Arc::new(Smoothing::new(&problem)), shares);
+            let mut motions =
+                AuxiliarySolutions::<2, 3>::new(&problem, &times, Arc::new(Smoothing::new(&problem)), shares);
             for (u, p) in motions.fields.displacement.iter_mut().zip(problem.mesh().points_in::<2>()) {
                 let phase = k[0] * (p[0] - 0.5 * side) + k[1] * (p[1] - 0.5 * side);
                 let mut wave = [0.0; 2];
@@ -281,11 +282,12 @@ fn corrections_are_weakened_where_they_are_unstable() {
     let rough =
         mesh.points_in::<2>().iter().zip(1..).map(|(_, k)| [f64::from(k).sin(), f64::from(3 * k).cos()]).collect();
     let problem =
-        Problem::<2, 3>::builder(mesh).material(law).initial_displacement(Initial::Nodal(rough)).build().unwrap();
+        Problem::<2>::builder(mesh).material(law).initial_displacement(Initial::Nodal(rough)).build().unwrap();
     for (courant, weakened) in [(0.9, false), (0.999, true)] {
         let times = TimeGrid::uniform(3000.0 * courant * critical_time_step(&problem), 3000).unwrap();
         let whole = Smoothing::new(&problem).bodies()[0].mass[0];
-        let mut motions = AuxiliarySolutions::new(&problem, &times, Arc::new(Smoothing::new(&problem)), Shares::ALL);
+        let mut motions =
+            AuxiliarySolutions::<2, 3>::new(&problem, &times, Arc::new(Smoothing::new(&problem)), Shares::ALL);
         motions.stabilise();
         let first = motions.weights.auxiliary(0)[0];
         assert_eq!(first < whole, weakened, "{courant}: {first} of {whole}");
@@ -305,7 +307,8 @@ fn corrections_are_weakened_where_they_are_unstable() {
             largest
         };
         assert!(largest(&mut motions) < 1e3);
-        let mut whole = AuxiliarySolutions::new(&problem, &times, Arc::new(Smoothing::new(&problem)), Shares::ALL);
+        let mut whole =
+            AuxiliarySolutions::<2, 3>::new(&problem, &times, Arc::new(Smoothing::new(&problem)), Shares::ALL);
         let grown = largest(&mut whole);
         assert_eq!(grown.is_nan() || grown > 1e6, weakened, "{courant}: {grown}");
     }

@@ -35,8 +35,8 @@ pub(in crate::reconstruction::corrected) struct AuxiliaryForces<const D: usize> 
 }
 
 /// The data of a step, and the forces that are replaced.
-pub(in crate::reconstruction::corrected) struct Known<'a, const D: usize, const N: usize> {
-    pub(in crate::reconstruction::corrected) problem: &'a Problem<D, N>,
+pub(in crate::reconstruction::corrected) struct Known<'a, const D: usize> {
+    pub(in crate::reconstruction::corrected) problem: &'a Problem<D>,
     pub(in crate::reconstruction::corrected) concentration: &'a Concentration<D>,
     /// Gaps of the simulation (m).
     pub(in crate::reconstruction::corrected) gap: &'a [f64],
@@ -50,7 +50,7 @@ pub(in crate::reconstruction::corrected) struct Known<'a, const D: usize, const 
 }
 
 impl<const D: usize> AuxiliaryForces<D> {
-    pub(in crate::reconstruction::corrected) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub(in crate::reconstruction::corrected) fn new(problem: &Problem<D>) -> Self {
         let count = problem.surface().nodes().len();
         Self { contacts: vec![None; count], replaced: vec![false; count] }
     }
@@ -72,9 +72,9 @@ impl<const D: usize> AuxiliaryForces<D> {
 
     /// Replaces the forces of nodes that touch alone, from then on until the auxiliary contact force is 0. Those of
     /// non-matching interfaces stay.
-    pub(in crate::reconstruction::corrected) fn replace<const N: usize>(
+    pub(in crate::reconstruction::corrected) fn replace(
         &mut self,
-        known: &mut Known<'_, D, N>,
+        known: &mut Known<'_, D>,
         free_gap: impl Fn(usize) -> f64,
         approach: impl FnMut(usize, &[[f64; D]]) -> Approach<D>,
     ) {
@@ -87,10 +87,10 @@ impl<const D: usize> AuxiliaryForces<D> {
 
     /// The same at nodes that move each other, with all that they face, in turn. `approach` is the motion of one under
     /// the forces of the others and its own friction.
-    pub(in crate::reconstruction::corrected) fn replace_in_turn<const N: usize>(
+    pub(in crate::reconstruction::corrected) fn replace_in_turn(
         &mut self,
         nodes: Vec<(usize, Faced)>,
-        known: &mut Known<'_, D, N>,
+        known: &mut Known<'_, D>,
         mut approach: impl FnMut(usize, &[[f64; D]]) -> Approach<D>,
     ) {
         let simulated = known.contact.to_vec();
@@ -129,7 +129,7 @@ impl<const D: usize> AuxiliaryForces<D> {
     }
 }
 
-impl<'a, const D: usize, const N: usize> Known<'a, D, N> {
+impl<'a, const D: usize> Known<'a, D> {
     /// Puts a force (N) on a node, and the opposite one on the node that it faces.
     fn act(&mut self, at: usize, force: [f64; D]) {
         self.contact[at] = force;

@@ -37,14 +37,14 @@ pub(crate) struct Concentration<const D: usize> {
 }
 
 impl<const D: usize> Concentration<D> {
-    pub(super) fn new<const N: usize>(problem: &Problem<D, N>) -> Self {
+    pub(super) fn new(problem: &Problem<D>) -> Self {
         let nodes = NodeStar::all(problem);
         let stresses = nodes.iter().map(|_| OnceLock::new()).collect();
         Self { nodes, stresses, tolerance: problem.contact_tolerance() }
     }
 
     /// About how much memory the stresses take (bytes) of the stars of which an edge leaves the plane at the beginning.
-    pub(super) fn memory<const N: usize>(&self, problem: &Problem<D, N>) -> usize {
+    pub(super) fn memory(&self, problem: &Problem<D>) -> usize {
         let gap = problem.surface().gaps(problem.initial_displacement());
         let needed = (0..self.nodes.len()).filter(|&at| self.gaps(at, &Faced::WHOLE, &gap).is_some());
         let stars: BTreeSet<usize> = needed.map(|at| self.nodes[at].alike).collect();
@@ -55,9 +55,9 @@ impl<const D: usize> Concentration<D> {
     /// The shape of the traction of one node under a force (N). None where its tributary density is best: where no edge
     /// leaves the plane, where a hat as wide as a part that is faced is best, or where rounding spoils the stress of
     /// hats. An auxiliary contact force has its own shape.
-    pub(super) fn shape<const N: usize>(
+    pub(super) fn shape(
         &self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         at: usize,
         faced: &Faced,
         force: &[f64; D],
@@ -81,9 +81,9 @@ impl<const D: usize> Concentration<D> {
     }
 
     /// The shape at the other one of two nodes that touch.
-    pub(super) fn facing<const N: usize>(
+    pub(super) fn facing(
         &self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         [at, partner]: [usize; 2],
         shape: &TractionShape,
     ) -> TractionShape {
@@ -107,9 +107,9 @@ impl<const D: usize> Concentration<D> {
 
     /// The cost of shapes under a force with this direction, its normal part 1; none if rounding spoils the stress of
     /// hats, or hats would be narrower than any.
-    fn costs<'a, const N: usize>(
+    fn costs<'a>(
         &'a self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         at: usize,
         faced: &Faced,
         direction: &[f64; D],
@@ -145,7 +145,7 @@ impl<const D: usize> Concentration<D> {
     }
 
     /// The position of the edge of another node that faces each edge of a node.
-    fn facing_edges<const N: usize>(&self, problem: &Problem<D, N>, at: usize, other: usize) -> [usize; 2] {
+    fn facing_edges(&self, problem: &Problem<D>, at: usize, other: usize) -> [usize; 2] {
         let nodes = problem.surface().nodes();
         std::array::from_fn(|edge| {
             let far = self.nodes[at].edges.get(edge).and_then(|edge| nodes[edge.far].partner);
@@ -153,7 +153,7 @@ impl<const D: usize> Concentration<D> {
         })
     }
 
-    fn stress<const N: usize>(&self, problem: &Problem<D, N>, at: usize) -> &StarStress {
+    fn stress(&self, problem: &Problem<D>, at: usize) -> &StarStress {
         let alike = self.nodes[at].alike;
         self.stresses[alike].get_or_init(|| self.nodes[alike].stress(problem))
     }
@@ -221,12 +221,7 @@ impl<const D: usize> Concentration<D> {
     }
 
     /// From the node to the centroid of its traction (m).
-    pub(super) fn centroid<const N: usize>(
-        &self,
-        problem: &Problem<D, N>,
-        at: usize,
-        shape: &TractionShape,
-    ) -> [f64; D] {
+    pub(super) fn centroid(&self, problem: &Problem<D>, at: usize, shape: &TractionShape) -> [f64; D] {
         let surface = problem.surface();
         let mut centroid = [0.0; D];
         for (edge, hat) in self.nodes[at].edges.iter().zip(shape.iter()) {
@@ -237,9 +232,9 @@ impl<const D: usize> Concentration<D> {
     }
 
     /// Calls `with` for each element of each star, with the stress of these hats, which are sorted by stars.
-    pub(crate) fn each_element<const N: usize>(
+    pub(crate) fn each_element(
         &self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         hats: &[NarrowHat<D>],
         mut with: impl FnMut(ElementId, &HatStress<'_>),
     ) {
@@ -251,9 +246,9 @@ impl<const D: usize> Concentration<D> {
     }
 
     /// The stress of hats of one star in an element of it.
-    pub(crate) fn in_element<const N: usize>(
+    pub(crate) fn in_element(
         &self,
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         hats: &[NarrowHat<D>],
         element: ElementId,
     ) -> Option<HatStress<'_>> {

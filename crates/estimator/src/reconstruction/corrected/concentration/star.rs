@@ -49,7 +49,7 @@ pub(super) struct CandidateEdge {
 
 impl NodeStar {
     /// Those of all nodes of the contact surface.
-    pub(super) fn all<const D: usize, const N: usize>(problem: &Problem<D, N>) -> Vec<Self> {
+    pub(super) fn all<const D: usize>(problem: &Problem<D>) -> Vec<Self> {
         let surface = problem.surface();
         let mut edges = vec![Vec::new(); surface.nodes().len()];
         for (face, candidate) in surface.faces().iter().enumerate() {
@@ -82,12 +82,7 @@ impl NodeStar {
         edges.into_iter().zip(sides).enumerate().map(star).collect()
     }
 
-    fn new<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
-        at: usize,
-        mut edges: Vec<CandidateEdge>,
-        sides: Vec<usize>,
-    ) -> Self {
+    fn new<const D: usize>(problem: &Problem<D>, at: usize, mut edges: Vec<CandidateEdge>, sides: Vec<usize>) -> Self {
         edges.sort_by_key(|edge| edge.side);
         let node = problem.surface().nodes()[at].node;
         let star = problem.mesh().stars().star(node);
@@ -124,17 +119,18 @@ impl NodeStar {
 
     /// The other corners of an element, from the node (m), in the frame. Rounding does not grow with the distance of
     /// the body from the origin.
-    fn ends<const D: usize, const N: usize>(&self, problem: &Problem<D, N>, position: usize) -> [[f64; 2]; 2] {
-        let points = problem.mesh().corners::<D, N>(self.elements[position]);
-        let origin = points[self.corners[position]];
-        [1, N - 1].map(|next| {
-            let point = points[(self.corners[position] + next) % N];
+    fn ends<const D: usize>(&self, problem: &Problem<D>, position: usize) -> [[f64; 2]; 2] {
+        let (points, cell) = (problem.mesh().points_in::<D>(), problem.mesh().cell(self.elements[position]));
+        let (corners, own) = (cell.len(), self.corners[position]);
+        let origin = points[cell[own].index()];
+        [1, corners - 1].map(|next| {
+            let point = points[cell[(own + next) % corners].index()];
             self.frame.own([0, D - 1].map(|c| point[c] - origin[c]))
         })
     }
 
     /// The same numbers for stars whose unit hats have the same stresses.
-    fn congruence<const D: usize, const N: usize>(&self, problem: &Problem<D, N>) -> Vec<i64> {
+    fn congruence<const D: usize>(&self, problem: &Problem<D>) -> Vec<i64> {
         let mut numbers: Vec<i64> = self.sides.iter().map(|&side| side as i64).collect();
         numbers.extend(self.supported.as_flattened().iter().map(|&supported| i64::from(supported)));
         for (position, id) in self.elements.iter().enumerate() {
@@ -152,7 +148,7 @@ impl NodeStar {
     }
 
     /// The stresses of unit hats.
-    pub(super) fn stress<const D: usize, const N: usize>(&self, problem: &Problem<D, N>) -> StarStress {
+    pub(super) fn stress<const D: usize>(&self, problem: &Problem<D>) -> StarStress {
         let element = |(position, &id): (usize, &ElementId)| StarElement {
             ends: self.ends(problem, position),
             law: problem.material(id),

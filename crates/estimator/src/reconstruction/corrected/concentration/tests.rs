@@ -10,20 +10,20 @@ use crate::time_level::SurfaceStep;
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Initial, TriangleProblem};
+use percute_core::problem::{Initial, Problem};
 use std::collections::BTreeMap;
 
 const YOUNG: f64 = 70e9;
 
 /// A block of 2 × 1 m in 8×4 cells, on a plane that is turned by 10° under it.
-fn tilted() -> TriangleProblem {
+fn tilted() -> Problem<2> {
     rough(0.2)
 }
 
 /// The same with another coefficient of friction.
-fn rough(friction: f64) -> TriangleProblem {
+fn rough(friction: f64) -> Problem<2> {
     let (sin, cos) = 10_f64.to_radians().sin_cos();
-    Problem::<2, 3>::builder(Mesh::rectangle(2.0, 1.0, 8, 4).unwrap())
+    Problem::<2>::builder(Mesh::rectangle(2.0, 1.0, 8, 4).unwrap())
         .material(Elastic::plane_stress(YOUNG, 0.3, 2700.0, 0.5).unwrap())
         .initial_velocity(Initial::Uniform([0.0, -1.0]))
         .obstacle(Obstacle::plane([0.0, -1e-3], [sin, cos], friction, None).unwrap())
@@ -31,12 +31,12 @@ fn rough(friction: f64) -> TriangleProblem {
         .unwrap()
 }
 
-fn gaps(problem: &TriangleProblem) -> Vec<f64> {
+fn gaps(problem: &Problem<2>) -> Vec<f64> {
     problem.surface().gaps(&vec![[0.0; 2]; problem.mesh().node_count()])
 }
 
 /// The surface at an instant without any force of the simulation.
-fn free_step(problem: &TriangleProblem) -> SurfaceStep<2> {
+fn free_step(problem: &Problem<2>) -> SurfaceStep<2> {
     let count = problem.surface().nodes().len();
     SurfaceStep {
         reaction: vec![[0.0; 2]; count],
@@ -48,7 +48,7 @@ fn free_step(problem: &TriangleProblem) -> SurfaceStep<2> {
 }
 
 /// The node nearest to the plane, and a normal force on it with some friction.
-fn corner(problem: &TriangleProblem) -> (usize, [f64; 2]) {
+fn corner(problem: &Problem<2>) -> (usize, [f64; 2]) {
     let gap = gaps(problem);
     let at = (0..gap.len()).min_by(|&a, &b| gap[a].total_cmp(&gap[b])).unwrap();
     let frame = problem.obstacles()[0].flat_frame();
@@ -108,7 +108,7 @@ fn turned_stars_share_their_stress() {
     let points: Vec<_> = std::iter::once([3.0, 2.0]).chain((0..24).map(corner)).collect();
     let cells: Vec<[usize; 3]> =
         (0..24).map(|k| [[k + 1, (k + 1) % 24 + 1, 0], [0, k + 1, (k + 1) % 24 + 1]][k % 2]).collect();
-    let problem = Problem::<2, 3>::builder(Mesh::new(points, &cells, &BTreeMap::new(), &BTreeMap::new()).unwrap())
+    let problem = Problem::<2>::builder(Mesh::new(points, &cells, &BTreeMap::new(), &BTreeMap::new()).unwrap())
         .material(Elastic::plane_stress(YOUNG, 0.3, 2700.0, 0.5).unwrap())
         .initial_velocity(Initial::Uniform([0.0, -1.0]))
         .obstacle(Obstacle::plane([0.0, 0.9], [0.0, 1.0], 0.2, None).unwrap())
@@ -150,7 +150,7 @@ fn onto(gap: f64) -> Approach<2> {
 /// The force of a node after a step of `AuxiliaryForces` of τ, from the reaction of the simulation and the motion of
 /// the node.
 fn auxiliary_force(
-    problem: &TriangleProblem,
+    problem: &Problem<2>,
     concentration: &Concentration<2>,
     own: &mut AuxiliaryForces<2>,
     step: ([f64; 2], Approach<2>),
@@ -160,7 +160,7 @@ fn auxiliary_force(
 
 /// Replaces the first of two fields, with these gaps (m) and a step so long, over τ.
 fn replace(
-    problem: &TriangleProblem,
+    problem: &Problem<2>,
     concentration: &Concentration<2>,
     own: &mut AuxiliaryForces<2>,
     (gap, steps): (&[f64], f64),
@@ -173,7 +173,7 @@ fn replace(
 
 /// The same after a step of another length, over τ.
 fn after(
-    problem: &TriangleProblem,
+    problem: &Problem<2>,
     concentration: &Concentration<2>,
     own: &mut AuxiliaryForces<2>,
     steps: f64,

@@ -5,12 +5,12 @@ use crate::reconstruction::corrected::Corrected;
 use percute_core::contact::Obstacle;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::{Problem, TriangleProblem};
+use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use percute_testkit::Random;
 
 /// Two blocks beside each other, with edges of unequal lengths, on a plane turned by an angle (rad); μ = 0.4.
-fn blocks(angle: f64) -> TriangleProblem {
+fn blocks(angle: f64) -> Problem<2> {
     let (sin, cos) = angle.sin_cos();
     let turn = |p: [f64; 2]| [cos * p[0] - sin * p[1], sin * p[0] + cos * p[1]];
     let (mut points, mut cells) = (Vec::new(), Vec::new());
@@ -25,7 +25,7 @@ fn blocks(angle: f64) -> TriangleProblem {
     }
     let mesh = Mesh::new(points, &cells, &Default::default(), &Default::default()).unwrap();
     let plane = Obstacle::plane(turn([0.0, -1e-3]), turn([0.0, 1.0]), 0.4, None).unwrap();
-    Problem::<2, 3>::builder(mesh)
+    Problem::<2>::builder(mesh)
         .material(Elastic::plane_stress(1.0, 0.3, 1.0, 1.0).unwrap())
         .obstacle(plane)
         .build()
@@ -33,7 +33,7 @@ fn blocks(angle: f64) -> TriangleProblem {
 }
 
 /// Resultant and moment of nodal forces on each of the two blocks; the five nodes of one follow each other.
-fn balance(problem: &TriangleProblem, forces: &[[f64; 2]]) -> [[f64; 3]; 2] {
+fn balance(problem: &Problem<2>, forces: &[[f64; 2]]) -> [[f64; 3]; 2] {
     let mut sums = [[0.0; 3]; 2];
     for (contact, f) in problem.surface().nodes().iter().zip(forces) {
         let node = contact.node.index();
@@ -45,14 +45,14 @@ fn balance(problem: &TriangleProblem, forces: &[[f64; 2]]) -> [[f64; 3]; 2] {
 }
 
 /// The nodal forces that `corrected` makes of reactions.
-fn made(problem: &TriangleProblem, reaction: &[[f64; 2]]) -> Vec<[f64; 2]> {
+fn made(problem: &Problem<2>, reaction: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let times = TimeGrid::uniform(1.0, 1).unwrap();
-    let (corrected, gap) = (Corrected::new(problem, &times, &Options::default()), vec![0.0; reaction.len()]);
+    let (corrected, gap) = (Corrected::<2, 3>::new(problem, &times, &Options::default()), vec![0.0; reaction.len()]);
     nodal_forces(problem, &corrected.at(reaction, &corrected.around(&gap, &[])))
 }
 
 /// Reactions in the cone: normal parts up to `range` times each other, friction up to a part of what the cone allows.
-fn reactions(problem: &TriangleProblem, random: &mut Random, range: f64, part: f64) -> Vec<[f64; 2]> {
+fn reactions(problem: &Problem<2>, random: &mut Random, range: f64, part: f64) -> Vec<[f64; 2]> {
     let one = |_| {
         let n = random.between(1.0, range);
         in_frame(problem, n, 0.4 * n * random.between(-part, part))
@@ -61,13 +61,13 @@ fn reactions(problem: &TriangleProblem, random: &mut Random, range: f64, part: f
 }
 
 /// A force with a normal part and one along the plane.
-fn in_frame(problem: &TriangleProblem, n: f64, t: f64) -> [f64; 2] {
+fn in_frame(problem: &Problem<2>, n: f64, t: f64) -> [f64; 2] {
     let normal = *problem.obstacles()[0].flat_frame().normal();
     [n * normal[0] + t * normal[1], n * normal[1] - t * normal[0]]
 }
 
 /// Whether forces press and their friction is within the cone, to the last bits.
-fn admissible(problem: &TriangleProblem, forces: &[[f64; 2]]) -> bool {
+fn admissible(problem: &Problem<2>, forces: &[[f64; 2]]) -> bool {
     let normal = *problem.obstacles()[0].flat_frame().normal();
     forces.iter().all(|f| {
         let (n, t) = (f[0] * normal[0] + f[1] * normal[1], f[0] * normal[1] - f[1] * normal[0]);

@@ -13,14 +13,14 @@ use percute_core::problem::Problem;
 /// The parts of the mesh that matter.
 #[derive(Clone, Copy, Debug)]
 struct Unknown<'a, const D: usize, const N: usize> {
-    problem: &'a Problem<D, N>,
+    problem: &'a Problem<D>,
     elements: &'a [Element<D, N>],
     numbers: &'a Numbers,
 }
 
 /// The matrix for the modes of a problem.
 pub(super) fn assemble<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+    problem: &Problem<D>,
     elements: &[Element<D, N>],
     numbers: &Numbers,
 ) -> Operator {
@@ -29,7 +29,7 @@ pub(super) fn assemble<const D: usize, const N: usize>(
     for first in (0..elements.len()).step_by(LANES) {
         let form = dispatch(
             #[inline(always)]
-            || mode_forms(problem, forms, first),
+            || mode_forms::<D, N>(problem, forms, first),
         );
         (first..elements.len().min(first + LANES)).for_each(|e| unknown.add(&mut operator, e, &form, e - first));
     }

@@ -80,7 +80,7 @@ impl Workspace {
 impl TractionMinimisation {
     /// Prepares all elements. In a bar there is nothing to choose.
     pub(in crate::reconstruction) fn new<const D: usize, const N: usize>(
-        problem: &Problem<D, N>,
+        problem: &Problem<D>,
         elements: &[Element<D, N>],
     ) -> Option<Self> {
         match problem.mesh().shape() {
@@ -128,7 +128,7 @@ impl TractionMinimisation {
     /// star problems.
     pub(in crate::reconstruction) fn equilibrate<const D: usize, const N: usize>(
         &self,
-        of @ (problem, equilibration, _): (&Problem<D, N>, &Equilibration<'_, D, N>, Acceleration),
+        of @ (problem, equilibration, _): (&Problem<D>, &Equilibration<'_, D, N>, Acceleration),
         forces: (Vec<ForcesKnown<D>>, Option<Smoothed<'_>>),
         levels: &mut EquilibratedLevels<D>,
         concentration: Option<&Concentration<D>>,
@@ -150,7 +150,7 @@ impl TractionMinimisation {
     /// Solves the star problems and finds the slopes of the energy.
     fn add_slopes<const D: usize, const N: usize>(
         &self,
-        (problem, equilibration, choice): (&Problem<D, N>, &Equilibration<'_, D, N>, Acceleration),
+        (problem, equilibration, choice): (&Problem<D>, &Equilibration<'_, D, N>, Acceleration),
         (forces, strains): (Vec<ForcesKnown<D>>, Option<Smoothed<'_>>),
         levels: &mut EquilibratedLevels<D>,
         concentration: Option<&Concentration<D>>,
@@ -240,7 +240,7 @@ impl<const D: usize> Task for AddChange<'_, D> {
 /// The slopes of the energy of some levels in the modes.
 #[derive(Clone, Copy, Debug)]
 struct Slopes<'a, const D: usize, const N: usize> {
-    problem: &'a Problem<D, N>,
+    problem: &'a Problem<D>,
     equilibration: &'a Equilibration<'a, D, N>,
     choice: Acceleration,
     levels: &'a EquilibratedLevels<D>,

@@ -20,7 +20,7 @@ pub(super) const fn edge(k: usize) -> usize {
 /// The forms of eight elements from `first` on; past the last one, that of the last again.
 #[inline(always)]
 pub(super) fn mode_forms<const D: usize, const N: usize>(
-    problem: &Problem<D, N>,
+    problem: &Problem<D>,
     forms: &TractionForms,
     first: usize,
 ) -> ModeForm {

@@ -10,19 +10,19 @@ use crate::stress::{Loading, TriangleStress};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
-use percute_core::problem::TriangleProblem;
+use percute_core::problem::Problem;
 use percute_core::simplex::simplex;
 use percute_testkit::{Random, random_rectangle};
 
 /// Second derivative of the energy of an element in the moments on its edges.
 type Form = [[f64; MOMENTS]; MOMENTS];
 
-pub(super) fn problem_of(mesh: Mesh, material: Elastic) -> TriangleProblem {
+pub(super) fn problem_of(mesh: Mesh, material: Elastic) -> Problem<2> {
     held(mesh, material, [true; 2])
 }
 
-fn held(mesh: Mesh, material: Elastic, components: [bool; 2]) -> TriangleProblem {
-    Problem::<2, 3>::builder(mesh)
+fn held(mesh: Mesh, material: Elastic, components: [bool; 2]) -> Problem<2> {
+    Problem::<2>::builder(mesh)
         .material(material)
         .support(Support { group: "left".into(), components: [components[0], components[1], false], velocity: None })
         .build()
@@ -30,21 +30,21 @@ fn held(mesh: Mesh, material: Elastic, components: [bool; 2]) -> TriangleProblem
 }
 
 /// Blocks of random triangles whose left side is held, and is a line of symmetry.
-pub(super) fn problems() -> [TriangleProblem; 2] {
+pub(super) fn problems() -> [Problem<2>; 2] {
     let material = Elastic::plane_stress(70e9, 0.3, 2700.0, 0.3).unwrap();
     [true, false].map(|y| held(random_rectangle(0.05, 0.04, 4, 1).unwrap(), material, [true, y]))
 }
 
 /// The minimisation of a problem with all that tests compare it with.
 pub(super) struct Case {
-    pub(super) problem: TriangleProblem,
+    pub(super) problem: Problem<2>,
     pub(super) elements: Vec<Element<2, 3>>,
     forms: Vec<Form>,
     pub(super) all: TractionMinimisation,
 }
 
 impl Case {
-    pub(super) fn new(problem: TriangleProblem) -> Self {
+    pub(super) fn new(problem: Problem<2>) -> Self {
         let elements = elements(&problem);
         let form = |(e, element): (usize, &Element<2, 3>)| {
             let id = ElementId::new(e);
