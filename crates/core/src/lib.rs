@@ -23,7 +23,7 @@ pub mod message;
 pub mod observer;
 pub mod problem;
 mod ratio;
-mod simd;
+pub mod simd;
 pub mod simplex;
 pub mod time;
 pub mod units;

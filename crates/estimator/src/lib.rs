@@ -41,7 +41,6 @@ mod request;
 mod residual;
 mod sampling;
 mod scratch_file;
-mod simd;
 mod smoothing;
 mod sources;
 mod stress;

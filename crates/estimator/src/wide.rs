@@ -4,7 +4,7 @@
 //! memory too, and moves three numbers for each operation. In registers a formula moves those that do not fit.
 
 use crate::lanes::{LANES, Lanes, Value};
-use crate::simd::Registers;
+use percute_core::simd::Registers;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// A number at each level of some lanes, in registers of one kind.

@@ -5,7 +5,7 @@ use crate::border::vectors;
 use crate::mesh::Strips;
 use crate::on_problem;
 use crate::problem::{Problem, ProblemRef};
-use crate::simd::{Lanes, Task, Wide, dispatch};
+use crate::simd::{Eight, Registers, Task, run_task};
 use crate::simplex::Shape;
 
 /// The stiffness of a problem, applied element by element. Its scaled gradients are valid for linear laws only.
@@ -52,7 +52,7 @@ impl Stiffness {
                     displacement: &displacement[nodes.clone()],
                     force: &mut force[nodes],
                 };
-                energies[strip] = dispatch(sweep);
+                energies[strip] = run_task(sweep);
             }
         }
         0.5 * energies.iter().sum::<f64>()
@@ -71,7 +71,7 @@ impl<const D: usize> Task for StripSweep<'_, D> {
     type Output = f64;
 
     #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) -> f64 {
+    fn run<L: Registers>(self, lanes: L) -> f64 {
         let Self { stiffness, strip, displacement, force } = self;
         let mut energy = [0.0; 8];
         for (_, chunk) in stiffness.pairs.strip(strip) {
@@ -83,13 +83,13 @@ impl<const D: usize> Task for StripSweep<'_, D> {
 
 /// Subtracts the internal forces of a chunk and adds twice its strain energy; nodes are counted in the strip.
 #[inline(always)]
-pub(super) fn sweep<L: Lanes, const D: usize>(
+pub(super) fn sweep<L: Registers, const D: usize>(
     lanes: L,
     shape: Shape,
     chunk: &ChunkData<'_>,
     displacement: &[[f64; D]],
     force: &mut [[f64; D]],
-    energy: &mut Wide,
+    energy: &mut Eight,
 ) {
     match shape {
         Shape::Bar => any(chunk, displacement, force, energy),
@@ -102,12 +102,12 @@ pub(super) fn sweep<L: Lanes, const D: usize>(
 
 /// Two pairs of triangles at a time. Their gradients ∂u/∂x and ∂u/∂y have a sign less, so that forces are added.
 #[inline(always)]
-fn triangles<L: Lanes>(
+fn triangles<L: Registers>(
     l: L,
     chunk: &ChunkData<'_>,
     displacement: &[[f64; 2]],
     force: &mut [[f64; 2]],
-    energy: &mut Wide,
+    energy: &mut Eight,
 ) {
     let u = displacement;
     // One check of an index is enough for both.
@@ -124,18 +124,18 @@ fn triangles<L: Lanes>(
         let last = l.sub(base, l.quad([shared_a, u[a[3]], shared_b, u[b[3]]]));
         let [first_gradient, last_gradient] = gradients.0;
         let (g, h) = (l.load(&first_gradient), l.load(&last_gradient));
-        let (gx, gy, hx, hy) = (l.first(g), l.second(g), l.first(h), l.second(h));
+        let (gx, gy, hx, hy) = (l.evens(g), l.odds(g), l.evens(h), l.odds(h));
         let along_x = l.add(l.mul(first, gx), l.mul(last, hx));
         let along_y = l.add(l.mul(first, gy), l.mul(last, hy));
         // (σ_xx, σ_yx) and (σ_xy, σ_yy), over G.
-        let on_x = l.add(l.mul(direct_x, along_x), l.mul(other_x, l.swap(along_y)));
-        let on_y = l.add(l.mul(direct_y, along_y), l.mul(other_y, l.swap(along_x)));
+        let on_x = l.add(l.mul(direct_x, along_x), l.mul(other_x, l.swap_lanes(along_y)));
+        let on_y = l.add(l.mul(direct_y, along_y), l.mul(other_y, l.swap_lanes(along_x)));
         total = l.add(total, l.add(l.mul(on_x, along_x), l.mul(on_y, along_y)));
         let first = l.add(l.mul(on_x, gx), l.mul(on_y, gy));
         let last = l.add(l.mul(on_x, hx), l.mul(on_y, hy));
         // Element B lies in vectors 1 and 3; the vectors 0 and 2 of these sums are those of the pairs.
-        let shared = l.add(last, l.cross(first));
-        let other = l.cross(last);
+        let shared = l.add(last, l.swap_pairs(first));
+        let other = l.swap_pairs(last);
         let base = l.add(l.add(first, shared), other);
         let (first, shared, other, base) = (l.ends(first), l.ends(shared), l.ends(other), l.ends(base));
         for (p, node) in [a, b].iter().enumerate() {
@@ -155,7 +155,7 @@ fn places([a, b, c, d]: &PairNodes) -> [usize; 4] {
 
 /// The same for simplices of any dimension up to 2, one element at a time.
 #[inline(always)]
-fn any<const D: usize>(chunk: &ChunkData<'_>, u: &[[f64; D]], force: &mut [[f64; D]], energy: &mut Wide) {
+fn any<const D: usize>(chunk: &ChunkData<'_>, u: &[[f64; D]], force: &mut [[f64; D]], energy: &mut Eight) {
     let [direct, other] = chunk.law;
     for (nodes, gradients) in chunk.nodes.iter().zip(chunk.gradients) {
         for (lane, slot) in energy.iter_mut().step_by(2).enumerate() {
@@ -288,7 +288,7 @@ mod tests {
         let mut forces = [vec![[0.0; 2]; u.len()], vec![[0.0; 2]; u.len()]];
         let [a, b] =
             forces.each_mut().map(|force| StripSweep { stiffness: &stiffness, strip: 0, displacement: &u, force });
-        assert_eq!(dispatch(a).to_bits(), b.run(Portable).to_bits());
+        assert_eq!(run_task(a).to_bits(), b.run(Portable).to_bits());
         assert!(forces[0] == forces[1]);
     }
 }

@@ -1,6 +1,6 @@
 //! Motion of consecutive nodes, and their part in the balance.
 
-use crate::simd::{Lanes, Wide};
+use crate::simd::{Eight, Registers};
 use std::ops::Range;
 
 /// The motion of the nodes before the forces of an instant are computed.
@@ -32,11 +32,11 @@ pub(super) enum NodeMotion<'a, const D: usize> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StripSums<const D: usize> {
     /// Twice the strain energy (J).
-    pub(super) strain: Wide,
+    pub(super) strain: Eight,
     /// Twice the kinetic energy (J).
-    kinetic: Wide,
+    kinetic: Eight,
     /// Momentum (kg m/s).
-    momentum: Wide,
+    momentum: Eight,
 }
 
 impl<const D: usize> StripSums<D> {
@@ -80,7 +80,7 @@ impl<const D: usize> StripSums<D> {
 
 /// A number of each node for eight components.
 #[inline(always)]
-fn of_nodes<L: Lanes, const D: usize>(l: L, nodes: &[f64]) -> L::Wide {
+fn of_nodes<L: Registers, const D: usize>(l: L, nodes: &[f64]) -> L::Eight {
     match (nodes.first_chunk(), nodes.first_chunk()) {
         (Some(eight), _) if D == 1 => l.load(eight),
         (_, Some(four)) => l.repeat(four),
@@ -116,7 +116,7 @@ impl<const D: usize> Nodes<'_, D> {
 
     /// Moves the nodes, with these numbers, and sets their forces to zero.
     #[inline(always)]
-    pub(super) fn advance<L: Lanes>(
+    pub(super) fn advance<L: Registers>(
         self,
         l: L,
         motion: &NodeMotion<'_, D>,
@@ -140,7 +140,7 @@ impl<const D: usize> Nodes<'_, D> {
 
     /// v += h M⁻¹f, u += Δt v, f = 0.
     #[inline(always)]
-    fn step<L: Lanes>(self, l: L, h: f64, dt: f64) {
+    fn step<L: Registers>(self, l: L, h: f64, dt: f64) {
         let rest = self.rest();
         let (factor, length, none) = (l.splat(h), l.splat(dt), l.store(l.splat(0.0)));
         let fields = eights!(mut self.displacement).zip(eights!(mut self.velocity)).zip(eights!(mut self.force));
@@ -162,7 +162,7 @@ impl<const D: usize> Nodes<'_, D> {
 
     /// u ← a M⁻¹f + b v + c u and f = 0; adds twice the kinetic energy of u.
     #[inline(always)]
-    fn combine<L: Lanes>(self, l: L, [a, b, c]: [f64; 3], sums: &mut StripSums<D>) {
+    fn combine<L: Registers>(self, l: L, [a, b, c]: [f64; 3], sums: &mut StripSums<D>) {
         let rest = self.rest();
         let (of_force, of_v, of_u, none) = (l.splat(a), l.splat(b), l.splat(c), l.store(l.splat(0.0)));
         let mut kinetic = l.load(&sums.kinetic);
@@ -190,7 +190,7 @@ impl<const D: usize> Nodes<'_, D> {
 
     /// Adds momentum and kinetic energy of v_n = v_{n−½} + `back` a_n.
     #[inline(always)]
-    pub(super) fn sum_up<L: Lanes>(self, l: L, back: f64, sums: &mut StripSums<D>) {
+    pub(super) fn sum_up<L: Registers>(self, l: L, back: f64, sums: &mut StripSums<D>) {
         let rest = self.rest();
         let (factor, mut momentum, mut kinetic) = (l.splat(back), l.load(&sums.momentum), l.load(&sums.kinetic));
         let masses = self.mass.chunks_exact(8 / D).zip(self.inverse_mass.chunks_exact(8 / D));

@@ -5,7 +5,7 @@
 
 use super::internal_force::{Stiffness, sweep};
 use super::node_update::{NodeMotion, Nodes, StripSums};
-use crate::simd::{Lanes, Task, dispatch};
+use crate::simd::{Registers, Task, run_task};
 use std::ops::Range;
 
 /// What is the same for all strips of a pass.
@@ -88,7 +88,7 @@ impl<const D: usize> Pass<'_, D> {
             0 => (),
             1 => {
                 let strip = 2 * range.start + parity;
-                dispatch(StripPass { pass: self, strip, fields: fields.narrow(self.stiffness.strips.nodes(strip)) });
+                run_task(StripPass { pass: self, strip, fields: fields.narrow(self.stiffness.strips.nodes(strip)) });
             }
             count => {
                 let middle = range.start + count / 2;
@@ -118,7 +118,7 @@ impl<const D: usize> Task for StripPass<'_, D> {
     type Output = ();
 
     #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) {
+    fn run<L: Registers>(self, lanes: L) {
         let Self { pass, strip, mut fields } = self;
         let (Stiffness { shape, strips, pairs }, start) = (pass.stiffness, fields.start);
         let own = strips.own_nodes(strip);
@@ -146,7 +146,13 @@ impl<const D: usize> Task for StripPass<'_, D> {
 impl<const D: usize> Pass<'_, D> {
     /// Moves nodes, counted in the strip, and begins their forces anew.
     #[inline(always)]
-    fn advance<L: Lanes>(&self, lanes: L, nodes: Range<usize>, fields: &mut Fields<'_, D>, sums: &mut StripSums<D>) {
+    fn advance<L: Registers>(
+        &self,
+        lanes: L,
+        nodes: Range<usize>,
+        fields: &mut Fields<'_, D>,
+        sums: &mut StripSums<D>,
+    ) {
         if nodes.is_empty() {
             return;
         }
@@ -167,7 +173,7 @@ impl<const D: usize> Pass<'_, D> {
 
     /// Sums up nodes, counted in the strip, but for those apart. Of these, `passed` have lower numbers.
     #[inline(always)]
-    fn sum_up<L: Lanes>(
+    fn sum_up<L: Registers>(
         &self,
         lanes: L,
         nodes: Range<usize>,

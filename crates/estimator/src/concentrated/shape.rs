@@ -2,7 +2,7 @@
 
 use super::star_stress::Symmetric;
 use super::{EdgeTraction, HATS, StarFrame, place};
-use crate::simd::dispatch;
+use percute_core::simd::dispatch;
 use std::array::from_fn;
 use std::ops::Deref;
 use std::sync::LazyLock;

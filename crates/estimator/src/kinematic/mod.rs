@@ -29,11 +29,11 @@ pub(crate) use normal_motions::NormalMotions;
 use crate::field_lanes::gather;
 use crate::lanes::{Lanes, Value, load, store};
 use crate::numbers::Reader;
-use crate::simd::Registers;
 use crate::wide::Wide;
 use percute_core::contact::Frame;
 use percute_core::ids::NodeId;
 use percute_core::problem::Problem;
+use percute_core::simd::Registers;
 
 /// u_CA and u̇_CA at the nodes of one element at one half-step instant.
 #[derive(Clone, Copy, Debug)]

@@ -4,11 +4,11 @@ use super::balanced::{NodalBalance, outward};
 use crate::element::Element;
 use crate::field_lanes::gather;
 use crate::lanes::{Lanes, Value, load};
-use crate::simd::Registers;
 use crate::traction::EquilibratedLevels;
 use crate::wide::Wide;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
+use percute_core::simd::Registers;
 
 /// A node of a block of elements, with the fields of which tractions and Γ_DA are made at some levels.
 #[derive(Clone, Copy, Debug)]

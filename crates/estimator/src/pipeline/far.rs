@@ -11,13 +11,13 @@ use crate::lanes::{LANES, Lanes, Value};
 use crate::measure::{AdmissibleStress, BalanceNode, ElementError, ElementMeasure};
 use crate::pool::Pool;
 use crate::residual::{Residuals, worse};
-use crate::simd::{Registers, Task, run_task};
 use crate::stress::EnergyForms;
 use crate::traction::{EquilibratedLevel, EquilibratedLevels};
 use crate::wide::Wide;
 use element::FarElement;
 use fields::BlockFields;
 use percute_core::ids::ElementId;
+use percute_core::simd::{Registers, Task, run_task};
 use rayon::prelude::*;
 use std::ops::Range;
 

@@ -6,10 +6,10 @@ use crate::element::Element;
 use crate::field_lanes::FieldLanes;
 use crate::lanes::{Lanes, Value};
 use crate::pool::Pool;
-use crate::simd::{Registers, Task, run_task};
 use crate::wide::Wide;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::problem::Problem;
+use percute_core::simd::{Registers, Task, run_task};
 use rayon::prelude::*;
 
 /// Components of a strain: ε_xx, ε_yy, ε_xy.

@@ -19,12 +19,12 @@ use super::reference::PAIRS;
 use super::triangle::reference_compliance;
 use super::{Fluctuation, Loading};
 use crate::lanes::{LANES, Lanes, Value};
-use crate::simd::dispatch;
 pub(crate) use element_form::ElementForm;
 use nalgebra::Matrix2;
 use percute_core::ids::ElementId;
 use percute_core::material::LinearLaw;
 use percute_core::problem::Problem;
+use percute_core::simd::dispatch;
 use percute_core::simplex::{Shape, simplex};
 
 /// Numbers that make up a fluctuation of a triangle: two for each edge, then two for each node.

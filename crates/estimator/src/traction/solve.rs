@@ -8,13 +8,13 @@ use crate::field_lanes::FieldLanes;
 use crate::inertia::{add_lumping_stress, arms};
 use crate::lanes::{Lanes, Value, load};
 use crate::residual::worse;
-use crate::simd::{Registers, Task, run_task};
 use crate::smoothing::{SmoothedStrains, Smoothing, Strained};
 use crate::stress::hooke;
 use crate::time_level::{ForcesKnown, Side};
 use crate::wide::Wide;
 use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::material::Law;
+use percute_core::simd::{Registers, Task, run_task};
 use rayon::prelude::*;
 use std::ops::Range;
 

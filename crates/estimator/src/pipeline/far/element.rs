@@ -9,10 +9,10 @@ use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, N
 use crate::pipeline::maps::Contribution;
 use crate::pipeline::sampling::{Course, ElementSample};
 use crate::residual::Residuals;
-use crate::simd::Registers;
 use crate::stress::EnergyForm;
 use crate::wide::Wide;
 use percute_core::ids::ElementId;
+use percute_core::simd::Registers;
 
 /// One far element.
 pub(super) struct FarElement<'f, 'a, 's, 'p, const D: usize, const N: usize> {

@@ -6,9 +6,9 @@ use crate::increment::{self, Increment};
 use crate::kinematic::MotionLanes;
 use crate::lanes::{Lanes, Value, load, store};
 use crate::measure::BalanceFields;
-use crate::simd::Registers;
 use crate::time_level::Velocities;
 use crate::wide::Wide;
+use percute_core::simd::Registers;
 
 /// The fields of a block at some levels, and in the middles before them.
 #[derive(Default)]

@@ -6,10 +6,10 @@
 use crate::lanes::{LANES, Lanes, Value, load};
 use crate::measure::{AdmissibleStress, Balanced, NodalBalance, outward};
 use crate::pipeline::sampling::{ElementSampler, SampledStress};
-use crate::simd::{Registers, Task, run_task};
 use crate::stress::{ElementForm, Loading};
 use crate::traction::EquilibratedLevels;
 use crate::wide::Wide;
+use percute_core::simd::{Registers, Task, run_task};
 use std::array::from_fn;
 
 /// The stresses at the levels or in the middles before them.

@@ -9,10 +9,10 @@ use super::{AuxiliaryLevel, MotionFields};
 use crate::difference::Difference;
 use crate::element::Element;
 use crate::inertia::mass_product;
-use crate::simd::{Registers, Task, run_task};
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::problem::Problem;
+use percute_core::simd::{Registers, Task, run_task};
 use std::ops::Range;
 
 /// The energies need the elements with a node that may touch apart.

@@ -1,6 +1,6 @@
 //! Nodal vectors of the four motions as lanes.
 
-use crate::simd::{Eight, Four};
+use percute_core::simd::{Eight, Four};
 use std::array::from_fn;
 
 /// The motions: the auxiliary solution, the halved-elements solution, the halved-step solution and the contact

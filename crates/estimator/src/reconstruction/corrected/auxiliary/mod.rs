@@ -51,7 +51,6 @@ mod weights;
 
 use crate::difference::Difference;
 use crate::element::Element;
-use crate::simd::run_task;
 use crate::smoothing::Smoothing;
 pub(super) use approach::{Approach, Foreseen, FreeFlight, Mobility};
 use approach::{BeforePass, ContactElements};
@@ -66,6 +65,7 @@ use patch::{Factors, PatchOperator};
 use percute_core::dynamics::Dynamics;
 use percute_core::problem::Problem;
 use percute_core::ratio;
+use percute_core::simd::run_task;
 use percute_core::time::TimeGrid;
 use std::sync::Arc;
 use surface::SurfaceForces;

@@ -4,11 +4,11 @@
 use super::blocks::Blocks;
 use super::lanes::{MOTIONS, place};
 use super::weights::Shares;
-use crate::simd::Eight;
 use crate::smoothing::Smoothing;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::material::{Law, LinearLaw};
 use percute_core::problem::Problem;
+use percute_core::simd::Eight;
 use percute_core::simplex::Shape;
 use std::ops::Range;
 

@@ -18,9 +18,9 @@ use super::sweeps::{
     add_lumping, add_skew, subtract_both, subtract_plain_part, subtract_smoothed_part, subtract_stiffness,
 };
 use super::weights::{BodyWeights, LevelWeights};
-use crate::simd::{Registers, Task};
 use crate::smoothing::Smoothing;
 use percute_core::ids::NodeId;
+use percute_core::simd::{Registers, Task};
 use std::ops::Range;
 
 /// The data of the pass at t_n.

@@ -6,10 +6,10 @@ use super::lanes::{FirstPair, Gradient, Nodal};
 use super::pairs::{Laws, PairSurroundings, TrianglePair};
 use super::sweeps::{add_lumping, subtract_both, subtract_plain_part, subtract_smoothed_part, subtract_stiffness};
 use super::weights::{LevelWeights, Weights};
-use crate::simd::{Registers, Task, run_task};
 use crate::smoothing::Smoothing;
 use percute_core::ids::NodeId;
 use percute_core::problem::Problem;
+use percute_core::simd::{Registers, Task, run_task};
 use std::array::from_fn;
 use std::collections::BTreeMap;
 

@@ -8,8 +8,8 @@
 use super::parts::{Part, View, for_all};
 use super::pass::{PartPass, Pass};
 use super::{AuxiliaryLevel, AuxiliarySolutions, MotionFields, Nodal, start_of};
-use crate::simd::run_task;
 use percute_core::dynamics::{critical_time_step, element_time_step, rough_field};
+use percute_core::simd::run_task;
 
 /// Up to this part of the critical step the scheme is stable. 1e-3 is the precision of the critical step.
 const SAFE: f64 = 0.9 + 1e-3;

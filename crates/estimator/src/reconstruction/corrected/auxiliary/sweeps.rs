@@ -2,7 +2,7 @@
 
 use super::lanes::{FirstPair, Gradient, Nodal};
 use super::pairs::{Laws, Moduli, PairSurroundings, TrianglePair};
-use crate::simd::Registers;
+use percute_core::simd::Registers;
 
 /// A gradient or a stress, column by column.
 pub(super) type Columns<R> = [<R as Registers>::Eight; 2];
@@ -160,15 +160,15 @@ pub(super) fn gradient<R: Registers>(r: R, [first, last]: &[[f64; 2]; 2], [x, y]
 pub(super) fn stress<R: Registers>(r: R, moduli: &Moduli, [along, across]: &Columns<R>) -> Columns<R> {
     let (own, partner) = (&moduli.own, &moduli.partner);
     [
-        r.add(r.mul(*along, r.load(&own[0])), r.mul(r.swap(*across), r.load(&partner[0]))),
-        r.add(r.mul(*across, r.load(&own[1])), r.mul(r.swap(*along), r.load(&partner[1]))),
+        r.add(r.mul(*along, r.load(&own[0])), r.mul(r.swap_pairs(*across), r.load(&partner[0]))),
+        r.add(r.mul(*across, r.load(&own[1])), r.mul(r.swap_pairs(*along), r.load(&partner[1]))),
     ]
 }
 
 /// The same of the first pair of motions, at derivatives along x, then along y.
 #[inline(always)]
 fn stress_of_first<R: Registers>(r: R, moduli: &Moduli, gradient: R::Eight) -> [R::Four; 2] {
-    let other = r.swap(gradient);
+    let other = r.swap_pairs(gradient);
     [
         column_of_first(r, moduli, 0, [r.first(gradient), r.last(other)]),
         column_of_first(r, moduli, 1, [r.last(gradient), r.first(other)]),

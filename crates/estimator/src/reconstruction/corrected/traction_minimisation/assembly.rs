@@ -5,10 +5,10 @@ use super::modes::Numbers;
 use super::operator::{NONE, Operator, Sector, WithEdges, WithNodes};
 use crate::element::Element;
 use crate::lanes::LANES;
-use crate::simd::dispatch;
 use crate::stress::TractionForms;
 use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::problem::Problem;
+use percute_core::simd::dispatch;
 
 /// The parts of the mesh that matter.
 #[derive(Clone, Copy, Debug)]
