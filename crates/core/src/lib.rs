@@ -10,6 +10,7 @@
 #![doc = include_str!("method.md")]
 
 pub mod border;
+pub mod cell;
 pub mod contact;
 pub mod dynamics;
 pub mod element_state;
@@ -24,7 +25,6 @@ pub mod observer;
 pub mod problem;
 mod ratio;
 pub mod simd;
-pub mod simplex;
 pub mod time;
 pub mod units;
 pub mod variable_steps;

@@ -11,10 +11,10 @@
 
 mod strains;
 
+use percute_core::cell::CellKind;
 use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
-use percute_core::simplex::Shape;
 use std::ops::Range;
 pub(crate) use strains::{SmoothedStrains, Strained};
 
@@ -70,9 +70,9 @@ impl Smoothing {
         };
         let mut made =
             Self { bodies: Vec::new(), body_of_node, starts: Vec::new(), materials: Vec::new(), weights: Vec::new() };
-        match mesh.shape() {
-            Shape::Bar => made.bodies = vec![Coefficients::BAR; mesh.parts()],
-            Shape::Triangle => {
+        match mesh.kind() {
+            CellKind::Bar => made.bodies = vec![Coefficients::BAR; mesh.parts()],
+            CellKind::Triangle => {
                 let asymmetry = made.asymmetry(problem);
                 made.bodies = asymmetry.into_iter().map(Coefficients::of_triangles).collect();
                 made.add_patches(problem);

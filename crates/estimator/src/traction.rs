@@ -20,12 +20,12 @@ use crate::pool::Pool;
 use crate::time_level::{ForcesKnown, TimeLevel};
 pub(crate) use equilibrated::{EquilibratedLevel, EquilibratedLevels, KeptLevel};
 use mass_term::MassTerm;
+use percute_core::cell::cell;
 use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::material::Law;
 use percute_core::mesh::{Star, Strips};
 use percute_core::observer::StopFlag;
 use percute_core::problem::Problem;
-use percute_core::simplex::simplex;
 pub(crate) use solve::Smoothed;
 use solve::StarFields;
 use star_solver::{Compatibility, Ends};
@@ -78,7 +78,7 @@ impl<'p, const D: usize, const N: usize> Equilibration<'p, D, N> {
             contact_links.push(contact_links[contact_links.len() - 1] + links);
         }
         let (elements, loaded) = (crate::element::elements(problem), loaded.faces().len());
-        let crossing = simplex::<D, N>().faces_around();
+        let crossing = cell::<D, N>().faces_around();
         let (blocks, star_blocks) = (ElementBlocks::new(problem.mesh()), StarBlocks::new(problem.mesh()));
         let strips = Strips::with_fewest(problem.mesh(), STRIP);
         let parts = parts(problem.mesh(), &strips);

@@ -3,10 +3,10 @@
 use super::Stiffness;
 use super::node_update::{NodeMotion, StripSums};
 use super::pass::{Fields, Pass};
+use crate::cell::CellKind;
 use crate::ids::ElementId;
 use crate::material::{Law, LinearLaw};
 use crate::problem::Problem;
-use crate::simplex::Shape;
 
 /// Lanczos stops when the residual bounds ω²_max to this relative precision …
 const PRECISION: f64 = 1e-9;
@@ -44,9 +44,9 @@ fn largest_of_element<const D: usize>(problem: &Problem<D>, element: ElementId) 
     let (material, gradients) = (problem.material(element), problem.mesh().gradients_in::<D>(element));
     let q = |a: usize, b: usize| gradients.iter().map(|g| g[a] * g[b]).sum::<f64>();
     let (lambda, shear) = material.moduli();
-    let largest = match problem.mesh().shape() {
-        Shape::Bar => (lambda + 2.0 * shear) * q(0, 0),
-        Shape::Triangle => {
+    let largest = match problem.mesh().kind() {
+        CellKind::Bar => (lambda + 2.0 * shear) * q(0, 0),
+        CellKind::Triangle => {
             let (m, r) = (0.5 * (q(0, 0) + q(1, 1)), (0.5 * (q(0, 0) - q(1, 1))).hypot(q(0, 1)));
             let (volume, deviator) = (2.0 * (lambda + shear), 2.0 * shear);
             let coupling = 4.0 * volume * deviator * r * r;

@@ -2,11 +2,11 @@
 
 use super::element_pairs::{ChunkData, ElementPairs, PairNodes};
 use crate::border::vectors;
+use crate::cell::CellKind;
 use crate::mesh::Strips;
 use crate::on_problem;
 use crate::problem::{Problem, ProblemRef};
 use crate::simd::{Eight, Registers, Task, run_task};
-use crate::simplex::Shape;
 
 /// The stiffness of a problem, applied element by element. Its scaled gradients are valid for linear laws only.
 ///
@@ -14,7 +14,7 @@ use crate::simplex::Shape;
 /// triangles have six. First all even strips are swept, then all odd ones.
 #[derive(Clone, Debug)]
 pub struct Stiffness {
-    pub(super) shape: Shape,
+    pub(super) kind: CellKind,
     pub(super) strips: Strips,
     pub(super) pairs: ElementPairs,
 }
@@ -29,14 +29,14 @@ impl Stiffness {
     /// The same with a cut of its own.
     pub(super) fn on_strips<const D: usize>(problem: &Problem<D>, strips: Strips) -> Self {
         let pairs = ElementPairs::new(problem, &strips);
-        Self { shape: problem.mesh().shape(), strips, pairs }
+        Self { kind: problem.mesh().kind(), strips, pairs }
     }
 
     /// Subtracts K u from `force` (N), both in rows, and returns the strain energy ½ u·K u (J).
     pub fn subtract_from_rows(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
-        match self.shape {
-            Shape::Bar => self.subtract_internal_forces::<1>(vectors(displacement), force.as_chunks_mut().0),
-            Shape::Triangle => self.subtract_internal_forces::<2>(vectors(displacement), force.as_chunks_mut().0),
+        match self.kind {
+            CellKind::Bar => self.subtract_internal_forces::<1>(vectors(displacement), force.as_chunks_mut().0),
+            CellKind::Triangle => self.subtract_internal_forces::<2>(vectors(displacement), force.as_chunks_mut().0),
         }
     }
 
@@ -75,7 +75,7 @@ impl<const D: usize> Task for StripSweep<'_, D> {
         let Self { stiffness, strip, displacement, force } = self;
         let mut energy = [0.0; 8];
         for (_, chunk) in stiffness.pairs.strip(strip) {
-            sweep(lanes, stiffness.shape, &chunk, displacement, force, &mut energy);
+            sweep(lanes, stiffness.kind, &chunk, displacement, force, &mut energy);
         }
         energy.iter().sum()
     }
@@ -85,15 +85,15 @@ impl<const D: usize> Task for StripSweep<'_, D> {
 #[inline(always)]
 pub(super) fn sweep<L: Registers, const D: usize>(
     lanes: L,
-    shape: Shape,
+    kind: CellKind,
     chunk: &ChunkData<'_>,
     displacement: &[[f64; D]],
     force: &mut [[f64; D]],
     energy: &mut Eight,
 ) {
-    match shape {
-        Shape::Bar => any(chunk, displacement, force, energy),
-        Shape::Triangle => {
+    match kind {
+        CellKind::Bar => any(chunk, displacement, force, energy),
+        CellKind::Triangle => {
             let displacement = displacement.as_flattened().as_chunks().0;
             triangles(lanes, chunk, displacement, force.as_flattened_mut().as_chunks_mut().0, energy);
         }

@@ -120,7 +120,7 @@ impl<const D: usize> Task for StripPass<'_, D> {
     #[inline(always)]
     fn run<L: Registers>(self, lanes: L) {
         let Self { pass, strip, mut fields } = self;
-        let (Stiffness { shape, strips, pairs }, start) = (pass.stiffness, fields.start);
+        let (Stiffness { kind, strips, pairs }, start) = (pass.stiffness, fields.start);
         let own = strips.own_nodes(strip);
         let (own, all) = (own.start - start..own.end - start, 0..strips.nodes(strip).len());
         // Even strips come first: they move all of their nodes, and odd strips complete all of theirs.
@@ -131,7 +131,7 @@ impl<const D: usize> Task for StripPass<'_, D> {
             let reached = (chunk.reached as usize).clamp(moved.start, moved.end);
             pass.advance(lanes, moved.start..reached, &mut fields, &mut sums);
             moved.start = reached;
-            sweep(lanes, *shape, &data, fields.displacement, fields.force, &mut sums.strain);
+            sweep(lanes, *kind, &data, fields.displacement, fields.force, &mut sums.strain);
             if matches!(pass.motion, NodeMotion::Combine(_)) {
                 continue;
             }

@@ -3,10 +3,10 @@
 use super::geometry::diameter;
 use super::topology::Faces;
 use super::{ElementGroups, FaceRows};
+use crate::cell::Cell;
 use crate::ids::{ElementId, FaceId, NodeId};
 use crate::memory::can_be_had;
 use crate::message::{face, numbers, rounded, short};
-use crate::simplex::Simplex;
 use std::collections::{BTreeMap, HashMap};
 use thiserror::Error;
 
@@ -189,14 +189,14 @@ pub(super) fn duplicate_points<const D: usize>(
 
 /// Reorients negatively oriented elements and counts them; refuses degenerate ones.
 pub(super) fn orient<const D: usize, const N: usize>(
-    simplex: &dyn Simplex<D, N>,
+    kind: &dyn Cell<D, N>,
     points: &[[f64; D]],
     cells: &mut [[NodeId; N]],
 ) -> Result<usize, MeshError> {
     let mut reoriented = 0;
     for (element, cell) in cells.iter_mut().enumerate() {
         let corners = cell.map(|node| points[node.index()]);
-        let (volume, diameter) = (simplex.signed_volume(&corners), diameter(&corners));
+        let (volume, diameter) = (kind.signed_volume(&corners), diameter(&corners));
         if volume.abs() <= DEGENERATE * diameter.powi(D as i32) {
             let nodes = cell.iter().map(|n| n.index()).collect();
             return Err(MeshError::Degenerate { element, nodes, volume, diameter });

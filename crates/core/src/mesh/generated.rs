@@ -1,8 +1,8 @@
 //! Meshes of the generators, known by their nodes, with another number of elements.
 
 use super::{Diagonals, Mesh};
+use crate::cell::CellKind;
 use crate::ids::NodeId;
-use crate::simplex::Shape;
 use std::f64::consts::TAU;
 
 /// Nodes agree to this part of the size of a mesh: rounding of a mesh that was turned and moved.
@@ -14,8 +14,8 @@ impl Mesh {
     #[must_use]
     pub fn resized(&self, factor: f64) -> Option<Self> {
         match self.kind {
-            Shape::Bar => bar(self, factor),
-            Shape::Triangle => rectangle(self, factor).or_else(|| disc(self, factor)),
+            CellKind::Bar => bar(self, factor),
+            CellKind::Triangle => rectangle(self, factor).or_else(|| disc(self, factor)),
         }
     }
 }

@@ -3,8 +3,8 @@
 use super::place::foot;
 use super::{Mesh, in_kind};
 use crate::border::{Vector, cut};
+use crate::cell::cell;
 use crate::ids::{FaceId, NodeId};
-use crate::simplex::simplex;
 
 /// The node of a body that is deepest inside another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +48,7 @@ impl Mesh {
     /// Whether a point is in an element, or on its boundary.
     fn encloses(&self, point: &Vector) -> bool {
         let mut near = self.elements().filter(|&element| !self.is_beside(element, point, 0.0));
-        in_kind!(self, D, N => near.any(|e| simplex::<D, N>().encloses(&self.corners(e), &cut(point), 0.0)))
+        in_kind!(self, D, N => near.any(|e| cell::<D, N>().encloses(&self.corners(e), &cut(point), 0.0)))
     }
 }
 

@@ -36,8 +36,8 @@ pub use strips::Strips;
 pub use topology::Face;
 
 use crate::border::{Vector, cut, padded};
+use crate::cell::{CellGeometry, CellKind, cell};
 use crate::ids::{ElementId, FaceId, NodeId};
-use crate::simplex::{CellGeometry, Shape, simplex};
 use std::collections::BTreeMap;
 use topology::Faces;
 
@@ -53,7 +53,7 @@ pub type ElementGroups = BTreeMap<String, Vec<usize>>;
 /// the mesh is one of several bodies.
 #[derive(Clone, Debug)]
 pub struct Mesh {
-    kind: Shape,
+    kind: CellKind,
     /// Coordinates of the nodes, in rows.
     points: Vec<f64>,
     /// Nodes of the elements, in rows.
@@ -76,14 +76,14 @@ pub struct Mesh {
 macro_rules! in_kind {
     ($mesh:expr, $dimension:ident, $nodes:ident => $body:expr) => {
         match $mesh.kind {
-            $crate::simplex::Shape::Bar => {
+            $crate::cell::CellKind::Bar => {
                 #[allow(dead_code)]
                 const $dimension: usize = 1;
                 #[allow(dead_code)]
                 const $nodes: usize = 2;
                 $body
             }
-            $crate::simplex::Shape::Triangle => {
+            $crate::cell::CellKind::Triangle => {
                 #[allow(dead_code)]
                 const $dimension: usize = 2;
                 #[allow(dead_code)]
@@ -139,7 +139,7 @@ impl Mesh {
         (face_groups, element_groups): (&FaceRows, &ElementGroups),
         given: Parts,
     ) -> Result<Self, MeshError> {
-        let simplex = simplex::<D, N>();
+        let kind = cell::<D, N>();
         room(cells.len())?;
         check::points(&points)?;
         let mut cells = check::cells(points.len(), cells)?;
@@ -149,17 +149,17 @@ impl Mesh {
             Parts::Apart => check::duplicate_points(&points, 0..points.len(), size)?,
             Parts::MayTouch => check::duplicate_points_of_parts(&points, &part, size)?,
         }
-        let reoriented = check::orient(simplex, &points, &mut cells)?;
+        let reoriented = check::orient(kind, &points, &mut cells)?;
         let (faces, cell_faces) = topology::faces::<D, N>(&cells)?;
-        let stars = Stars::new(simplex, points.len(), &cells, &faces, &cell_faces)?;
-        let (parts, touching) = parts::separate(simplex, (&points, &part), &cells, &faces, size)?;
+        let stars = Stars::new(kind, points.len(), &cells, &faces, &cell_faces)?;
+        let (parts, touching) = parts::separate(kind, (&points, &part), &cells, &faces, size)?;
         if let (Parts::Apart, Some(pair)) = (given, touching.first()) {
             return Err(MeshError::PartsTouch { elements: pair.map(ElementId::index) });
         }
         let face_groups = check::face_groups(&faces, points.len(), face_groups)?;
         let element_groups = check::element_groups(cells.len(), element_groups)?;
         Ok(Self {
-            kind: simplex.shape(),
+            kind: kind.kind(),
             points: points.into_flattened(),
             cells: cells.into_flattened(),
             faces,
@@ -177,7 +177,7 @@ impl Mesh {
 
     /// The kind of its elements.
     #[must_use]
-    pub fn shape(&self) -> Shape {
+    pub fn kind(&self) -> CellKind {
         self.kind
     }
 
@@ -461,7 +461,7 @@ impl Mesh {
     #[inline]
     #[must_use]
     pub fn geometry<const D: usize, const N: usize>(&self, element: ElementId) -> CellGeometry<D, N> {
-        simplex().geometry(&self.corners(element))
+        cell().geometry(&self.corners(element))
     }
 
     /// ∇φ_i of the nodes of an element (1/m).

@@ -5,8 +5,8 @@
 use super::check::DUPLICATE;
 use super::topology::Faces;
 use super::{Mesh, MeshError, in_kind};
+use crate::cell::{Cell, cell};
 use crate::ids::{ElementId, NodeId};
-use crate::simplex::{Simplex, simplex};
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
@@ -19,7 +19,7 @@ const OVERLAP: f64 = 1e-12;
 /// # Errors
 /// Parts that overlap.
 pub(super) fn separate<const D: usize, const N: usize>(
-    simplex: &dyn Simplex<D, N>,
+    kind: &dyn Cell<D, N>,
     (points, part): (&[[f64; D]], &[NodeId]),
     cells: &[[NodeId; N]],
     faces: &Faces,
@@ -32,7 +32,7 @@ pub(super) fn separate<const D: usize, const N: usize>(
         let part_of = |e: ElementId| part[cells[e.index()][0].index()];
         let corners = |e: ElementId| cells[e.index()].map(|node| points[node.index()]);
         let grid = Grid::new(points[0], (0..cells.len()).map(|e| corners(ElementId::new(e))), tolerance);
-        let nearer = |a: ElementId, b: ElementId, by: f64| meet(simplex, &corners(a), &corners(b), by);
+        let nearer = |a: ElementId, b: ElementId, by: f64| meet(kind, &corners(a), &corners(b), by);
         let meeting = |a: ElementId, b: ElementId| {
             nearer(a, b, tolerance)
                 .then(|| if nearer(a, b, -OVERLAP * size) { Meeting::Overlaps } else { Meeting::Touches })
@@ -76,7 +76,7 @@ impl Mesh {
         let (points, part) = (self.displaced(displacement), self.part_of_nodes());
         let (faces, size) = (&self.faces, self.size);
         let separated = in_kind!(self, D, N => {
-            separate(simplex::<D, N>(), (points.as_chunks().0, &part), self.nodes_of::<N>(), faces, size)
+            separate(cell::<D, N>(), (points.as_chunks().0, &part), self.nodes_of::<N>(), faces, size)
         });
         match separated {
             Err(MeshError::PartsTouch { elements }) => Some(elements.map(ElementId::new)),
@@ -91,8 +91,8 @@ impl Mesh {
             let points: &[[f64; D]] = points.as_chunks().0;
             let others = self.nodes_of::<N>().iter().filter(|cell| part[cell[0].index()] != part[node.index()]);
             others.map(|cell| cell.map(|corner| points[corner.index()])).any(|corners| {
-                let least = -AT_FACE * simplex::<D, N>().signed_volume(&corners).abs();
-                simplex::<D, N>().encloses(&corners, &points[node.index()], least)
+                let least = -AT_FACE * cell::<D, N>().signed_volume(&corners).abs();
+                cell::<D, N>().encloses(&corners, &points[node.index()], least)
             })
         })
     }
@@ -203,7 +203,7 @@ fn bounds<const D: usize, const N: usize>(corners: &[[f64; D]; N]) -> [[f64; D];
 
 /// Whether two simplices are at most `tolerance` apart: then no direction separates them by more.
 fn meet<const D: usize, const N: usize>(
-    simplex: &dyn Simplex<D, N>,
+    kind: &dyn Cell<D, N>,
     a: &[[f64; D]; N],
     b: &[[f64; D]; N],
     tolerance: f64,
@@ -211,7 +211,7 @@ fn meet<const D: usize, const N: usize>(
     // Corners at one place have no direction.
     let between = a.iter().flat_map(|p| b.iter().map(move |q| std::array::from_fn(|c| q[c] - p[c])));
     let between = between.filter(|direction: &[f64; D]| *direction != [0.0; D]);
-    !simplex.separating_directions(a, b).into_iter().chain(between).any(|direction| gap(a, b, direction) > tolerance)
+    !kind.separating_directions(a, b).into_iter().chain(between).any(|direction| gap(a, b, direction) > tolerance)
 }
 
 /// How far two simplices are apart along a direction (m), negative if they overlap there.

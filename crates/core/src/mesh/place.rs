@@ -2,8 +2,8 @@
 
 use super::{Mesh, in_kind};
 use crate::border::{Vector, cut};
+use crate::cell::CellKind;
 use crate::ids::{ElementId, FaceId, NodeId};
-use crate::simplex::Shape;
 use std::f64::consts::PI;
 
 /// A point counts as one of an element, an edge or a node within this part of the size of the mesh: rounding of
@@ -82,7 +82,7 @@ impl Mesh {
     /// The angle of a triangle at one of its nodes (rad); 0 for other elements.
     #[must_use]
     pub fn angle(&self, element: ElementId, node: NodeId) -> f64 {
-        let Some(k) = self.local_node(element, node).filter(|_| self.kind == Shape::Triangle) else { return 0.0 };
+        let Some(k) = self.local_node(element, node).filter(|_| self.kind == CellKind::Triangle) else { return 0.0 };
         let points = self.corners::<2, 3>(element);
         let side = |to: usize| [0, 1].map(|c| points[to % 3][c] - points[k][c]);
         let (a, b) = (side(k + 1), side(k + 2));

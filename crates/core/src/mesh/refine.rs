@@ -1,8 +1,8 @@
 //! Nested finer meshes.
 
 use super::{ElementGroups, FaceRows, Mesh, MeshError, Parts, in_kind, room};
+use crate::cell::{Child, cell};
 use crate::ids::FaceId;
-use crate::simplex::{Child, simplex};
 
 impl Mesh {
     /// The mesh with each element cut by the middles of its edges, a bar into two elements and a triangle into four,
@@ -20,8 +20,8 @@ impl Mesh {
     }
 
     fn cut_all<const D: usize, const N: usize>(&self) -> Result<Self, MeshError> {
-        let simplex = simplex::<D, N>();
-        let children = simplex.children();
+        let kind = cell::<D, N>();
+        let children = kind.children();
         room(self.element_count() * children.len())?;
         let edges = self.edges();
         let mut points = self.points_in::<D>().to_vec();
@@ -38,7 +38,7 @@ impl Mesh {
         let cells: Vec<_> = cells.flat_map(|cell| cut(cell, children, &node)).collect();
         let face = |face: FaceId| self.face_nodes::<D>(face).map(|n| n.index());
         let faces = self.face_groups.iter().map(|(name, group)| {
-            let parts = group.iter().flat_map(|&f| cut(face(f), simplex.face_children(), &node));
+            let parts = group.iter().flat_map(|&f| cut(face(f), kind.face_children(), &node));
             (name.clone(), parts.flatten().collect())
         });
         let elements = self.element_groups.iter().map(|(name, group)| {

@@ -2,8 +2,8 @@
 
 use super::MeshError;
 use super::topology::Faces;
+use crate::cell::Cell;
 use crate::ids::{ElementId, FaceId, NodeId};
-use crate::simplex::Simplex;
 
 /// The stars of all nodes, one after the other.
 ///
@@ -92,13 +92,13 @@ impl Stars {
 
     /// Builds all stars; a star that falls into several chains is a non-manifold node.
     pub(super) fn new<const D: usize, const N: usize>(
-        simplex: &dyn Simplex<D, N>,
+        kind: &dyn Cell<D, N>,
         node_count: usize,
         cells: &[[NodeId; N]],
         faces: &Faces,
         cell_faces: &[[FaceId; N]],
     ) -> Result<Self, MeshError> {
-        let (faces_around, (starts, incident)) = (simplex.faces_around(), incident_elements(node_count, cells));
+        let (faces_around, (starts, incident)) = (kind.faces_around(), incident_elements(node_count, cells));
         let mut stars = Self {
             offsets: Vec::with_capacity(node_count + 1),
             elements: Vec::with_capacity(N * cells.len()),

@@ -3,12 +3,12 @@
 use super::statement;
 use super::{BodyLoad, Conditions, FaceLoad, InputError, MovedPlane, Place, PrescribedComponent, Problem, Statement};
 use crate::border::{Vector, padded, vectors};
+use crate::cell::CellKind;
 use crate::contact::{AnyContactConfiguration, AnyObstacle, ContactFace, ContactNode, Frame, Interface};
 use crate::ids::{ElementId, FaceId, NodeId};
 use crate::load::Table;
 use crate::material::Elastic;
 use crate::mesh::{Mesh, Numbering};
-use crate::simplex::Shape;
 use crate::units::Units;
 use std::any::Any;
 use std::sync::Arc;
@@ -124,9 +124,9 @@ impl AnyProblem {
     /// # Errors
     /// The first thing that is wrong, with its place.
     pub fn new(mesh: &Arc<Mesh>, stated: &Statement) -> Result<Self, InputError> {
-        match mesh.shape() {
-            Shape::Bar => statement::build::<1>(mesh, stated).map(Self::from),
-            Shape::Triangle => statement::build::<2>(mesh, stated).map(Self::from),
+        match mesh.kind() {
+            CellKind::Bar => statement::build::<1>(mesh, stated).map(Self::from),
+            CellKind::Triangle => statement::build::<2>(mesh, stated).map(Self::from),
         }
     }
 

@@ -9,12 +9,12 @@ use std::collections::BTreeMap;
 
 /// The members of a group of faces.
 pub(super) fn face_group<'m>(mesh: &'m Mesh, name: &str) -> Result<&'m [FaceId], Cause> {
-    group(mesh.face_groups(), name, GroupOf::faces(mesh.shape()), mesh.element_groups(), GroupOf::Elements)
+    group(mesh.face_groups(), name, GroupOf::faces(mesh.kind()), mesh.element_groups(), GroupOf::Elements)
 }
 
 /// The members of a group of elements.
 pub(super) fn element_group<'m>(mesh: &'m Mesh, name: &str) -> Result<&'m [ElementId], Cause> {
-    group(mesh.element_groups(), name, GroupOf::Elements, mesh.face_groups(), GroupOf::faces(mesh.shape()))
+    group(mesh.element_groups(), name, GroupOf::Elements, mesh.face_groups(), GroupOf::faces(mesh.kind()))
 }
 
 fn group<'m, Id, Other>(

@@ -2,9 +2,9 @@
 
 use super::NarrowHat;
 use crate::direction::{along, tangent};
+use percute_core::cell::face_mean;
 use percute_core::contact::ContactFace;
 use percute_core::problem::Problem;
-use percute_core::simplex::face_mean;
 
 /// A density on one face.
 #[derive(Clone, Copy, Debug)]

@@ -100,10 +100,10 @@ const fn enters<const D: usize>(k: usize, p: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::simplex::{Simplex, simplex};
+    use percute_core::cell::{Cell, cell};
 
-    fn check<const D: usize, const N: usize>(simplex: &dyn Simplex<D, N>) {
-        for (i, faces) in simplex.faces_around().iter().enumerate() {
+    fn check<const D: usize, const N: usize>(kind: &dyn Cell<D, N>) {
+        for (i, faces) in kind.faces_around().iter().enumerate() {
             for (exit, face) in faces.iter().enumerate() {
                 let Some(k) = *face else { continue };
                 let p = (0..D).find(|&p| face_node::<N>(k, p) == i).unwrap();
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn stars_enter_elements_as_the_mesh_says() {
-        check(simplex::<1, 2>());
-        check(simplex::<2, 3>());
+        check(cell::<1, 2>());
+        check(cell::<2, 3>());
     }
 }

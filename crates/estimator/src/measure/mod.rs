@@ -20,10 +20,10 @@ use balanced::NodalForce;
 pub(crate) use balanced::{Balanced, NodalBalance, outward};
 pub(crate) use block_fields::{BalanceFields, BalanceNode, at_places};
 pub(crate) use element_error::ElementError;
+use percute_core::cell::cell;
 use percute_core::ids::ElementId;
 use percute_core::material::{Elastic, Law, LinearLaw};
 use percute_core::problem::Problem;
-use percute_core::simplex::simplex;
 
 /// Elastic energy (J per unit of section or thickness) of the stress of hats beside that of the stress that balances a
 /// loading. Young's inequality bounds the products of several nodes.
@@ -104,7 +104,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
 
     /// The stress that balances a loading.
     fn stress_map(&self) -> StressMap {
-        StressMap::new(simplex(), &self.problem.mesh().corners::<D, N>(self.id), self.law)
+        StressMap::new(cell(), &self.problem.mesh().corners::<D, N>(self.id), self.law)
     }
 
     /// The fields of one level that tractions and Γ_DA are made of. `contact` gives the contact node at each local

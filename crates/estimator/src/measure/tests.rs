@@ -42,7 +42,7 @@ fn errors_are_energies_of_differences_and_sums() {
         let mut nodal = || [(); 3].map(|()| [(); 2].map(|()| random.between(-1.0, 1.0)));
         let (increment, displacement, velocity) = (nodal(), nodal(), nodal());
         let motion = ElementMotion::any(displacement, velocity);
-        let mut forms = EnergyForms::new(problem.mesh().shape());
+        let mut forms = EnergyForms::new(problem.mesh().kind());
         let [lane, ..] = forms.prepare(&problem, std::iter::once((id, points)));
         let stress = measure.stress(&forms.of(&problem, id, &points, lane), &balanced);
         let found = measure.error(&stress, &increment, &motion, 0.0);

@@ -216,7 +216,7 @@ impl<'a, 's, 'p, const D: usize, const N: usize> FarLevels<'a, 's, 'p, D, N> {
         let (problem, equilibration) = (self.shared.problem, self.shared.equilibration);
         let (range, block) = (equilibration.blocks.elements(block), equilibration.blocks.block(block));
         self.gather(like, fields, block.nodes);
-        let mut forms = EnergyForms::new(problem.mesh().shape());
+        let mut forms = EnergyForms::new(problem.mesh().kind());
         for start in range.clone().step_by(LANES) {
             let group = start..(start + LANES).min(range.end);
             fields.balance.gather_moments(&equilibration.elements[group.clone()], self.levels.levels);

@@ -8,9 +8,9 @@ use crate::direction::along;
 use crate::kinematic::{ContactMotions, NonMatchingInstant, NormalMotions};
 use crate::partition::{Break, pieces};
 use crate::scratch_file::{ScratchError, ScratchFile};
+use percute_core::cell::face_mean;
 use percute_core::contact::{Coupling, NonMatchingSurfaces};
 use percute_core::problem::Problem;
-use percute_core::simplex::face_mean;
 use percute_core::time::TimeGrid;
 use std::sync::Arc;
 

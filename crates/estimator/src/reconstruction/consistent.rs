@@ -2,8 +2,8 @@
 
 use super::{ReconstructionMethod, StepDensities, SurfaceSteps};
 use crate::contact_density::Densities;
+use percute_core::cell::CellKind;
 use percute_core::problem::Problem;
-use percute_core::simplex::Shape;
 
 /// The reconstruction whose densities of a step balance R = B F at both its ends, B the consistent mass matrix of the
 /// faces whose nodes touch at both ends. They are projected into the cone. Where these faces change, the densities
@@ -49,9 +49,9 @@ impl BoundaryMass {
             for &k in &face.nodes {
                 mass.diagonal[k] += 2.0 * share;
             }
-            match problem.mesh().shape() {
-                Shape::Bar => {}
-                Shape::Triangle => mass.upper[face.nodes[0].min(face.nodes[1])] += share,
+            match problem.mesh().kind() {
+                CellKind::Bar => {}
+                CellKind::Triangle => mass.upper[face.nodes[0].min(face.nodes[1])] += share,
             }
         }
         mass

@@ -21,11 +21,11 @@ use super::{Fluctuation, Loading};
 use crate::lanes::{LANES, Lanes, Value};
 pub(crate) use element_form::ElementForm;
 use nalgebra::Matrix2;
+use percute_core::cell::{CellKind, cell};
 use percute_core::ids::ElementId;
 use percute_core::material::LinearLaw;
 use percute_core::problem::Problem;
 use percute_core::simd::dispatch;
-use percute_core::simplex::{Shape, simplex};
 
 /// Numbers that make up a fluctuation of a triangle: two for each edge, then two for each node.
 const LOADS: usize = 12;
@@ -59,10 +59,10 @@ pub(crate) enum EnergyForm<'a> {
 
 impl EnergyForms {
     /// For elements of this shape.
-    pub(crate) fn new(shape: Shape) -> Self {
+    pub(crate) fn new(shape: CellKind) -> Self {
         match shape {
-            Shape::Bar => Self::Bars,
-            Shape::Triangle => Self::Triangles(TriangleForms::new()),
+            CellKind::Bar => Self::Bars,
+            CellKind::Triangle => Self::Triangles(TriangleForms::new()),
         }
     }
 
@@ -92,9 +92,7 @@ impl EnergyForms {
         lane: usize,
     ) -> EnergyForm<'_> {
         match self {
-            Self::Bars => {
-                EnergyForm::Bar(BarStress::new(simplex::<D, N>().signed_volume(points), problem.material(id)))
-            }
+            Self::Bars => EnergyForm::Bar(BarStress::new(cell::<D, N>().signed_volume(points), problem.material(id))),
             Self::Triangles(forms) => EnergyForm::Triangle(forms.of(lane, &corners(points))),
         }
     }

@@ -14,8 +14,8 @@ use crate::lanes::Value;
 use bar::BarStress;
 pub(crate) use energy_form::{ElementForm, EnergyForm, EnergyForms, FluctuationForm};
 pub(crate) use fluctuation::Fluctuation;
+use percute_core::cell::{Cell, CellKind};
 use percute_core::material::LinearLaw;
-use percute_core::simplex::{Shape, Simplex};
 pub(crate) use piecewise::MONOMIALS;
 pub(crate) use reference::LOADS;
 pub(crate) use traction_forms::{BasisForm, EDGES, TractionForms};
@@ -73,13 +73,13 @@ pub(crate) enum StressMap {
 
 impl StressMap {
     pub(crate) fn new<const D: usize, const N: usize>(
-        simplex: &dyn Simplex<D, N>,
+        kind: &dyn Cell<D, N>,
         points: &[[f64; D]; N],
         law: &impl LinearLaw,
     ) -> Self {
-        match simplex.shape() {
-            Shape::Bar => Self::Bar(BarStress::new(simplex.signed_volume(points), law)),
-            Shape::Triangle => {
+        match kind.kind() {
+            CellKind::Bar => Self::Bar(BarStress::new(kind.signed_volume(points), law)),
+            CellKind::Triangle => {
                 let corners = std::array::from_fn(|i| [points[i][0], points[i][1]]);
                 Self::Triangle(Box::new(TriangleStress::new(&corners, law)))
             }

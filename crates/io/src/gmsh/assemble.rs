@@ -6,8 +6,8 @@ use super::groups::Sorted;
 use super::nodes::{Kept, Nodes};
 use super::raw::{Element, Raw};
 use super::{MeshFile, import_warnings};
+use percute_core::cell::cell;
 use percute_core::mesh::{Mesh, MeshError};
-use percute_core::simplex::simplex;
 use std::mem::take;
 
 /// Builds the mesh of a file: triangles if there are any, otherwise bars.
@@ -39,7 +39,7 @@ fn assemble<const D: usize, const N: usize>(
     let Sorted { elements, doubled, members } = raw.sorted(cells)?;
     let located = nodes.located(&elements)?;
     let kept = nodes.keep(&located, scale);
-    let shape = simplex::<D, N>().shape();
+    let shape = cell::<D, N>().kind();
     let places = kept.flat(shape)?;
     let cells = kept.numbered(&located);
     let Boundary { groups, inner } = boundary(raw, nodes, &kept, &cells, &raw.sorted(faces)?, shape)?;

@@ -4,7 +4,7 @@ use super::error::{Fault, GmshCause};
 use super::groups::Sorted;
 use super::nodes::{Kept, Nodes};
 use super::raw::Raw;
-use percute_core::simplex::Shape;
+use percute_core::cell::CellKind;
 use std::collections::{BTreeMap, HashMap};
 
 /// The boundary groups of the file.
@@ -22,15 +22,15 @@ pub(super) fn boundary<const D: usize, const N: usize>(
     kept: &Kept,
     cells: &[[usize; N]],
     faces: &Sorted<D>,
-    shape: Shape,
+    shape: CellKind,
 ) -> Result<Boundary<D>, Fault> {
     let located: Vec<_> = nodes.located(&faces.elements)?.into_iter().map(|face| kept.face(face)).collect();
     let around = owners(cells, located.iter().flatten());
     let owners_of = |face: &Option<[usize; D]>| face.and_then(|f| around.get(&sorted(f)).copied()).unwrap_or(0);
     let counts: Vec<usize> = located.iter().map(owners_of).collect();
     let required = |at: usize| match shape {
-        Shape::Bar => named(faces, at),
-        Shape::Triangle => true,
+        CellKind::Bar => named(faces, at),
+        CellKind::Triangle => true,
     };
     if let Some(at) = (0..counts.len()).find(|&at| counts[at] == 0 && required(at)) {
         return Err(lone(raw, faces, at));

@@ -1,6 +1,6 @@
 //! Kinds of elements by their numbers in Gmsh.
 
-use percute_core::simplex::Shape;
+use percute_core::cell::CellKind;
 use std::fmt;
 
 /// Numbers of the kinds that are read.
@@ -9,10 +9,10 @@ pub(super) const LINE: i64 = 1;
 pub(super) const TRIANGLE: i64 = 2;
 
 /// Numbers of the faces and of the elements of a mesh.
-pub(super) fn numbers(shape: Shape) -> [i64; 2] {
+pub(super) fn numbers(shape: CellKind) -> [i64; 2] {
     match shape {
-        Shape::Bar => [POINT, LINE],
-        Shape::Triangle => [LINE, TRIANGLE],
+        CellKind::Bar => [POINT, LINE],
+        CellKind::Triangle => [LINE, TRIANGLE],
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::error::{Fault, GmshCause};
 use super::raw::{Element, Node};
+use percute_core::cell::CellKind;
 use percute_core::mesh::MeshError;
-use percute_core::simplex::Shape;
 
 /// Tolerance of a plane or line, as a fraction of the body size; smaller distances are rounding. It is also the
 /// distance below which two nodes coincide.
@@ -88,7 +88,7 @@ impl Kept {
     }
 
     /// The points without their constant coordinates: z in the plane, y and z on a line.
-    pub(super) fn flat<const D: usize>(&self, shape: Shape) -> Result<Vec<[f64; D]>, Fault> {
+    pub(super) fn flat<const D: usize>(&self, shape: CellKind) -> Result<Vec<[f64; D]>, Fault> {
         if let Some(node) = self.points.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
             let value = self.points[node].into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
             let error = Box::new(MeshError::NotFinite { node: self.tags[node] as usize, value });
@@ -108,8 +108,8 @@ impl Kept {
                 _ => "percute takes plane bodies: is this the surface of a solid?",
             };
             let cause = match shape {
-                Shape::Bar => GmshCause::NotOnAxis { axis: ['x', 'y', 'z'][axis], nodes, values },
-                Shape::Triangle => GmshCause::NotPlane { nodes, values, advice },
+                CellKind::Bar => GmshCause::NotOnAxis { axis: ['x', 'y', 'z'][axis], nodes, values },
+                CellKind::Triangle => GmshCause::NotPlane { nodes, values, advice },
             };
             return Err(cause.anywhere());
         }

@@ -1,8 +1,8 @@
 //! The outline of a plane mesh as a geometry of Gmsh (`.geo`): polygons of straight lines, to be meshed again.
 
+use percute_core::cell::CellKind;
 use percute_core::ids::{ElementId, FaceId};
 use percute_core::mesh::{Face, Mesh};
-use percute_core::simplex::Shape;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
@@ -30,7 +30,7 @@ struct Region {
 /// node alone.
 #[must_use]
 pub fn outline(mesh: &Mesh) -> Option<String> {
-    if mesh.shape() != Shape::Triangle {
+    if mesh.kind() != CellKind::Triangle {
         return None;
     }
     let (region, regions) = regions(mesh);

@@ -6,9 +6,9 @@ use super::value::Value;
 use super::{material, mesh};
 use crate::message::{hint, short};
 use percute_core::border::Vector;
+use percute_core::cell::CellKind;
 use percute_core::material::Elastic;
 use percute_core::mesh::{Mesh, MeshError};
-use percute_core::simplex::Shape;
 use std::path::PathBuf;
 
 const KEYS: [&str; 6] = ["name", "group", "origin", "rotation", "material", "velocity"];
@@ -59,8 +59,8 @@ pub(super) fn read(root: &Table<'_>) -> Result<Option<Bodies>, CaseError> {
         let mesh = mesh::one_way(&table)?;
         bodies.push(Stated { mesh: of_group(&table, mesh)?, table, name: name.1 });
     }
-    let bar = bodies.iter().find(|body| body.mesh.shape() == Shape::Bar);
-    if let Some(bar) = bar.filter(|_| bodies.iter().any(|body| body.mesh.shape() != Shape::Bar)) {
+    let bar = bodies.iter().find(|body| body.mesh.kind() == CellKind::Bar);
+    if let Some(bar) = bar.filter(|_| bodies.iter().any(|body| body.mesh.kind() != CellKind::Bar)) {
         return Err(bar.table.error("is a bar, but another body is plane; bodies of a case are all bars or all plane"));
     }
     joined(root, &bodies).map(Some)
@@ -80,7 +80,7 @@ fn joined(root: &Table<'_>, bodies: &[Stated<'_>]) -> Result<Bodies, CaseError> 
     let (mut materials, mut velocity, mut placed) = (Vec::new(), Vec::new(), Vec::new());
     for Stated { table, name, mesh } in bodies {
         placed.push((*name, placed_mesh(table, mesh)?));
-        materials.push(((*name).to_string(), law(table, mesh.shape())?));
+        materials.push(((*name).to_string(), law(table, mesh.kind())?));
         let uniform = table.get("velocity").map_or(Ok([0.0; 3]), |value| value.vector("m/s", mesh.dimension()))?;
         velocity.extend(uniform[..mesh.dimension()].repeat(mesh.node_count()));
     }
@@ -90,8 +90,8 @@ fn joined(root: &Table<'_>, bodies: &[Stated<'_>]) -> Result<Bodies, CaseError> 
     Ok(Bodies { mesh, materials, velocity, files })
 }
 
-fn law(table: &Table<'_>, shape: Shape) -> Result<Elastic, CaseError> {
-    let example = if shape == Shape::Bar { BAR } else { MATERIAL };
+fn law(table: &Table<'_>, shape: CellKind) -> Result<Elastic, CaseError> {
+    let example = if shape == CellKind::Bar { BAR } else { MATERIAL };
     let table = table.require("material", &format!("a table, such as {example}"))?.any_table(example)?;
     table.refuse("group", "does not apply here: the material of a body is that of all its elements")?;
     material::law(&table, shape)

@@ -2,8 +2,8 @@
 
 use super::source::CaseError;
 use super::table::Table;
+use percute_core::cell::CellKind;
 use percute_core::material::{Elastic, MaterialError};
-use percute_core::simplex::Shape;
 
 const BAR_KEYS: [&str; 5] = ["young", "density", "section", "yield_stress", "group"];
 const PLANE_KEYS: [&str; 7] = ["young", "poisson", "density", "plane", "thickness", "yield_stress", "group"];
@@ -12,7 +12,7 @@ const PLANE_KEYS: [&str; 7] = ["young", "poisson", "density", "plane", "thicknes
 pub(super) const NOT_FOR_BARS: &str = "does not apply to a bar";
 
 /// Reads all materials, each with its group of elements.
-pub(super) fn read(root: &Table<'_>, shape: Shape) -> Result<Vec<(Option<String>, Elastic)>, CaseError> {
+pub(super) fn read(root: &Table<'_>, shape: CellKind) -> Result<Vec<(Option<String>, Elastic)>, CaseError> {
     let tables = root.tables("material")?;
     if tables.is_empty() {
         return Err(root.error(
@@ -29,10 +29,10 @@ pub(super) fn read(root: &Table<'_>, shape: Shape) -> Result<Vec<(Option<String>
 }
 
 /// Reads the law of a material.
-pub(super) fn law(table: &Table<'_>, shape: Shape) -> Result<Elastic, CaseError> {
+pub(super) fn law(table: &Table<'_>, shape: CellKind) -> Result<Elastic, CaseError> {
     let law = match shape {
-        Shape::Bar => bar(table),
-        Shape::Triangle => plane(table),
+        CellKind::Bar => bar(table),
+        CellKind::Triangle => plane(table),
     }?;
     let Some(yield_stress) = table.get("yield_stress") else { return Ok(law) };
     law.with_yield_stress(yield_stress.number("Pa")?).map_err(|error| out_of_range(table, &error))

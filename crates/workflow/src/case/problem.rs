@@ -58,7 +58,7 @@ fn with_start(root: &Table<'_>, mesh: &Mesh) -> Result<Statement, CaseError> {
 
 /// Reads materials, planes, contacts of bodies, supports and loads.
 pub(super) fn stated(root: &Table<'_>, mesh: &Mesh) -> Result<Statement, CaseError> {
-    let materials = material::read(root, mesh.shape())?;
+    let materials = material::read(root, mesh.kind())?;
     Ok(Statement { materials, ..surroundings(root, mesh)? })
 }
 

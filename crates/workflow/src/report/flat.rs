@@ -7,11 +7,11 @@
 //! where they have more, it is up to 5.6 times that. Random bodies have 0.97 to 1.25.
 
 use percute_core::border::Vector;
+use percute_core::cell::CellKind;
 use percute_core::dynamics::time_step_of_element;
 use percute_core::ids::ElementId;
 use percute_core::mesh::Mesh;
 use percute_core::problem::AnyProblem;
-use percute_core::simplex::Shape;
 
 /// Elements with a larger angle (degrees) are nearly flat.
 pub(super) const ANGLE: f64 = 150.0;
@@ -37,9 +37,9 @@ impl FlatElements {
     /// None unless they spoil the estimate; `by_element` has the contribution of each element.
     pub(super) fn new(problem: &AnyProblem, by_element: &[f64]) -> Option<Self> {
         let mesh = problem.mesh();
-        match mesh.shape() {
-            Shape::Bar => return None,
-            Shape::Triangle => {}
+        match mesh.kind() {
+            CellKind::Bar => return None,
+            CellKind::Triangle => {}
         }
         let largest = |e: usize| angles(mesh, e).into_iter().fold(0.0, f64::max);
         let angles = (0..mesh.element_count()).map(|e| (e, largest(e)));

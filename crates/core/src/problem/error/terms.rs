@@ -1,6 +1,6 @@
 //! What groups consist of, and what keeps faces from contact, in words.
 
-use crate::simplex::Shape;
+use crate::cell::CellKind;
 use std::fmt;
 
 /// What a group consists of.
@@ -17,10 +17,10 @@ pub enum GroupOf {
 impl GroupOf {
     /// The faces of an element of this shape.
     #[must_use]
-    pub fn faces(shape: Shape) -> Self {
+    pub fn faces(shape: CellKind) -> Self {
         match shape {
-            Shape::Bar => Self::Ends,
-            Shape::Triangle => Self::Edges,
+            CellKind::Bar => Self::Ends,
+            CellKind::Triangle => Self::Edges,
         }
     }
 }

@@ -32,11 +32,11 @@ use impulse_smoothing::{ImpulseSmoothing, Stopped};
 use moment_correction::MomentCorrection;
 use non_matching::NonMatchingForces;
 use non_matching_motion::AuxiliaryInterfaceMotion;
+use percute_core::cell::CellKind;
 use percute_core::contact::{ContactNode, Coupling};
 use percute_core::dynamics::Dynamics;
 use percute_core::history::{State, Step};
 use percute_core::problem::Problem;
-use percute_core::simplex::Shape;
 use percute_core::time::TimeGrid;
 use split::skew_acceleration;
 use std::borrow::Cow;
@@ -70,9 +70,9 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
 
 /// Whether tractions of nodes are concentrated.
 fn concentrates<const D: usize>(problem: &Problem<D>, options: &Options) -> bool {
-    let possible = match problem.mesh().shape() {
-        Shape::Bar => false,
-        Shape::Triangle => true,
+    let possible = match problem.mesh().kind() {
+        CellKind::Bar => false,
+        CellKind::Triangle => true,
     };
     possible && options.ablation != Ablation::Concentration
 }
@@ -112,7 +112,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         let mesh = problem.mesh();
         let of_stars = || Concentration::new(problem).memory(problem);
         let concentration = concentrates(problem, options).then(of_stars).unwrap_or(0);
-        TractionMinimisation::memory(mesh.shape(), mesh.element_count())
+        TractionMinimisation::memory(mesh.kind(), mesh.element_count())
             .saturating_add(AuxiliarySolutions::<D, N>::memory(mesh.node_count(), mesh.element_count()))
             .saturating_add(concentration)
     }

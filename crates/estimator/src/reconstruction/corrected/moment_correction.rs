@@ -12,10 +12,10 @@
 //! node. In the whole body no moment is missing, and the line takes that of its half: nothing is corrected.
 
 use crate::direction::{along, tangent};
+use percute_core::cell::CellKind;
 use percute_core::contact::Coulomb;
 use percute_core::ids::NodeId;
 use percute_core::problem::Problem;
-use percute_core::simplex::Shape;
 
 /// Such a part of a force is nothing: its place within an edge is known to 1e-16 only, which counts squared.
 const NOTHING: f64 = 1e-24;
@@ -48,9 +48,9 @@ pub(super) struct MomentCorrection<const D: usize> {
 
 impl<const D: usize> MomentCorrection<D> {
     pub(super) fn new(problem: &Problem<D>) -> Self {
-        match problem.mesh().shape() {
-            Shape::Bar => return Self { groups: Vec::new() },
-            Shape::Triangle => {}
+        match problem.mesh().kind() {
+            CellKind::Bar => return Self { groups: Vec::new() },
+            CellKind::Triangle => {}
         }
         let (part, surface) = (problem.mesh().part_of_nodes(), problem.surface());
         let centroids = centroids(problem);

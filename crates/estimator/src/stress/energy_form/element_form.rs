@@ -26,7 +26,7 @@ impl ElementForm {
     /// That of an element, which it shares with no other.
     pub(crate) fn new<const D: usize, const N: usize>(problem: &Problem<D>, id: ElementId) -> Self {
         let points = problem.mesh().corners::<D, N>(id);
-        let mut forms = EnergyForms::new(problem.mesh().shape());
+        let mut forms = EnergyForms::new(problem.mesh().kind());
         let [lane, ..] = forms.prepare(problem, std::iter::once((id, points)));
         match forms.of(problem, id, &points, lane) {
             EnergyForm::Bar(map) => Self::Bar(map),
@@ -88,7 +88,7 @@ mod tests {
         let mut random = Random::new(3);
         let ids: Vec<ElementId> = (0..8).map(ElementId::new).collect();
         let points = |id: &ElementId| problem.mesh().corners::<2, 3>(*id);
-        let mut forms = EnergyForms::new(problem.mesh().shape());
+        let mut forms = EnergyForms::new(problem.mesh().kind());
         let lanes = forms.prepare(&problem, ids.iter().map(|id| (*id, points(id))));
         for (id, lane) in ids.iter().zip(lanes) {
             let mut vector = || [(); 2].map(|()| random.between(-1.0, 1.0));

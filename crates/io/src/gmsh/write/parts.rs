@@ -1,7 +1,7 @@
 //! A mesh as parts of a geometry: elements that are in the same groups.
 
+use percute_core::cell::CellKind;
 use percute_core::mesh::Mesh;
-use percute_core::simplex::Shape;
 use std::collections::BTreeMap;
 
 /// Elements or faces that are in the same groups.
@@ -40,9 +40,9 @@ impl Parts {
         let alone = |GroupedPart { groups, members }: GroupedPart| {
             members.into_iter().map(move |face| GroupedPart { groups: groups.clone(), members: vec![face] })
         };
-        let faces = match mesh.shape() {
-            Shape::Bar => faces.into_iter().flat_map(alone).collect(),
-            Shape::Triangle => faces,
+        let faces = match mesh.kind() {
+            CellKind::Bar => faces.into_iter().flat_map(alone).collect(),
+            CellKind::Triangle => faces,
         };
         Self { names, faces, cells: parts(cells.into_iter().enumerate()) }
     }

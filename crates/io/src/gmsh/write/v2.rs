@@ -30,7 +30,7 @@ pub(super) fn write(out: &mut Sink, mesh: &Mesh, parts: &Parts) {
     let faces = entries(&parts.faces, &mut next, |_| None, face);
     out.line("$Elements");
     out.line(&(cells.len() + faces.len()).to_string());
-    let [of_faces, of_cells] = numbers(mesh.shape());
+    let [of_faces, of_cells] = numbers(mesh.kind());
     for (kind, entries) in [(of_faces, faces), (of_cells, cells)] {
         if out.is_binary() && !entries.is_empty() {
             [kind as usize, entries.len(), 2].into_iter().for_each(|number| out.int(number));

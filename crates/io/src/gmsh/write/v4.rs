@@ -76,7 +76,7 @@ fn elements(out: &mut Sink, mesh: &Mesh, parts: &Parts) {
     let faces: usize = parts.faces.iter().map(|part| part.members.len()).sum();
     let total = mesh.element_count() + faces;
     row(out, &[parts.faces.len() + parts.cells.len(), total, 1, total]);
-    let [of_faces, of_cells] = numbers(mesh.shape());
+    let [of_faces, of_cells] = numbers(mesh.kind());
     let mut tag = mesh.element_count();
     for (at, part) in parts.faces.iter().enumerate() {
         head(out, [mesh.dimension() - 1, at + 1, of_faces as usize], part.members.len());

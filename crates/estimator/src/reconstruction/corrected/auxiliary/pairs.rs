@@ -5,11 +5,11 @@ use super::blocks::Blocks;
 use super::lanes::{MOTIONS, place};
 use super::weights::Shares;
 use crate::smoothing::Smoothing;
+use percute_core::cell::CellKind;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::material::{Law, LinearLaw};
 use percute_core::problem::Problem;
 use percute_core::simd::Eight;
-use percute_core::simplex::Shape;
 use std::ops::Range;
 
 /// A pair of triangles A and B: A has its nodes 0, 1, 2 and B its nodes 0, 2, 3. A bar is a triangle whose nodes 0 and
@@ -196,7 +196,7 @@ impl PairSurroundings {
 
 impl Laws {
     fn new<const D: usize>(problem: &Problem<D>, shares: &[Shares; MOTIONS]) -> Self {
-        let shape = problem.mesh().shape();
+        let shape = problem.mesh().kind();
         let plain: Vec<Moduli> = problem.materials().iter().map(|law| Moduli::new(law, shape)).collect();
         let smoothed = shares.map(|share| share.space);
         Self {
@@ -236,10 +236,10 @@ impl TrianglePair {
         let cell = mesh.cell(first);
         let local = |i: usize| cell[(apart + cell.len() - 1 + i) % cell.len()];
         // Nodes 1 and 3 are those apart.
-        let shape = mesh.shape();
+        let shape = mesh.kind();
         let shared = match shape {
-            Shape::Bar => local(0),
-            Shape::Triangle => local(2),
+            CellKind::Bar => local(0),
+            CellKind::Triangle => local(2),
         };
         let other = second.and_then(|second| mesh.cell(second).iter().find(|node| !cell.contains(node)));
         let nodes = [local(0), local(1), shared, *other.unwrap_or(&local(0))];
@@ -253,8 +253,8 @@ impl TrianglePair {
             gradient
         };
         let as_triangle = match shape {
-            Shape::Bar => 0.75,
-            Shape::Triangle => 1.0,
+            CellKind::Bar => 0.75,
+            CellKind::Triangle => 1.0,
         };
         let share = |element: Option<ElementId>| {
             let mass = element.map_or(0.0, |e| problem.material(e).density() * problem.volume(e));
@@ -271,12 +271,12 @@ impl TrianglePair {
 }
 
 impl Moduli {
-    fn new(law: &impl LinearLaw, shape: Shape) -> Self {
+    fn new(law: &impl LinearLaw, shape: CellKind) -> Self {
         let (lambda, shear) = law.moduli();
         let normal = lambda + 2.0 * shear;
         let shear = match shape {
-            Shape::Bar => 0.0,
-            Shape::Triangle => shear,
+            CellKind::Bar => 0.0,
+            CellKind::Triangle => shear,
         };
         let by_place = |along: f64| {
             [0, 1].map(|column| {

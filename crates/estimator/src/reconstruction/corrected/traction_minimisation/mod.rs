@@ -32,12 +32,12 @@ use chebyshev::{Arrays, ChebyshevSteps};
 use energy::{moment_slope, product_slope};
 use modes::{Modes, ModesPart, Numbers};
 use operator::Operator;
+use percute_core::cell::CellKind;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::mesh::{Mesh, Strips};
 use percute_core::observer::StopFlag;
 use percute_core::problem::Problem;
 use percute_core::simd::{Registers, Task, run_task};
-use percute_core::simplex::Shape;
 use rayon::prelude::*;
 use std::ops::Range;
 use wavefront::{Wavefront, Work};
@@ -83,9 +83,9 @@ impl TractionMinimisation {
         problem: &Problem<D>,
         elements: &[Element<D, N>],
     ) -> Option<Self> {
-        match problem.mesh().shape() {
-            Shape::Bar => return None,
-            Shape::Triangle => {}
+        match problem.mesh().kind() {
+            CellKind::Bar => return None,
+            CellKind::Triangle => {}
         }
         let numbers = Numbers::new(problem.mesh());
         let operator = assembly::assemble(problem, elements, &numbers);
@@ -106,12 +106,14 @@ impl TractionMinimisation {
     }
 
     /// About how much memory it takes (bytes).
-    pub(in crate::reconstruction) fn memory(shape: Shape, elements: usize) -> usize {
+    pub(in crate::reconstruction) fn memory(shape: CellKind, elements: usize) -> usize {
         match shape {
-            Shape::Bar => 0,
+            CellKind::Bar => 0,
             // Slopes and change are three coefficients each, a half of them of nodes; there is room for another half
             // twice.
-            Shape::Triangle => elements.saturating_mul(Operator::BYTES + Numbers::BYTES + 21 * size_of::<Lanes>() / 2),
+            CellKind::Triangle => {
+                elements.saturating_mul(Operator::BYTES + Numbers::BYTES + 21 * size_of::<Lanes>() / 2)
+            }
         }
     }
 
@@ -272,7 +274,7 @@ impl<const D: usize, const N: usize> Slopes<'_, D, N> {
         let block = equilibration.blocks.block(block);
         fields.gather(like, problem, block.nodes, levels);
         fields.gather_displacement(like, block.nodes, levels);
-        let mut forms = EnergyForms::new(problem.mesh().shape());
+        let mut forms = EnergyForms::new(problem.mesh().kind());
         for start in range.clone().step_by(LANES) {
             let group = start..(start + LANES).min(range.end);
             fields.gather_moments(&equilibration.elements[group.clone()], levels);

@@ -111,7 +111,7 @@ fn slopes_are_differences_of_the_energy() {
     for (e, element) in case.elements.iter().enumerate() {
         let (id, points) = (ElementId::new(e), case.problem.mesh().corners::<2, 3>(ElementId::new(e)));
         let measure = ElementMeasure::new(&case.problem, element, id, Acceleration::Closest);
-        let mut forms = EnergyForms::new(Shape::Triangle);
+        let mut forms = EnergyForms::new(CellKind::Triangle);
         let [lane, ..] = forms.prepare(&case.problem, std::iter::once((id, points)));
         let form = forms.of(&case.problem, id, &points, lane);
         let mut vector = || [(); 2].map(|()| random.between(-1.0, 1.0));

@@ -7,11 +7,11 @@ use super::super::operator::Block;
 use super::super::*;
 use crate::element::elements;
 use crate::stress::{Loading, TriangleStress};
+use percute_core::cell::cell;
 use percute_core::load::Support;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
-use percute_core::simplex::simplex;
 use percute_testkit::{Random, random_rectangle};
 
 /// Second derivative of the energy of an element in the moments on its edges.
@@ -94,7 +94,7 @@ impl Case {
 
     /// The moments on the edges of an element, outward.
     pub(super) fn of_element(&self, e: usize, links: &[[Lanes; 2]]) -> [Lanes; MOMENTS] {
-        let crossing = simplex::<2, 3>().faces_around();
+        let crossing = cell::<2, 3>().faces_around();
         let mut moments = [Lanes::ZERO; MOMENTS];
         for i in 0..3 {
             let at = self.elements[e].links[i] as usize;

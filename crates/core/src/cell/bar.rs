@@ -1,10 +1,10 @@
 //! The bar of two nodes.
 
-use super::{Bar, Child, Shape, Simplex};
+use super::{Bar, Cell, CellKind, Child};
 
-impl Simplex<1, 2> for Bar {
-    fn shape(&self) -> Shape {
-        Shape::Bar
+impl Cell<1, 2> for Bar {
+    fn kind(&self) -> CellKind {
+        CellKind::Bar
     }
 
     fn signed_volume(&self, [a, b]: &[[f64; 1]; 2]) -> f64 {

@@ -1,10 +1,10 @@
 //! The triangle of three nodes.
 
-use super::{Child, Shape, Simplex, Triangle};
+use super::{Cell, CellKind, Child, Triangle};
 
-impl Simplex<2, 3> for Triangle {
-    fn shape(&self) -> Shape {
-        Shape::Triangle
+impl Cell<2, 3> for Triangle {
+    fn kind(&self) -> CellKind {
+        CellKind::Triangle
     }
 
     fn signed_volume(&self, points: &[[f64; 2]; 3]) -> f64 {

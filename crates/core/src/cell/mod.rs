@@ -1,8 +1,7 @@
 //! The elements: all that depends on the dimension.
 //!
-//! [`Simplex`] is written once for each element: [`Bar`] and [`Triangle`]. A mesh stores its simplex, so that other
-//! code is generic over the dimension `D` and the nodes of an element `N = D + 1`. Code that exists for some elements
-//! only matches on [`Shape`]; a new shape does not compile before each of these matches has its case.
+//! [`Cell`] is written once for each kind: [`Bar`] and [`Triangle`]. A mesh stores its [`CellKind`]; code that exists for
+//! some kinds only matches on it, so that a new kind does not compile before each of these matches has its case.
 
 mod bar;
 mod triangle;
@@ -10,7 +9,7 @@ mod triangle;
 use std::any::Any;
 use std::fmt::Debug;
 
-/// The element of dimension `D` with `N` nodes, if [`Simplex`] is written for it.
+/// The element of dimension `D` with `N` nodes, if [`Cell`] is written for it.
 #[derive(Clone, Copy, Debug)]
 pub struct Element<const D: usize, const N: usize>;
 
@@ -19,16 +18,16 @@ pub type Bar = Element<1, 2>;
 /// The 3-node triangle.
 pub type Triangle = Element<2, 3>;
 
-/// The shape of an element.
+/// The kind of the elements of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
+pub enum CellKind {
     /// A line of two nodes.
     Bar,
     /// A plane triangle of three nodes.
     Triangle,
 }
 
-impl Shape {
+impl CellKind {
     /// Of its space.
     #[inline]
     #[must_use]
@@ -53,12 +52,12 @@ impl Shape {
 /// The element of this dimension with so many nodes.
 ///
 /// # Panics
-/// If [`Simplex`] is not written for it.
+/// If [`Cell`] is not written for it.
 #[inline]
 #[must_use]
-pub fn simplex<const D: usize, const N: usize>() -> &'static dyn Simplex<D, N> {
-    const BAR: &dyn Simplex<1, 2> = &Element;
-    const TRIANGLE: &dyn Simplex<2, 3> = &Element;
+pub fn cell<const D: usize, const N: usize>() -> &'static dyn Cell<D, N> {
+    const BAR: &dyn Cell<1, 2> = &Element;
+    const TRIANGLE: &dyn Cell<2, 3> = &Element;
     let all: [&dyn Any; 2] = [&BAR, &TRIANGLE];
     let Some(found) = all.into_iter().find_map(|one| one.downcast_ref()) else {
         unreachable!("no element of dimension {D} with {N} nodes")
@@ -97,9 +96,9 @@ mod sealed {
 }
 
 /// One kind of element. Face k lies opposite to node k.
-pub trait Simplex<const D: usize, const N: usize>: sealed::Sealed + Debug + Send + Sync {
-    /// Its shape.
-    fn shape(&self) -> Shape;
+pub trait Cell<const D: usize, const N: usize>: sealed::Sealed + Debug + Send + Sync {
+    /// Its kind.
+    fn kind(&self) -> CellKind;
 
     /// Length (m) or area (m²), negative if the corners are in the wrong order.
     fn signed_volume(&self, points: &[[f64; D]; N]) -> f64;
