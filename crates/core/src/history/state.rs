@@ -167,20 +167,12 @@ impl<'a> State<'a> {
         by_scheme.map(|(half_step, acceleration)| half_step + self.back * acceleration).collect()
     }
 
-    /// M a_n by the scheme but for contact, of all nodes (N), as `force`.
+    /// M a_n by the scheme but for contact, of all nodes (N).
     pub fn write_force_without_contact<const D: usize>(&self, surface: &ContactSurface<D>, force: &mut [[f64; D]]) {
         force.copy_from_slice(vectors(self.total));
         for (contact, before) in surface.nodes().iter().zip(vectors(self.before_contact)) {
             force[contact.node.index()] = *before;
         }
-    }
-
-    /// M a_n by the scheme but for contact (N).
-    #[must_use]
-    pub fn force_without_contact<const D: usize>(&self, surface: &ContactSurface<D>) -> Vec<[f64; D]> {
-        let mut force = vec![[0.0; D]; self.inverse_mass.len()];
-        self.write_force_without_contact(surface, &mut force);
-        force
     }
 
     /// Kinetic energy (J) and momentum (kg m/s), with these masses of the nodes (kg).
