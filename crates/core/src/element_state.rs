@@ -26,7 +26,10 @@ impl ElementState {
     /// The state of an element for these displacements of all nodes (m), in rows.
     #[must_use]
     pub fn new<'p>(problem: impl Into<ProblemRef<'p>>, element: ElementId, displacement: &[f64]) -> Self {
-        on_problem!(problem.into(), problem => Self::of(problem, element, vectors(displacement)))
+        fn of(problem: ProblemRef<'_>, element: ElementId, displacement: &[f64]) -> ElementState {
+            on_problem!(problem, problem => ElementState::of(problem, element, vectors(displacement)))
+        }
+        of(problem.into(), element, displacement)
     }
 
     fn of<const D: usize>(problem: &Problem<D>, element: ElementId, displacement: &[[f64; D]]) -> Self {
@@ -104,5 +107,8 @@ pub fn kinetic_energy<'p>(problem: impl Into<ProblemRef<'p>>, element: ElementId
         let mass = problem.material(element).density() * problem.volume(element) / nodes.len() as f64;
         0.5 * mass * nodes.iter().flat_map(|node| velocity[node.index()]).map(|v| v * v).sum::<f64>()
     }
-    on_problem!(problem.into(), problem => of(problem, element, vectors(velocity)))
+    fn any(problem: ProblemRef<'_>, element: ElementId, velocity: &[f64]) -> f64 {
+        on_problem!(problem, problem => of(problem, element, vectors(velocity)))
+    }
+    any(problem.into(), element, velocity)
 }

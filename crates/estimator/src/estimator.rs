@@ -77,10 +77,13 @@ impl StateSink for Estimator<'_> {
 /// each element and sample.
 #[must_use]
 pub fn memory<'p>(problem: impl Into<ProblemRef<'p>>, times: &TimeGrid, options: &Options) -> usize {
-    match problem.into() {
-        ProblemRef::D1(bar) => pipeline::memory::<1, 2>(bar, times, options),
-        ProblemRef::D2(plane) => pipeline::memory::<2, 3>(plane, times, options),
+    fn of(problem: ProblemRef<'_>, times: &TimeGrid, options: &Options) -> usize {
+        match problem {
+            ProblemRef::D1(bar) => pipeline::memory::<1, 2>(bar, times, options),
+            ProblemRef::D2(plane) => pipeline::memory::<2, 3>(plane, times, options),
+        }
     }
+    of(problem.into(), times, options)
 }
 
 /// Estimates a history: from the same steps, the same bits as beside the run that made them. If the observer breaks,

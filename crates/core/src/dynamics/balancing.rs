@@ -22,7 +22,11 @@ impl<'p> Balancing<'p> {
     /// Before the first step.
     #[must_use]
     pub fn new(problem: impl Into<ProblemRef<'p>>, times: &'p TimeGrid) -> Self {
-        on_problem!(problem.into(), problem => Self(Box::new(Keeping {
+        Self::of(problem.into(), times)
+    }
+
+    fn of(problem: ProblemRef<'p>, times: &'p TimeGrid) -> Self {
+        on_problem!(problem, problem => Self(Box::new(Keeping {
             problem,
             times,
             keeper: BalanceKeeper::new(problem, times),

@@ -91,13 +91,19 @@ pub fn replay<'p>(
 /// (Kuczyński and Woźniakowski, 1992), half of it for ω, and in practice far smaller. The problem keeps it.
 #[must_use]
 pub fn critical_time_step<'p>(problem: impl Into<ProblemRef<'p>>) -> f64 {
-    on_problem!(problem.into(), problem => problem.critical_step(|| critical_step::critical_time_step(problem)))
+    fn of(problem: ProblemRef<'_>) -> f64 {
+        on_problem!(problem, problem => problem.critical_step(|| critical_step::critical_time_step(problem)))
+    }
+    of(problem.into())
 }
 
 /// Δt_c of one element alone with its lumped mass (s).
 #[must_use]
 pub fn time_step_of_element<'p>(problem: impl Into<ProblemRef<'p>>, element: ElementId) -> f64 {
-    on_problem!(problem.into(), problem => critical_step::time_step_of_element(problem, element))
+    fn of(problem: ProblemRef<'_>, element: ElementId) -> f64 {
+        on_problem!(problem, problem => critical_step::time_step_of_element(problem, element))
+    }
+    of(problem.into(), element)
 }
 
 /// Refuses a start that a simulation refuses, before anything is made for it.
@@ -105,7 +111,10 @@ pub fn time_step_of_element<'p>(problem: impl Into<ProblemRef<'p>>, element: Ele
 /// # Errors
 /// [`SimulationError::StartsTooNear`].
 pub fn check_start<'p>(problem: impl Into<ProblemRef<'p>>, times: &TimeGrid) -> Result<(), SimulationError> {
-    on_problem!(problem.into(), problem => start::check_start(problem, times))
+    fn of(problem: ProblemRef<'_>, times: &TimeGrid) -> Result<(), SimulationError> {
+        on_problem!(problem, problem => start::check_start(problem, times))
+    }
+    of(problem.into(), times)
 }
 
 /// A sink that looks for nodes inside other bodies, in a run of so many steps.
@@ -113,5 +122,8 @@ pub fn check_start<'p>(problem: impl Into<ProblemRef<'p>>, times: &TimeGrid) -> 
 /// Its error is [`SimulationError::Missed`].
 #[must_use]
 pub fn missed_contact<'p>(problem: impl Into<ProblemRef<'p>>, steps: usize) -> Box<dyn StateSink + 'p> {
-    on_problem!(problem.into(), problem => Box::new(MissedContact::new(problem, steps)))
+    fn of(problem: ProblemRef<'_>, steps: usize) -> Box<dyn StateSink + '_> {
+        on_problem!(problem, problem => Box::new(MissedContact::new(problem, steps)))
+    }
+    of(problem.into(), steps)
 }

@@ -24,7 +24,11 @@ impl<'p> Evaluation<'p> {
     /// Before the first step.
     #[must_use]
     pub fn new(problem: impl Into<ProblemRef<'p>>, times: &'p TimeGrid) -> Self {
-        on_problem!(problem.into(), problem => Self(Box::new(Evaluator::new(problem, times))))
+        Self::of(problem.into(), times)
+    }
+
+    fn of(problem: ProblemRef<'p>, times: &'p TimeGrid) -> Self {
+        on_problem!(problem, problem => Self(Box::new(Evaluator::new(problem, times))))
     }
 
     /// The state of the next step.

@@ -23,7 +23,11 @@ impl Stiffness {
     /// Prepares the elements of a problem.
     #[must_use]
     pub fn new<'p>(problem: impl Into<ProblemRef<'p>>) -> Self {
-        on_problem!(problem.into(), problem => Self::on_strips(problem, Strips::new(problem.mesh())))
+        Self::of(problem.into())
+    }
+
+    fn of(problem: ProblemRef<'_>) -> Self {
+        on_problem!(problem, problem => Self::on_strips(problem, Strips::new(problem.mesh())))
     }
 
     /// The same with a cut of its own.

@@ -26,7 +26,10 @@ impl RigidMotion {
     /// That of all bodies of a problem.
     #[must_use]
     pub fn new<'p>(problem: impl Into<ProblemRef<'p>>) -> Self {
-        on_problem!(problem.into(), problem => Self::of(problem))
+        fn of(problem: ProblemRef<'_>) -> RigidMotion {
+            on_problem!(problem, problem => RigidMotion::of(problem))
+        }
+        of(problem.into())
     }
 
     fn of<const D: usize>(problem: &Problem<D>) -> Self {

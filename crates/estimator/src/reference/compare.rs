@@ -35,7 +35,11 @@ impl<'p> Comparison<'p> {
     /// A comparison with the simulation of `problem`, whose states it must take.
     #[must_use]
     pub fn new(problem: impl Into<ProblemRef<'p>>) -> Self {
-        on_problem!(problem.into(), problem => Self(Box::new(Finer { problem, coarse: Vec::new(), before: None })))
+        Self::of(problem.into())
+    }
+
+    fn of(problem: ProblemRef<'p>) -> Self {
+        on_problem!(problem, problem => Self(Box::new(Finer { problem, coarse: Vec::new(), before: None })))
     }
 
     /// Adds a simulation to compare, before it takes the first state. The results come in the

@@ -40,7 +40,7 @@ fn assemble<const D: usize, const N: usize>(
     let located = nodes.located(&elements)?;
     let kept = nodes.keep(&located, scale);
     let shape = cell::<D, N>().kind();
-    let places = kept.flat(shape)?;
+    let places = kept.flat::<D>(shape)?;
     let cells = kept.numbered(&located);
     let Boundary { groups, inner } = boundary(raw, nodes, &kept, &cells, &raw.sorted(faces)?, shape)?;
     let parts = raw.named(D, &members, |at| at);
@@ -51,7 +51,9 @@ fn assemble<const D: usize, const N: usize>(
         import_warnings::inner(&inner, D),
         import_warnings::empty(raw, D, &groups, &inner, &parts),
     ];
-    let mesh = Mesh::new(places, &cells, &groups, &parts).map_err(|error| refused(error, &kept, &elements))?;
+    let rows = groups.into_iter().map(|(name, faces)| (name, faces.into_flattened())).collect();
+    let mesh = Mesh::from_rows(D, places.as_flattened(), cells.as_flattened(), (&rows, &parts))
+        .map_err(|error| refused(error, &kept, &elements))?;
     let element_tags = elements.iter().map(|element| element.tag).collect();
     let large = import_warnings::large(mesh.size(), scale);
     let mesh = mesh.with_import_warnings(reported.into_iter().chain([large]).flatten().collect());

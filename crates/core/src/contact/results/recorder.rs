@@ -40,7 +40,11 @@ impl<'p> ContactRecorder<'p> {
     /// Before the first step. Resultants and summaries are kept.
     #[must_use]
     pub fn new(problem: impl Into<ProblemRef<'p>>, times: &'p TimeGrid) -> Self {
-        Self(on_problem!(problem.into(), problem => Box::new(Recorder::new(problem, times))))
+        Self::of(problem.into(), times)
+    }
+
+    fn of(problem: ProblemRef<'p>, times: &'p TimeGrid) -> Self {
+        Self(on_problem!(problem, problem => Box::new(Recorder::new(problem, times))))
     }
 
     /// Keeps all nodes at all instants too.

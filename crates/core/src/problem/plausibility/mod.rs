@@ -36,7 +36,11 @@ impl fmt::Display for PlausibilityWarning {
 /// All plausibility warnings of a run, before its first step.
 #[must_use]
 pub fn plausibility_warnings<'p>(problem: impl Into<ProblemRef<'p>>, times: &TimeGrid) -> Vec<PlausibilityWarning> {
-    on_problem!(problem.into(), problem => all(problem, times))
+    warnings_of(problem.into(), times)
+}
+
+fn warnings_of(problem: ProblemRef<'_>, times: &TimeGrid) -> Vec<PlausibilityWarning> {
+    on_problem!(problem, problem => all(problem, times))
 }
 
 fn all<const D: usize>(problem: &Problem<D>, times: &TimeGrid) -> Vec<PlausibilityWarning> {
@@ -70,7 +74,10 @@ pub struct RefusedStart {
 /// The wrong unit that makes a start that the simulation refuses; `None` if all units seem to be right.
 #[must_use]
 pub fn cause_of_refused_start<'p>(problem: impl Into<ProblemRef<'p>>, times: &TimeGrid) -> Option<RefusedStart> {
-    let problem = problem.into();
+    refused_start_of(problem.into(), times)
+}
+
+fn refused_start_of(problem: ProblemRef<'_>, times: &TimeGrid) -> Option<RefusedStart> {
     // The extent of the body does not change its waves.
     let units = |warning: &PlausibilityWarning| {
         ["units", "supersonic"].contains(&warning.name)

@@ -11,12 +11,12 @@ use percute_core::problem::Problem;
 #[derive(Clone, Debug)]
 pub(crate) enum ElementForm {
     Bar(BarStress),
-    Triangle(Box<TriangleForm>),
+    Triangle(Box<StoredTriangleForm>),
 }
 
 /// The form of one triangle.
 #[derive(Clone, Debug)]
-pub(crate) struct TriangleForm {
+pub(crate) struct StoredTriangleForm {
     map: ReferenceMap,
     /// L; above the diagonal, 0.
     factor: [[f64; LOADS]; LOADS],
@@ -30,7 +30,7 @@ impl ElementForm {
         let [lane, ..] = forms.prepare(problem, std::iter::once((id, points)));
         match forms.of(problem, id, &points, lane) {
             EnergyForm::Bar(map) => Self::Bar(map),
-            EnergyForm::Triangle(form) => Self::Triangle(Box::new(TriangleForm {
+            EnergyForm::Triangle(form) => Self::Triangle(Box::new(StoredTriangleForm {
                 map: form.map,
                 factor: form.factors.each_ref().map(|row| row.each_ref().map(|entry| entry.0[lane])),
             })),
@@ -39,7 +39,7 @@ impl ElementForm {
 
     /// Memory of one (bytes).
     pub(crate) const fn memory() -> usize {
-        size_of::<TriangleForm>()
+        size_of::<StoredTriangleForm>()
     }
 }
 
@@ -59,7 +59,7 @@ impl FluctuationForm for ElementForm {
     }
 }
 
-impl TriangleForm {
+impl StoredTriangleForm {
     /// The products of some columns of L with loads, as those of a form in a lane.
     #[inline(always)]
     fn columns<const FIRST: usize, T: Value>(&self, loads: &[T; LOADS]) -> [T; COLUMNS] {

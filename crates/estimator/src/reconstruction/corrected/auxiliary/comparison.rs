@@ -40,7 +40,7 @@ fn lumping_difference<const D: usize, const N: usize>(
     field: &[[f64; D]],
 ) -> Vec<[f64; D]> {
     let mut difference = vec![[0.0; D]; field.len()];
-    for (e, nodes) in problem.mesh().nodes_of::<3>().iter().enumerate() {
+    for (e, nodes) in problem.mesh().cells().enumerate() {
         let id = ElementId::new(e);
         let share = problem.material(id).density() * problem.volume(id) / (D + 2) as f64;
         for c in 0..D {
@@ -290,7 +290,7 @@ fn compare_energies<const D: usize, const N: usize>(
     levels: [PlainLevel<D>; MOTIONS],
 ) {
     let touches = |e: usize| {
-        let nodes = problem.mesh().nodes_of::<3>()[e];
+        let nodes = problem.mesh().cell(ElementId::new(e));
         problem.surface().nodes().iter().any(|contact| nodes.contains(&contact.node))
     };
     let [own, halved_elements, halved_step, contact] = levels.map(|level| [level.displacement, level.velocity]);
