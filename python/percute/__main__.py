@@ -4,7 +4,7 @@ import signal
 import sys
 
 from percute._percute import command
-from percute.pictures.command import main as plot
+from percute.plot_command import main as plot
 
 
 def main() -> int:

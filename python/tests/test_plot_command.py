@@ -64,7 +64,7 @@ def test_a_case_is_run(tmp_path: Path) -> None:
 def test_mistakes_are_told_before_any_work(
     files: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from percute.pictures.command import main
+    from percute.plot_command import main
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("signal.signal", lambda *_: None)
@@ -114,7 +114,7 @@ def test_damaged_files_have_one_message(contents: str, says: str, files: tuple[P
 
 
 def test_without_matplotlib_the_command_names_the_way_out(files: tuple[Path, Path], tmp_path: Path) -> None:
-    program = "import sys; sys.modules['matplotlib'] = None; from percute.pictures.command import main; sys.exit(main(sys.argv[1:]))"
+    program = "import sys; sys.modules['matplotlib'] = None; from percute.plot_command import main; sys.exit(main(sys.argv[1:]))"
     done = subprocess.run([sys.executable, "-c", program, str(files[1])], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 1 and done.stderr == 'error: pictures need matplotlib: pip install matplotlib\n'
 

@@ -21,7 +21,7 @@ use percute_workflow::case::{Instants, Keep, Source, refused_start};
 use percute_workflow::choice::StepChoice;
 use percute_workflow::effort::{Effort, Long};
 use percute_workflow::history::{plan, stored_case};
-use percute_workflow::info::memory;
+use percute_workflow::memory;
 use percute_workflow::report::{drifted, varying_steps};
 use percute_workflow::run::{self, Outcome, Storage, TakeStep};
 use percute_workflow::until::{Until, no_rebound};

@@ -16,6 +16,7 @@ pub mod grade;
 pub mod history;
 pub mod info;
 mod leaving;
+pub mod memory;
 pub mod message;
 mod numbering;
 pub mod outline;

@@ -5,8 +5,8 @@
 use crate::case::Case;
 use crate::deformation::{Deformation, DeformationRecorder};
 use crate::failure::Failure;
-use crate::info::memory;
 use crate::leaving::Leaving;
+use crate::memory;
 use crate::numbering::Ordered;
 pub use crate::numbering::TakeStep;
 use crate::outline::{LastOutline, Outline};

@@ -7,7 +7,7 @@ use super::toward::missing;
 use super::{Adaptation, Best, Next, Wish};
 use crate::effort::Effort;
 use crate::failure::Failure;
-use crate::info::memory;
+use crate::memory;
 use crate::numbering::Ordered;
 use crate::plan::{Basis, Branch, Plan, sizes};
 use crate::report::{Report, Subject};

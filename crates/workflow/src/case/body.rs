@@ -11,7 +11,6 @@ use percute_core::material::Elastic;
 use percute_core::mesh::{Mesh, MeshError};
 use std::path::PathBuf;
 
-const KEYS: [&str; 6] = ["name", "group", "origin", "rotation", "material", "velocity"];
 const MATERIAL: &str = "{ young = 70e9, poisson = 0.3, density = 2700.0, plane = \"stress\" }";
 const BAR: &str = "{ young = 70e9, density = 2700.0, section = 1e-4 }";
 /// Farther away, over its size, a mesh has less than seven digits.
@@ -50,7 +49,7 @@ pub(super) fn read(root: &Table<'_>) -> Result<Option<Bodies>, CaseError> {
     let mut bodies = Vec::new();
     let mut names: Vec<&str> = Vec::new();
     for table in tables {
-        table.only(&[&KEYS[..], &mesh::KEYS].concat())?;
+        table.only()?;
         let name = name(&table)?;
         if names.contains(&name.1) {
             return Err(name.0.error(format!("is \"{}\", the name of an earlier body; give each its own", name.1)));

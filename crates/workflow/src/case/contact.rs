@@ -19,7 +19,7 @@ pub(super) fn read(root: &Table<'_>, dimension: usize, parts: usize) -> Result<V
 }
 
 fn one(table: &Table<'_>, dimension: usize, parts: usize) -> Result<Contact, CaseError> {
-    table.only(&["bodies", "groups", "friction", "matching"])?;
+    table.only()?;
     let between = match (table.get("bodies"), table.get("groups")) {
         (Some(_), Some(groups)) => {
             return Err(groups.error("cannot be given together with `bodies`; leave one of the two out"));

@@ -11,7 +11,7 @@ use std::str::FromStr;
 pub(super) fn read(root: &Table<'_>) -> Result<Options, CaseError> {
     let mut options = Options::default();
     let Some(table) = root.single("estimate")? else { return Ok(options) };
-    table.only(&["reconstruction", "acceleration", "every"])?;
+    table.only()?;
     options.reconstruction = choice(&table, "reconstruction")?.unwrap_or_default();
     options.acceleration = choice(&table, "acceleration")?;
     if let Some((acceleration, value)) = options.acceleration.zip(table.get("acceleration")) {

@@ -10,12 +10,12 @@ const PROFILE: &str = "{ value = 1.0, gradient = [10.0, 0.0] }";
 /// Reads all tractions.
 pub(super) fn tractions(root: &Keys<'_>, dimension: usize) -> Result<Vec<Traction>, CaseError> {
     let one = |table: &Keys<'_>| {
-        table.only(&["group", "time", "value", "profile"])?;
+        table.only()?;
         let group = table.require("group", "the name of a group of edges")?.text("the name of a group of edges")?;
         let profile = match table.get("profile") {
             None => Profile::UNIFORM,
             Some(value) => {
-                let profile = value.table(&["value", "gradient"], PROFILE)?;
+                let profile = value.table(PROFILE)?;
                 let value = profile.require("value", "the factor at the origin")?.number("")?;
                 let gradient =
                     profile.require("gradient", "the change of the factor in 1/m")?.vector("1/m", dimension)?;
@@ -30,7 +30,7 @@ pub(super) fn tractions(root: &Keys<'_>, dimension: usize) -> Result<Vec<Tractio
 /// Reads all body forces.
 pub(super) fn body_forces(root: &Keys<'_>, dimension: usize) -> Result<Vec<BodyForce>, CaseError> {
     let one = |table: &Keys<'_>| {
-        table.only(&["group", "time", "value"])?;
+        table.only()?;
         let group = table.get("group").map(|value| value.text("the name of a group of elements")).transpose()?;
         Ok(BodyForce { group: group.map(str::to_string), value: table_in_time(table, "N/m³", dimension)? })
     };

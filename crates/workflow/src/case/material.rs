@@ -5,8 +5,9 @@ use super::table::Table;
 use percute_core::cell::CellKind;
 use percute_core::material::{Elastic, MaterialError};
 
-const BAR_KEYS: [&str; 5] = ["young", "density", "section", "yield_stress", "group"];
-const PLANE_KEYS: [&str; 7] = ["young", "poisson", "density", "plane", "thickness", "yield_stress", "group"];
+/// Keys of plane bodies alone, and of bars alone.
+const OF_PLANE: [&str; 3] = ["poisson", "plane", "thickness"];
+const OF_BAR: &str = "section";
 
 /// What is said of properties that a bar does not have.
 pub(super) const NOT_FOR_BARS: &str = "does not apply to a bar";
@@ -39,11 +40,11 @@ pub(super) fn law(table: &Table<'_>, shape: CellKind) -> Result<Elastic, CaseErr
 }
 
 fn bar(table: &Table<'_>) -> Result<Elastic, CaseError> {
-    for key in ["poisson", "plane", "thickness"] {
+    for key in OF_PLANE {
         let why = format!("{NOT_FOR_BARS}, which has a `section` (m²) and stretches along its axis only");
         table.refuse(key, &why)?;
     }
-    table.only(&BAR_KEYS)?;
+    table.only_but(&OF_PLANE)?;
     let young = number(table, "young", "Pa")?;
     let density = number(table, "density", "kg/m³")?;
     let section = number(table, "section", "m²")?;
@@ -51,8 +52,8 @@ fn bar(table: &Table<'_>) -> Result<Elastic, CaseError> {
 }
 
 fn plane(table: &Table<'_>) -> Result<Elastic, CaseError> {
-    table.refuse("section", "applies to bars only; a plane body has `plane` and `thickness` (m)")?;
-    table.only(&PLANE_KEYS)?;
+    table.refuse(OF_BAR, "applies to bars only; a plane body has `plane` and `thickness` (m)")?;
+    table.only_but(&[OF_BAR])?;
     let young = number(table, "young", "Pa")?;
     let poisson = number(table, "poisson", "")?;
     let density = number(table, "density", "kg/m³")?;

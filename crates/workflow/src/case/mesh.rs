@@ -10,9 +10,6 @@ use percute_io::FileCause;
 use percute_io::gmsh::{self, GmshCause};
 use std::path::PathBuf;
 
-pub(super) const KEYS: [&str; 9] =
-    ["rectangle", "disc", "bar", "file", "scale", "points", "cells", "edge_groups", "element_groups"];
-const OF_RECTANGLE: [&str; 5] = ["width", "height", "nx", "ny", "diagonals"];
 const RECTANGLE: &str = "{ width = 0.05, height = 0.04, nx = 20, ny = 16 }";
 const DISC: &str = "{ radius = 0.05, rings = 12 }";
 const BAR: &str = "{ length = 0.1, elements = 100 }";
@@ -32,7 +29,7 @@ const WAYS: [(&str, Reader); 5] = [
 
 /// Reads the mesh.
 pub(super) fn read(table: &Table<'_>) -> Result<Mesh, CaseError> {
-    table.only(&KEYS)?;
+    table.only()?;
     one_way(table)
 }
 
@@ -78,18 +75,17 @@ pub(super) struct Coarsest {
 
 /// That of a mesh which is generated and large.
 pub(super) fn coarsest(table: &Table<'_>) -> Option<Coarsest> {
-    let count = |of: &str, keys: &[&'static str], key: &str| {
-        table.get(of).and_then(|value| value.table(keys, "").ok()?.get(key)?.count(1).ok()).unwrap_or(1)
+    let count = |of: &str, key: &str| {
+        table.get(of).and_then(|value| value.table("").ok()?.get(key)?.count(1).ok()).unwrap_or(1)
     };
-    let sides = ["nx", "ny"].map(|side| count("rectangle", &OF_RECTANGLE, side));
-    let rings = count("disc", &["radius", "rings"], "rings");
-    let elements = count("bar", &["length", "elements"], "elements");
+    let sides = ["nx", "ny"].map(|side| count("rectangle", side));
+    let rings = count("disc", "rings");
+    let elements = count("bar", "elements");
     if sides[0].saturating_mul(sides[1]).max(rings.saturating_mul(rings)).max(elements) <= LARGE {
         return None;
     }
-    let length = |of: &str, keys: &[&'static str], key: &str| {
-        table.get(of)?.table(keys, "").ok()?.get(key)?.number("m").ok().filter(|length| *length > 0.0)
-    };
+    let length =
+        |of: &str, key: &str| table.get(of)?.table("").ok()?.get(key)?.number("m").ok().filter(|length| *length > 0.0);
     let [nx, ny] = sides;
     // Beyond all that a mesh may have, the large mesh is refused.
     let above = ny.saturating_mul(nx.saturating_add(1));
@@ -97,7 +93,7 @@ pub(super) fn coarsest(table: &Table<'_>) -> Option<Coarsest> {
     let rectangle = |width, height| Mesh::rectangle(width, height, 1, 1);
     let (made, nodes) = match ["rectangle", "disc", "bar"].map(|key| table.get(key).is_some()) {
         [true, false, false] => {
-            let size = ["width", "height"].map(|side| length("rectangle", &OF_RECTANGLE, side));
+            let size = ["width", "height"].map(|side| length("rectangle", side));
             match size {
                 [Some(width), Some(height)] => (rectangle(width, height), corners()),
                 _ => (rectangle(1.0, 1.0), Vec::new()),
@@ -106,7 +102,7 @@ pub(super) fn coarsest(table: &Table<'_>) -> Option<Coarsest> {
         // The outline of the coarsest lies inside that of the disc.
         [false, true, false] => (Mesh::disc(1.0, 1), Vec::new()),
         [false, false, true] => {
-            let size = length("bar", &["length", "elements"], "length");
+            let size = length("bar", "length");
             (Mesh::uniform_bar(size.unwrap_or(1.0), 1), size.map_or_else(Vec::new, |_| vec![0, elements]))
         }
         _ => return None,
@@ -144,7 +140,7 @@ fn from_file(table: &Table<'_>, value: &Value<'_>) -> Result<Mesh, CaseError> {
 }
 
 fn rectangle(value: &Value<'_>) -> Result<Mesh, CaseError> {
-    let table = value.table(&OF_RECTANGLE, RECTANGLE)?;
+    let table = value.table(RECTANGLE)?;
     let length = |key| table.require(key, "a length in m")?.number("m");
     let count = |key| table.require(key, "a number of cells")?.count(1);
     let (width, height, nx, ny) = (length("width")?, length("height")?, count("nx")?, count("ny")?);
@@ -161,14 +157,14 @@ fn diagonals(value: &Value<'_>) -> Result<Diagonals, CaseError> {
 }
 
 fn disc(value: &Value<'_>) -> Result<Mesh, CaseError> {
-    let table = value.table(&["radius", "rings"], DISC)?;
+    let table = value.table(DISC)?;
     let radius = table.require("radius", "a length in m")?.number("m")?;
     let rings = table.require("rings", "a number of rings")?.count(1)?;
     Mesh::disc(radius, rings).map_err(|error| generator(&table, &error))
 }
 
 fn bar(value: &Value<'_>) -> Result<Mesh, CaseError> {
-    let table = value.table(&["length", "elements"], BAR)?;
+    let table = value.table(BAR)?;
     let length = table.require("length", "a length in m")?.number("m")?;
     let elements = table.require("elements", "a number of elements")?.count(1)?;
     Mesh::uniform_bar(length, elements).map_err(|error| generator(&table, &error))

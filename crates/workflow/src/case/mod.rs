@@ -34,6 +34,7 @@ mod body;
 mod contact;
 mod estimate;
 mod keep;
+mod language;
 mod load;
 mod material;
 mod mesh;
@@ -54,12 +55,13 @@ mod value;
 pub use body::far_origin;
 pub use contact::ONE_BODY;
 pub use keep::{FIELDS, Keep};
+pub(crate) use language::Part;
+pub use language::SCHEMA;
 pub use output::{Instants, Output};
 pub(crate) use source::At;
 pub use source::{CaseError, Source};
 pub use statement::{NotRepresentable, problem_from, statement};
 pub use stranger::stranger;
-pub(crate) use time::KEYS as TIME_KEYS;
 
 use crate::effort::{Effort, Long};
 use crate::message::bytes;
@@ -79,33 +81,12 @@ use toml::de::DeTable;
 use value::table;
 use value::table::Table;
 
-/// The tables of a case file, and `gravity`.
-const TABLES: [&str; 13] = [
-    "mesh",
-    "body",
-    "material",
-    "initial",
-    "obstacle",
-    "contact",
-    "support",
-    "traction",
-    "body_force",
-    "gravity",
-    "time",
-    "estimate",
-    "output",
-];
-
 const NO_MESH: &str = "the table [mesh] is missing: give the body, as in rectangle = \
                        { width = 0.05, height = 0.04, nx = 20, ny = 16 }; `percute new block` prints a whole case to \
                        start from";
 
 /// Names of the components.
 const AXES: [&str; 3] = ["x", "y", "z"];
-
-/// The JSON schema (draft 2020-12) of the case files, with which editors complete and check them. What needs numbers of
-/// the mesh, sums or several values at once is left to the reader.
-pub const SCHEMA: &str = include_str!("schema.json");
 
 /// A case, ready to run.
 #[derive(Clone, Debug)]
@@ -142,7 +123,7 @@ pub fn parse(source: Source) -> Result<Case, CaseError> {
     check_length(&source)?;
     let document = parsed(&source)?;
     let root = Table::root(&source, document.get_ref());
-    root.only(&TABLES)?;
+    root.only()?;
     if let Some(bodies) = body::read(&root)? {
         return of_bodies(&source, &root, bodies);
     }

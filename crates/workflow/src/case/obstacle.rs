@@ -10,7 +10,7 @@ pub(super) fn read(root: &Table<'_>, dimension: usize) -> Result<Vec<AnyObstacle
 }
 
 fn one(table: &Table<'_>, dimension: usize) -> Result<AnyObstacle, CaseError> {
-    table.only(&["point", "gap", "normal", "friction", "group"])?;
+    table.only()?;
     let place = place(table, dimension)?;
     let normal = table.require("normal", "a vector from the plane to the body")?.vector("", dimension)?;
     let friction = friction(table, dimension)?;

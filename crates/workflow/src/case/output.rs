@@ -81,7 +81,7 @@ impl Instants {
 pub(super) fn read(root: &Table<'_>) -> Result<Output, CaseError> {
     let mut output = Output::default();
     let Some(table) = root.single("output")? else { return Ok(output) };
-    table.only(&["history", "estimate", "instants", "fields", "every", "times"])?;
+    table.only()?;
     output.keep.steps = keep::steps(&table)?;
     for (key, slot) in [("history", &mut output.history), ("estimate", &mut output.estimate)] {
         if let Some(value) = table.get(key) {

@@ -2,7 +2,7 @@
 
 use super::{Case, parsed, place};
 use crate::case::table::Table;
-use crate::info::memory;
+use crate::memory;
 use crate::message::bytes;
 use crate::report::{Warning, few_samples, varying_steps};
 use percute_core::problem::{Place, PlausibilityWarning, plausibility_warnings};
@@ -23,7 +23,7 @@ impl Case {
         all.extend(few.map(|few| at("estimate", "every", few)));
         let varying = varying_steps(&self.times, self.critical_step);
         all.extend(varying.map(|varying| at("time", "steps", varying)));
-        let needed = memory::of_case(self, in_memory);
+        let needed = self.memory(in_memory);
         all.extend(memory::scarce(needed, memory::available(), in_memory).map(|message| {
             let place = Place { table: "mesh", index: None, key: "" };
             PlausibilityWarning { place, name: "memory", brief: format!("the run needs {}", bytes(needed)), message }
@@ -36,13 +36,22 @@ impl Case {
     /// the end.
     pub(super) fn lack_of_memory(&self, estimated: bool) -> Option<(Place, String)> {
         let simulation = || memory::of_run(&self.problem, &self.times);
-        let told = memory::refusal(if estimated { memory::of_case(self, false) } else { simulation() })?;
+        let told = memory::refusal(if estimated { self.memory(false) } else { simulation() })?;
         let warnings = plausibility_warnings(&self.problem, &self.times);
         let many = warnings.into_iter().find(|warning| warning.name == "many_steps");
         Some(match many {
             Some(many) => (many.place, format!("{} As it is, {told}", many.message)),
             None => (Place { table: "mesh", index: None, key: "" }, told),
         })
+    }
+
+    /// About how many bytes a run and its estimate take; with `in_memory`, its history too.
+    fn memory(&self, in_memory: bool) -> u64 {
+        let Self { problem, times, options, .. } = self;
+        let estimate = percute_estimator::memory(problem, times, options) as u64;
+        let history = if in_memory { memory::of_history(problem, times) } else { 0 };
+        let contact = self.output.estimate.as_ref().map_or(0, |_| memory::of_contact(problem, times));
+        [estimate, history, contact].into_iter().fold(memory::of_run(problem, times), u64::saturating_add)
     }
 
     fn at_their_lines(&self, plausibility_warnings: Vec<PlausibilityWarning>) -> Vec<Warning> {

@@ -48,7 +48,7 @@ pub(super) fn check_coarsest(root: &Table<'_>, mesh: &Arc<Mesh>, nodes: &[usize]
 fn with_start(root: &Table<'_>, mesh: &Mesh) -> Result<Statement, CaseError> {
     let mut stated = stated(root, mesh)?;
     if let Some(table) = root.single("initial")? {
-        table.only(&["velocity", "displacement"])?;
+        table.only()?;
         let field =
             |key: &str, unit: &str| table.get(key).map_or(Ok(Vec::new()), |v| field(&v, unit, mesh.dimension()));
         (stated.velocity, stated.displacement) = (field("velocity", "m/s")?, field("displacement", "m")?);

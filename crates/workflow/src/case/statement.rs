@@ -16,8 +16,6 @@ use percute_estimator::{Options, Sampling};
 use std::sync::Arc;
 use thiserror::Error;
 
-/// The tables of a statement.
-const TABLES: [&str; 7] = ["material", "obstacle", "contact", "support", "traction", "body_force", "estimate"];
 /// Tables of a case file that a statement does not have.
 const BESIDE: [&str; 5] = ["mesh", "body", "initial", "time", "output"];
 
@@ -99,7 +97,7 @@ pub fn problem_from(
     for name in BESIDE {
         root.refuse(name, "is not part of a statement: mesh, initial fields, instants and files are given separately")?;
     }
-    root.only(&TABLES)?;
+    root.only_but(&[&BESIDE[..], &["gravity"]].concat())?;
     let options = estimate::read(&root)?;
     let stated = Statement {
         planes_to_be_moved: true,

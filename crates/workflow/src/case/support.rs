@@ -16,14 +16,14 @@ pub(super) fn read(root: &Keys<'_>, dimension: usize) -> Result<Vec<Support>, Ca
 }
 
 fn one(table: &Keys<'_>, dimension: usize) -> Result<Support, CaseError> {
-    table.only(&["group", "components", "velocity"])?;
+    table.only()?;
     let group = table.require("group", "the name of a group of edges")?.text("the name of a group of edges")?;
     let order = components(table, dimension)?;
     let mut components = [false; 3];
     order.iter().for_each(|&c| components[c] = true);
     let velocity = match table.get("velocity") {
         None => None,
-        Some(value) => Some(motion(&value.table(&["time", "value"], VELOCITY)?, &order)?),
+        Some(value) => Some(motion(&value.table(VELOCITY)?, &order)?),
     };
     Ok(Support { group: group.to_string(), components, velocity })
 }

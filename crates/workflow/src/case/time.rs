@@ -9,9 +9,6 @@ use crate::until::{Until, no_rebound};
 use percute_core::problem::AnyProblem;
 use percute_core::time::{TimeError, TimeGrid, is_stable};
 
-/// The keys of the table.
-pub(crate) const KEYS: [&str; 6] = ["end", "longest", "after", "courant", "step", "steps"];
-
 /// How the steps were stated.
 enum Steps<'a> {
     Courant(f64, Value<'a>),
@@ -38,7 +35,7 @@ pub(super) fn read<'a>(root: &Table<'a>) -> Result<Wanted<'a>, CaseError> {
     let table = root
         .single("time")?
         .ok_or_else(|| root.error("the table [time] is missing: give `end` in s and, say, courant = 0.9"))?;
-    table.only(&KEYS)?;
+    table.only()?;
     let ways: Vec<Value<'_>> = ["courant", "step", "steps"].iter().filter_map(|key| table.get(key)).collect();
     if ways.len() != 1 {
         let message = "needs exactly one of `courant` (0 to 1), `step` (s) and `steps` (a list in s)";

@@ -2,7 +2,6 @@
 //! `docs/json.md`.
 
 mod estimate;
-pub mod memory;
 mod mesh;
 mod setting;
 
@@ -13,6 +12,7 @@ pub use setting::{MaterialInfo, PlaneInfo};
 use crate::case::{Case, FIELDS, NotRepresentable, Output};
 use crate::effort::{Effort, duration};
 use crate::history::{Stored, plan};
+use crate::memory;
 use crate::message::{bytes, counted, printable, trimmed};
 use crate::report::build::problem_summary;
 use crate::report::summary::{body, layout, step};

@@ -4,9 +4,9 @@ use super::columns::{Columns, EnergiesOverTime, PARTS};
 use super::flat::FlatElements;
 use super::found::found;
 use super::linearity::Linearity;
+use super::narrow::NarrowContact;
 use super::symptoms::auxiliary_contact_energy;
 use super::varying_steps::varying_steps;
-use super::verdict::NarrowContact;
 use super::warnings::{Warning, WarningFacts, few_samples, reported};
 use super::{
     ADMISSIBLE, ContactReport, FORMAT, Findings, Impacts, LargestResidual, NonMatchingReport, ObstacleSummary,

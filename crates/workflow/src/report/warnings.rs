@@ -2,7 +2,7 @@
 
 use super::flat::FlatElements;
 use super::linearity::Linearity;
-use super::verdict::NarrowContact;
+use super::narrow::NarrowContact;
 use super::{LargestResidual, ProblemSummary};
 use crate::flight::NextTouch;
 use crate::foreign::{Checked, Samples};

@@ -1,7 +1,7 @@
 //! The levels of a verification and what they show together.
 
 use super::criterion::{Settled, order};
-use crate::info::memory;
+use crate::memory;
 use crate::quantity::{Judgement, Obstruction, Probe, Quantity, judge};
 use crate::report::Report;
 use percute_core::problem::AnyProblem;

@@ -14,7 +14,7 @@ pub use table::{announced, table};
 use crate::case::{Source, problem_from, statement};
 use crate::effort::{Effort, Long};
 use crate::failure::Failure;
-use crate::info::memory;
+use crate::memory;
 use crate::numbering::Ordered;
 use crate::quantity::{Probe, ProbeSink, Quantity};
 use crate::report::{Report, Subject};

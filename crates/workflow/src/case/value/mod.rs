@@ -3,6 +3,7 @@
 mod absent;
 pub(super) mod table;
 
+use super::Part;
 use super::source::{At, CaseError, Source};
 use percute_core::border::Vector;
 use table::Table;
@@ -14,6 +15,7 @@ pub(crate) struct Value<'a> {
     pub(super) source: &'a Source,
     pub(super) value: &'a DeValue<'a>,
     pub(super) at: At,
+    pub(super) part: Part,
 }
 
 impl<'a> Value<'a> {
@@ -86,22 +88,22 @@ impl<'a> Value<'a> {
         let list = self.value.as_array().ok_or_else(|| self.must_be(format!("a list of {what}")))?;
         let entry = |(i, value): (usize, &'a toml::Spanned<DeValue<'a>>)| {
             let at = At { path: format!("{}[{i}]", self.at.path), span: value.span() };
-            Value { source: self.source, value: value.get_ref(), at }
+            Value { source: self.source, value: value.get_ref(), at, part: self.part }
         };
         Ok(list.iter().enumerate().map(entry).collect())
     }
 
-    /// A table with these keys only.
-    pub(crate) fn table(&self, known: &[&str], example: &str) -> Result<Table<'a>, CaseError> {
+    /// A table with no other keys than its own.
+    pub(crate) fn table(&self, example: &str) -> Result<Table<'a>, CaseError> {
         let table = self.any_table(example)?;
-        table.only(known)?;
+        table.only()?;
         Ok(table)
     }
 
     /// A table with keys of the user's choice.
     pub(crate) fn any_table(&self, example: &str) -> Result<Table<'a>, CaseError> {
         let table = self.value.as_table().ok_or_else(|| self.must_be(format!("a table, such as {example}")))?;
-        Ok(Table { source: self.source, table, at: self.at.clone(), joint: "." })
+        Ok(Table { source: self.source, table, at: self.at.clone(), joint: ".", part: self.part })
     }
 
     /// A vector with a component for each axis; in 1D a number will do.

@@ -2,6 +2,7 @@
 
 use super::Value;
 use super::absent::absent;
+use crate::case::Part;
 use crate::case::source::{At, CaseError, Source};
 use crate::message::{hint, list};
 use toml::de::DeTable;
@@ -14,12 +15,14 @@ pub(crate) struct Table<'a> {
     pub(in crate::case) at: At,
     /// What joins the table's path to that of a key: `, ` after a header, `.` inside.
     pub(in crate::case) joint: &'static str,
+    /// What the schema says of it.
+    pub(in crate::case) part: Part,
 }
 
 impl<'a> Table<'a> {
     /// The document as a whole.
     pub(in crate::case) fn root(source: &'a Source, table: &'a DeTable<'a>) -> Self {
-        Self { source, table, at: At { path: String::new(), span: 0..0 }, joint: "" }
+        Self { source, table, at: At { path: String::new(), span: 0..0 }, joint: "", part: Part::case() }
     }
 
     /// An error of the table as a whole.
@@ -27,8 +30,14 @@ impl<'a> Table<'a> {
         self.source.error(&self.at, message)
     }
 
-    /// Refuses keys that are not among those known.
-    pub(crate) fn only(&self, known: &[&str]) -> Result<(), CaseError> {
+    /// Refuses keys that the table does not have.
+    pub(crate) fn only(&self) -> Result<(), CaseError> {
+        self.only_but(&[])
+    }
+
+    /// Refuses keys that the table does not have, and some of those that it has.
+    pub(crate) fn only_but(&self, excluded: &[&str]) -> Result<(), CaseError> {
+        let known: Vec<&str> = self.part.keys().into_iter().filter(|key| !excluded.contains(key)).collect();
         let mut strangers: Vec<_> = self.table.keys().filter(|key| !known.contains(&key.get_ref().as_ref())).collect();
         // The first in the file, not in the alphabet.
         strangers.sort_by_key(|key| key.span().start);
@@ -50,7 +59,7 @@ impl<'a> Table<'a> {
     pub(crate) fn get(&self, key: &str) -> Option<Value<'a>> {
         let (found, value) = self.table.get_key_value(key)?;
         let at = At { path: self.path_of(key), span: found.span() };
-        Some(Value { source: self.source, value: value.get_ref(), at })
+        Some(Value { source: self.source, value: value.get_ref(), at, part: self.part.key(key) })
     }
 
     /// The value of a key that must be there; `what` says what it is, with its unit.
@@ -74,7 +83,9 @@ impl<'a> Table<'a> {
     /// The tables of this name: none, one `[name]`, or several `[[name]]`.
     pub(crate) fn tables(&self, name: &str) -> Result<Vec<Table<'a>>, CaseError> {
         let Some((key, value)) = self.table.get_key_value(name) else { return Ok(Vec::new()) };
-        let one = |path: String, span, table| Table { source: self.source, table, at: At { path, span }, joint: ", " };
+        let part = self.part.key(name);
+        let one =
+            |path: String, span, table| Table { source: self.source, table, at: At { path, span }, joint: ", ", part };
         if let Some(table) = value.get_ref().as_table() {
             return Ok(vec![one(format!("[{name}]"), key.span(), table)]);
         }

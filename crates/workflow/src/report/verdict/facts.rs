@@ -1,7 +1,6 @@
 //! The facts that a verdict follows from.
 
 use super::onset::Onset;
-use super::touches::{FirstContact, first_contacts};
 use super::uneven::Uneven;
 use crate::deformation::Deformation;
 use crate::foreign::{Checked, Contradiction, by_a_penalty, is_off_contact, off_contact};
@@ -11,6 +10,7 @@ use crate::report::linearity::Linearity;
 use crate::report::poor::{PoorElement, poor_elements};
 use crate::report::rebound::Rebound;
 use crate::report::symptoms::auxiliary_contact_energy;
+use crate::report::touches::{FirstContact, first_contacts};
 use percute_core::border::Vector;
 use percute_core::contact::{ContactResults, Nearest};
 use percute_core::material::Law;

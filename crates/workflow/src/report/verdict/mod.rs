@@ -2,19 +2,15 @@
 //! recommendation, a sentence each.
 
 mod facts;
-mod narrow;
 mod onset;
 mod rules;
 mod tested_range;
 mod text;
-mod touches;
 mod uneven;
 
 pub(super) use facts::{Facts, FurtherFacts};
-pub(super) use narrow::NarrowContact;
-pub use touches::Touches;
 
-use super::PoorElement;
+use super::{PoorElement, Touches};
 use crate::plan::Recommendation;
 use percute_estimator::Parts;
 use rules::{RULES, Rule};

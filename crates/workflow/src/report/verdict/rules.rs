@@ -2,8 +2,8 @@
 //! `python -m studies` writes. The tests of the evidence compare the ranges with its page.
 
 use super::facts::Facts;
-use super::touches::Touches;
 use crate::report::symptoms::INCLINATION;
+use crate::report::touches::Touches;
 use percute_estimator::{Acceleration, Reconstruction};
 
 /// A situation that the evidence has, and its effectivity indices.

@@ -2,9 +2,9 @@
 
 use super::facts::Facts;
 use super::rules::{LONG, PENALTY};
-use super::touches::Touches;
 use crate::message::{percent, short};
 use crate::report::symptoms::{PENETRATION, SLIP};
+use crate::report::touches::Touches;
 
 /// Speeds over the wave speed that the evidence has: 0.4 m/s in ν = 0.45 (9.9 km/s) to 400 m/s in a bar (5.1 km/s).
 pub(super) const SPEEDS: [f64; 2] = [4e-5, 0.08];

@@ -3,13 +3,13 @@
 use super::Shares;
 use super::facts::{Expected, Facts};
 use super::rules::{self, Rule};
-use super::touches::Touches;
 use crate::foreign::Contradiction;
 use crate::message::{change, percent, short, trimmed, whole_percent};
 use crate::plan::Branch;
 use crate::report::flat;
 use crate::report::poor::PoorElement;
 use crate::report::symptoms::{AUXILIARY_CONTACT_ENERGY, CONTACT_ENERGY, DRIFT, IMPULSE_RATIO};
+use crate::report::touches::Touches;
 use percute_core::contact::Nearest;
 
 /// A mean error above this has as much energy as the deformation and the vibration together.

@@ -1,6 +1,5 @@
 //! How much memory a run will take, before it begins.
 
-use crate::case::Case;
 use crate::message::bytes;
 use percute_core::contact::{ContactSteps, Resultant};
 use percute_core::dynamics::Balance;
@@ -11,15 +10,6 @@ use percute_core::time::TimeGrid;
 
 /// Beside the prediction.
 const MARGIN: u64 = 16 << 20;
-
-/// About how many bytes a run and its estimate take; with `in_memory`, its history too.
-pub(crate) fn of_case(case: &Case, in_memory: bool) -> u64 {
-    let Case { problem, times, options, .. } = case;
-    let estimate = percute_estimator::memory(problem, times, options) as u64;
-    let history = if in_memory { of_history(problem, times) } else { 0 };
-    let contact = case.output.estimate.as_ref().map_or(0, |_| of_contact(problem, times));
-    [estimate, history, contact].into_iter().fold(of_run(problem, times), u64::saturating_add)
-}
 
 /// How many bytes a history takes in memory.
 #[must_use]
@@ -64,7 +54,7 @@ pub fn refusal(needed: u64) -> Option<String> {
 }
 
 /// How many bytes the contact results of all nodes at all instants take, which an estimate file asks for.
-pub(super) fn of_contact(problem: &AnyProblem, times: &TimeGrid) -> u64 {
+pub(crate) fn of_contact(problem: &AnyProblem, times: &TimeGrid) -> u64 {
     let rows = (problem.contact_nodes().len() as u64).saturating_mul(times.step_count() as u64 + 1);
     rows.saturating_mul(ContactSteps::bytes(problem.dimension()) as u64)
 }

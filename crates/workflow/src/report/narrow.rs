@@ -11,20 +11,20 @@ const EDGES: f64 = 2.0;
 
 /// A contact whose width is less than the length of an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::report) struct NarrowContact {
+pub(super) struct NarrowContact {
     /// Half of its width at the averaged peak force (m), by Hertz: b² = 4F'/(πE*κ), with the force F' per length, the
     /// curvature κ of both surfaces together, and 1/E* the sum of (1 − ν²)/E.
-    pub(in crate::report) half_width: f64,
+    pub(super) half_width: f64,
     /// The longest edge at the nodes that touch first (m).
-    pub(in crate::report) edge: f64,
+    pub(super) edge: f64,
     /// An edge that would resolve it (m).
-    pub(in crate::report) needed: f64,
+    pub(super) needed: f64,
 }
 
 impl NarrowContact {
     /// None of contacts that are wider, of corners and of flat surfaces. Where several contacts share the force, each
     /// counts as if it had all: none is called narrow that is not.
-    pub(in crate::report) fn new(problem: &AnyProblem, results: &ContactResults) -> Option<Self> {
+    pub(super) fn new(problem: &AnyProblem, results: &ContactResults) -> Option<Self> {
         let force = results.averaged_peak.filter(|_| problem.dimension() == 2)?.force;
         let surface = Surface::new(problem, results);
         let planes = (0..problem.obstacle_count()).filter(|&k| problem.obstacle(k).is_plane());
