@@ -6,6 +6,7 @@ use percute_core::dynamics::critical_time_step;
 use percute_core::material::{Elastic, MaterialError};
 use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, Problem};
+use std::sync::Arc;
 
 /// Cells along x and y: 640, 40 960 and 655 360 elements.
 pub const SIZES: [[usize; 2]; 3] = [[20, 16], [160, 128], [640, 512]];
@@ -56,7 +57,7 @@ impl Block {
         let free = problem(mesh, Motion::Free, 0.0)?;
         let step = COURANT * critical_time_step(&free);
         let gap = 1.5 * SPEED * step;
-        let given = if motion == Motion::Free { free } else { problem(free.mesh().clone(), motion, gap)? };
+        let given = if motion == Motion::Free { free } else { problem(Arc::clone(free.mesh()), motion, gap)? };
         let problem = numbering.map_or_else(|| given.clone(), |numbering| given.renumbered(&numbering));
         Ok(Self { problem, step, gap })
     }
@@ -72,7 +73,8 @@ impl Block {
 ///
 /// # Errors
 /// A mesh of another body.
-pub fn problem(mesh: Mesh, motion: Motion, gap: f64) -> Result<Problem<2>, Failure> {
+pub fn problem(mesh: impl Into<Arc<Mesh>>, motion: Motion, gap: f64) -> Result<Problem<2>, Failure> {
+    let mesh = mesh.into();
     // ±SPEED at the sides, so that strain starts at once.
     let spread = |p: &[f64; 2]| [SPEED * (p[0] / 0.025 - 1.0), SPEED * (1.0 - p[1] / 0.02)];
     let velocity = match motion {

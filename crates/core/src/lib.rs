@@ -12,6 +12,7 @@
 pub mod border;
 pub mod cell;
 pub mod contact;
+pub mod contact_results;
 pub mod dynamics;
 pub mod element_state;
 pub mod history;

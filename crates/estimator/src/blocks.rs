@@ -210,7 +210,7 @@ mod tests {
     /// Parts hold all blocks and strips once, in order, and the stars that their elements need come with them or
     /// before.
     fn check(mesh: &Mesh, fewest: usize) -> usize {
-        let strips = Strips::with_fewest(&mesh, fewest);
+        let strips = Strips::with_fewest(mesh, fewest);
         let parts = parts(mesh, &strips);
         let (mut stars, mut elements, mut strip) = (0, 0, 0);
         for part in &parts {

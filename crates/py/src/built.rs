@@ -2,7 +2,7 @@
 
 use crate::run::Run;
 use crate::{bridge, contact, errors};
-use percute_core::contact::ContactResults;
+use percute_core::contact_results::ContactResults;
 use percute_core::dynamics::{Simulation, critical_time_step};
 use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;

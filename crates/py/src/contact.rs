@@ -4,7 +4,7 @@ use crate::run::Run;
 use crate::{bridge, errors, view};
 use numpy::{Element, IntoPyArray, PyArrayDyn, PyArrayMethods};
 use percute_core::border::Vector;
-use percute_core::contact::{ContactPoint, ContactResults, ContactSteps, NodeSummary, Resultant};
+use percute_core::contact_results::{ContactPoint, ContactResults, ContactSteps, NodeSummary, Resultant};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;

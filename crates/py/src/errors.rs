@@ -1,6 +1,6 @@
 //! From errors of Rust to the exceptions of `percute.errors`.
 
-use percute_core::contact::ContactMemoryError;
+use percute_core::contact_results::ContactMemoryError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::{MemoryError, SinkError};
 use percute_core::mesh::MeshError;

@@ -6,7 +6,7 @@ use crate::history::HistoryData;
 use crate::mesh::MeshData;
 use crate::{bridge, errors};
 use numpy::PyReadonlyArray1;
-use percute_core::contact::ContactResults;
+use percute_core::contact_results::ContactResults;
 use percute_io::{Case, Overwrite, estimate_file};
 use percute_presentation::picture::svg;
 use percute_presentation::{About, Body, ColourScale, Contents, Deformed, Document, Surface, file};

@@ -136,7 +136,7 @@ impl ProblemData {
 
     #[getter]
     fn mass<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.view(py, AnyProblem::mass, &[self.problem.mesh().node_count()])
+        self.view(py, |problem| problem.mass(), &[self.problem.mesh().node_count()])
     }
 
     #[getter]

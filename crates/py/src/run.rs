@@ -1,7 +1,7 @@
 //! A history with its problem, in memory or in a file.
 
 use crate::bridge::Watch;
-use percute_core::contact::{ContactRecorder, ContactResults};
+use percute_core::contact_results::{ContactRecorder, ContactResults};
 use percute_core::dynamics::Balance;
 use percute_core::history::{History, SinkError, Step, StepSource};
 use percute_core::problem::AnyProblem;

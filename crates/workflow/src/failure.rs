@@ -2,7 +2,7 @@
 
 use crate::case::{CaseError, NotRepresentable};
 use crate::foreign::Contradiction;
-use percute_core::contact::ContactMemoryError;
+use percute_core::contact_results::ContactMemoryError;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::SinkError;
 use percute_estimator::reference::ReferenceError;

@@ -6,7 +6,7 @@ use crate::foreign::{Derived, Lacks, Origin, REVERSED, runs_backwards};
 use crate::grade::{self, Graded};
 use crate::report::Subject;
 use crate::run::{self, Analysis};
-use percute_core::contact::{ContactRecorder, ContactResults};
+use percute_core::contact_results::{ContactRecorder, ContactResults};
 use percute_core::dynamics::{Balance, critical_time_step};
 use percute_core::observer::Observer;
 use percute_core::problem::AnyProblem;

@@ -1,7 +1,7 @@
 //! How much memory a run will take, before it begins.
 
 use crate::message::bytes;
-use percute_core::contact::{ContactSteps, Resultant};
+use percute_core::contact_results::{ContactSteps, Resultant};
 use percute_core::dynamics::Balance;
 use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::memory::can_be_had;

@@ -5,7 +5,7 @@
 //! messages have the numbers of the problem that was stated. Nothing is copied if its order is local already.
 
 use crate::failure::Failure;
-use percute_core::contact::ContactResults;
+use percute_core::contact_results::ContactResults;
 use percute_core::dynamics::SimulationError;
 use percute_core::history::{Checkpoint, SinkError, Step, StepError, StepSource};
 use percute_core::ids::NodeId;

@@ -14,7 +14,7 @@ use crate::report::Findings;
 use crate::storing::drive;
 pub use crate::storing::{Outcome, Storage};
 use crate::until::{FoundEnd, Stop, Until};
-use percute_core::contact::{ContactMemoryError, ContactRecorder, ContactResults};
+use percute_core::contact_results::{ContactMemoryError, ContactRecorder, ContactResults};
 use percute_core::dynamics::{Balance, Balancing, Simulation, replay, simulate_threaded};
 use percute_core::history::{Discard, SinkError, State, StateSink, Step, StepSource};
 use percute_core::observer::Observer;

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::outputs::{self, OutputFile};
 use crate::report::{ENERGIES, PARTS};
 use percute_core::border::Vector;
-use percute_core::contact::{ContactResults, Resultant};
+use percute_core::contact_results::{ContactResults, Resultant};
 use percute_core::dynamics::Balance;
 use percute_core::ids::ElementId;
 use percute_core::mesh::Mesh;

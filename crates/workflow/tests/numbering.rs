@@ -1,6 +1,7 @@
 //! Runs of a shuffled mesh: the solver has an order of its own, and results and messages have the numbers of the mesh.
 
-use percute_core::contact::{ContactResults, Obstacle};
+use percute_core::contact::Obstacle;
+use percute_core::contact_results::ContactResults;
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::{History, SinkError, Step, StepSource};
 use percute_core::ids::{FaceId, NodeId};

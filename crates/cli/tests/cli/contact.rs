@@ -1,7 +1,8 @@
 //! Contact results in the shell: report, summary, estimate files.
 
 use crate::common::{BAR, BLOCK, Bench, stderr, stdout};
-use percute_core::contact::{ContactResults, Status};
+use percute_core::contact::Status;
+use percute_core::contact_results::ContactResults;
 use percute_io::estimate_file::contact;
 use serde_json::Value;
 

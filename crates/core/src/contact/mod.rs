@@ -14,7 +14,6 @@ mod mortar;
 mod obstacle;
 mod plane;
 mod prediction;
-mod results;
 mod solve;
 mod surface;
 
@@ -28,13 +27,9 @@ pub use inclination::Inclination;
 pub(crate) use interface::RELATIONS;
 pub use interface::{Interface, contact_name, side_names};
 pub use mortar::{CORNER, ContactConfiguration, Coupling, DualShape, NonMatchingSurfaces, Part, Segment, Side};
-pub(crate) use mortar::{NonMatchingContact, tangent};
+pub(crate) use mortar::{LEAST_PART, NonMatchingContact, tangent};
 pub use obstacle::{Obstacle, ObstacleError};
 pub use plane::Plane;
 pub(crate) use prediction::{Predicted, Prediction};
-pub use results::{
-    AveragedPeak, ContactMemoryError, ContactPoint, ContactRecorder, ContactResults, ContactSteps, Nearest,
-    NodeSummary, Resultant, stopping_times,
-};
 pub(crate) use solve::solve;
 pub use surface::{ContactFace, ContactNode, ContactSurface};

@@ -1,29 +1,21 @@
 //! A problem of either dimension, as other crates see it.
 
-use super::statement;
-use super::{BodyLoad, Conditions, FaceLoad, InputError, MovedPlane, Place, PrescribedComponent, Problem, Statement};
+use super::{FaceLoad, InputError, Model, Place, Problem, Statement, statement};
 use crate::border::{Vector, padded, vectors};
 use crate::cell::CellKind;
 use crate::contact::{AnyContactConfiguration, AnyObstacle, ContactFace, ContactNode, Frame, Interface};
-use crate::ids::{ElementId, FaceId, NodeId};
-use crate::load::Table;
-use crate::material::Elastic;
+use crate::ids::{FaceId, NodeId};
 use crate::mesh::{Mesh, Numbering};
-use crate::units::Units;
 use std::any::Any;
+use std::ops::Deref;
 use std::sync::Arc;
 
 /// A checked problem of either dimension, shared. Fields are in rows, as [`border`](crate::border) says.
 #[derive(Clone, Debug)]
-pub struct AnyProblem {
-    mesh: Arc<Mesh>,
-    problem: Typed,
-}
-
-/// Problems with their dimension.
-#[derive(Clone, Debug)]
-enum Typed {
+pub enum AnyProblem {
+    /// Of a bar.
     D1(Arc<Problem<1>>),
+    /// Of a plane body.
     D2(Arc<Problem<2>>),
 }
 
@@ -49,9 +41,9 @@ macro_rules! on_problem {
 
 impl<'p> From<&'p AnyProblem> for ProblemRef<'p> {
     fn from(any: &'p AnyProblem) -> Self {
-        match &any.problem {
-            Typed::D1(problem) => Self::D1(problem),
-            Typed::D2(problem) => Self::D2(problem),
+        match any {
+            AnyProblem::D1(problem) => Self::D1(problem),
+            AnyProblem::D2(problem) => Self::D2(problem),
         }
     }
 }
@@ -75,13 +67,13 @@ impl<'p> ProblemRef<'p> {
 
 impl From<Problem<1>> for AnyProblem {
     fn from(problem: Problem<1>) -> Self {
-        Self { mesh: problem.mesh.clone(), problem: Typed::D1(Arc::new(problem)) }
+        Self::D1(Arc::new(problem))
     }
 }
 
 impl From<Problem<2>> for AnyProblem {
     fn from(problem: Problem<2>) -> Self {
-        Self { mesh: problem.mesh.clone(), problem: Typed::D2(Arc::new(problem)) }
+        Self::D2(Arc::new(problem))
     }
 }
 
@@ -111,11 +103,20 @@ pub struct AnyFaceLoad<'p> {
 
 macro_rules! on {
     ($any:expr, $problem:pat => $body:expr) => {
-        match &$any.problem {
-            Typed::D1($problem) => $body,
-            Typed::D2($problem) => $body,
+        match $any {
+            AnyProblem::D1($problem) => $body,
+            AnyProblem::D2($problem) => $body,
         }
     };
+}
+
+impl Deref for AnyProblem {
+    type Target = Model;
+
+    #[inline]
+    fn deref(&self) -> &Model {
+        on!(self, problem => problem)
+    }
 }
 
 impl AnyProblem {
@@ -130,58 +131,16 @@ impl AnyProblem {
         }
     }
 
-    /// The mesh.
-    #[must_use]
-    pub fn mesh(&self) -> &Arc<Mesh> {
-        &self.mesh
-    }
-
     /// 1 for bars, 2 for plane bodies.
     #[must_use]
     pub fn dimension(&self) -> usize {
-        self.mesh.dimension()
-    }
-
-    /// What was stated, apart from mesh, obstacles and initial fields.
-    #[must_use]
-    pub fn conditions(&self) -> &Conditions {
-        on!(self, problem => problem.conditions())
-    }
-
-    /// The material of an element.
-    #[must_use]
-    pub fn material(&self, element: ElementId) -> &Elastic {
-        on!(self, problem => problem.material(element))
-    }
-
-    /// All materials.
-    #[must_use]
-    pub fn materials(&self) -> &[Elastic] {
-        on!(self, problem => problem.materials())
-    }
-
-    /// Which of [`AnyProblem::materials`] each element has.
-    #[must_use]
-    pub fn element_material(&self) -> &[u16] {
-        on!(self, problem => problem.element_material())
+        self.mesh().dimension()
     }
 
     /// The two obstacles of each interface: [`Problem::sides_of_interfaces`].
     #[must_use]
     pub fn sides_of_interfaces(&self) -> Vec<[usize; 2]> {
         on!(self, problem => problem.sides_of_interfaces().collect())
-    }
-
-    /// Units of forces, energies and masses.
-    #[must_use]
-    pub fn units(&self) -> Units {
-        on!(self, problem => problem.units())
-    }
-
-    /// Lumped mass of each node (kg).
-    #[must_use]
-    pub fn mass(&self) -> &[f64] {
-        on!(self, problem => problem.mass())
     }
 
     /// u₀ at the nodes (m), in rows.
@@ -196,18 +155,6 @@ impl AnyProblem {
         on!(self, problem => problem.initial_velocity().as_flattened())
     }
 
-    /// All prescribed components of nodes, by node.
-    #[must_use]
-    pub fn prescribed(&self) -> &[PrescribedComponent] {
-        on!(self, problem => problem.prescribed())
-    }
-
-    /// Velocity tables of moving supports (m/s).
-    #[must_use]
-    pub fn motions(&self) -> &[Table] {
-        on!(self, problem => problem.motions())
-    }
-
     /// Tractions on faces.
     #[must_use]
     pub fn face_loads(&self) -> Vec<AnyFaceLoad<'_>> {
@@ -215,18 +162,6 @@ impl AnyProblem {
             AnyFaceLoad { face: load.face, profile: &load.profile, table: load.table }
         }
         on!(self, problem => problem.face_loads().iter().map(of).collect())
-    }
-
-    /// Tables of the tractions (Pa).
-    #[must_use]
-    pub fn traction_tables(&self) -> &[Table] {
-        on!(self, problem => problem.traction_tables())
-    }
-
-    /// Body forces.
-    #[must_use]
-    pub fn body_loads(&self) -> &[BodyLoad] {
-        on!(self, problem => problem.body_loads())
     }
 
     /// Forces of the tractions and body forces at an instant (N), in rows.
@@ -375,9 +310,9 @@ impl AnyProblem {
     /// What the nodes of the contact surface face with these displacements (m), in rows.
     #[must_use]
     pub fn configuration(&self, displacement: &[f64]) -> AnyContactConfiguration<'_> {
-        match &self.problem {
-            Typed::D1(problem) => AnyContactConfiguration::D1(problem.surface().configuration(vectors(displacement))),
-            Typed::D2(problem) => AnyContactConfiguration::D2(problem.surface().configuration(vectors(displacement))),
+        match self {
+            Self::D1(problem) => AnyContactConfiguration::D1(problem.surface().configuration(vectors(displacement))),
+            Self::D2(problem) => AnyContactConfiguration::D2(problem.surface().configuration(vectors(displacement))),
         }
     }
 
@@ -399,18 +334,6 @@ impl AnyProblem {
         on!(self, problem => problem.initial_gap(obstacle))
     }
 
-    /// Volume of an element with section or thickness (m³).
-    #[must_use]
-    pub fn volume(&self, element: ElementId) -> f64 {
-        on!(self, problem => problem.volume(element))
-    }
-
-    /// Area of a boundary face with section or thickness (m²).
-    #[must_use]
-    pub fn face_area(&self, face: FaceId) -> f64 {
-        on!(self, problem => problem.face_area(face))
-    }
-
     /// Which components of a face are supported.
     #[must_use]
     pub fn supported(&self, face: FaceId) -> &[bool] {
@@ -423,22 +346,10 @@ impl AnyProblem {
         on!(self, problem => problem.on_lines_of_symmetry())
     }
 
-    /// Distances below this count as touching (m).
-    #[must_use]
-    pub fn contact_tolerance(&self) -> f64 {
-        on!(self, problem => problem.contact_tolerance())
-    }
-
     /// Normal speeds below this count as zero at the start (m/s).
     #[must_use]
     pub fn speed_tolerance(&self) -> f64 {
         on!(self, problem => problem.speed_tolerance())
-    }
-
-    /// How far loads and motions are from their tables: [`Problem::resampling_error`].
-    #[must_use]
-    pub fn resampling_error(&self, instants: &[f64]) -> f64 {
-        on!(self, problem => problem.resampling_error(instants))
     }
 
     /// Refuses a body that starts on a plane and moves into it.
@@ -453,12 +364,6 @@ impl AnyProblem {
     #[must_use]
     pub fn with_planes_moved(&self, step: f64) -> Option<Self> {
         on!(self, problem => problem.with_planes_moved(step).map(Self::from))
-    }
-
-    /// The planes that [`AnyProblem::with_planes_moved`] has moved.
-    #[must_use]
-    pub fn moved_planes(&self) -> &[MovedPlane] {
-        on!(self, problem => problem.moved_planes())
     }
 
     /// The problem under other numbers of nodes and elements: [`Problem::renumbered`].

@@ -5,7 +5,7 @@ use super::boundary::{self, Supports};
 use super::contacts::Stated;
 use super::may_touch::{AllContact, all_contact};
 use super::sides::Bodies;
-use super::{Cause, InputError, Problem, sides, start_of_contact, symmetry};
+use super::{Cause, InputError, Model, Problem, sides, start_of_contact, symmetry};
 use crate::contact::{Interface, Obstacle};
 use crate::ids::{ElementId, FaceId};
 use crate::load::{BodyForce, Support, Table, Traction};
@@ -217,26 +217,22 @@ impl<const D: usize> Builder<D> {
         self.stated.interfaces = interfaces;
         sides::check_touching(&surface, mesh).map_err(|cause| cause.at("contact", None, ""))?;
 
-        let mut problem = Problem {
+        let model = Model {
             materials,
             element_material,
             mass,
-            initial_displacement,
-            initial_velocity,
-            supported,
             prescribed,
             motions,
-            face_loads,
             traction_tables: self.stated.tractions.iter().map(|t| t.value.clone()).collect(),
             body_loads,
             element_body_loads,
-            surface,
             contacts: places,
             moved_planes: Vec::new(),
             critical_step: OnceLock::new(),
             stated: self.stated,
             mesh: with_groups(self.mesh, groups),
         };
+        let mut problem = Problem { model, initial_displacement, initial_velocity, supported, face_loads, surface };
         start_with_supports(&mut problem)?;
         start_of_contact::check(&problem, self.planes_to_be_moved)?;
         Ok(problem)

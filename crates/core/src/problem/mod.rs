@@ -13,6 +13,7 @@ mod facing_edges;
 mod gaps;
 mod joined;
 mod may_touch;
+mod model;
 mod moved_planes;
 mod non_matching;
 mod pairs;
@@ -29,6 +30,7 @@ pub use any::{AnyContactFace, AnyFaceLoad, AnyProblem, ProblemRef};
 pub use bodies::{Between, Contact};
 pub use builder::{Builder, Conditions, Initial};
 pub use error::{Cause, GroupOf, HeldBy, InputError, Place};
+pub use model::Model;
 pub use moved_planes::MovedPlane;
 pub use plausibility::{
     PlausibilityWarning, RefusedStart, SMALL_ROTATION, cause_of_refused_start, plausibility_warnings,
@@ -37,12 +39,11 @@ pub use rigid_motion::RigidMotion;
 pub use statement::Statement;
 
 use crate::contact::{ContactConfiguration, ContactSurface, Interface, Obstacle};
-use crate::ids::{ElementId, FaceId, NodeId};
+use crate::ids::{FaceId, NodeId};
 use crate::load::Table;
-use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
-use crate::units::Units;
-use std::sync::{Arc, OnceLock};
+use std::ops::Deref;
+use std::sync::Arc;
 
 /// One component of a node's motion that is prescribed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,26 +79,21 @@ pub struct BodyLoad {
 /// An elastic body that may strike rigid obstacles, with its supports and loads, checked.
 #[derive(Clone, Debug)]
 pub struct Problem<const D: usize> {
-    mesh: Arc<Mesh>,
-    stated: Conditions,
-    materials: Vec<Elastic>,
-    element_material: Vec<u16>,
-    mass: Vec<f64>,
+    model: Model,
     initial_displacement: Vec<[f64; D]>,
     initial_velocity: Vec<[f64; D]>,
     supported: Vec<[bool; D]>,
-    prescribed: Vec<PrescribedComponent>,
-    motions: Vec<Table>,
     face_loads: Vec<FaceLoad<D>>,
-    traction_tables: Vec<Table>,
-    body_loads: Vec<BodyLoad>,
-    element_body_loads: Vec<Vec<u16>>,
     surface: ContactSurface<D>,
-    /// Where each of the interfaces is stated.
-    contacts: Vec<Place>,
-    moved_planes: Vec<MovedPlane>,
-    /// Δt_c (s), once it is known.
-    critical_step: OnceLock<f64>,
+}
+
+impl<const D: usize> Deref for Problem<D> {
+    type Target = Model;
+
+    #[inline]
+    fn deref(&self) -> &Model {
+        &self.model
+    }
 }
 
 impl<const D: usize> Problem<D> {
@@ -107,52 +103,9 @@ impl<const D: usize> Problem<D> {
         Builder::new(mesh.into())
     }
 
-    /// The mesh.
-    #[must_use]
-    pub fn mesh(&self) -> &Mesh {
-        &self.mesh
-    }
-
-    /// What was stated, to be written down; mesh, obstacles and initial fields are beside it.
-    #[must_use]
-    pub fn conditions(&self) -> &Conditions {
-        &self.stated
-    }
-
-    /// The material of an element.
-    #[inline]
-    #[must_use]
-    pub fn material(&self, element: ElementId) -> &Elastic {
-        &self.materials[usize::from(self.element_material[element.index()])]
-    }
-
-    /// All materials.
-    #[must_use]
-    pub fn materials(&self) -> &[Elastic] {
-        &self.materials
-    }
-
     /// The two obstacles of each interface, in the order of the interfaces: those that are no planes, two by two.
     pub fn sides_of_interfaces(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
         (self.planes()..self.obstacles().len()).step_by(2).map(|side| [side, side + 1])
-    }
-
-    /// Units of forces, energies and masses: per metre of thickness where that is 1 m, as it is unless it is given.
-    #[must_use]
-    pub fn units(&self) -> Units {
-        Units { per_metre: D == 2 && self.materials.iter().all(|law| law.extent() == 1.0) }
-    }
-
-    /// Which of [`Problem::materials`] each element has.
-    #[must_use]
-    pub fn element_material(&self) -> &[u16] {
-        &self.element_material
-    }
-
-    /// Lumped mass of each node (kg), eq. \[35\]: each element gives ρ|E|/(D+1) to each of its nodes.
-    #[must_use]
-    pub fn mass(&self) -> &[f64] {
-        &self.mass
     }
 
     /// u₀ at the nodes (m), eq. \[6\].
@@ -174,40 +127,10 @@ impl<const D: usize> Problem<D> {
         self.supported[face.index()]
     }
 
-    /// All prescribed components of nodes, eq. \[4\], by node.
-    #[must_use]
-    pub fn prescribed(&self) -> &[PrescribedComponent] {
-        &self.prescribed
-    }
-
-    /// Velocity tables of moving supports (m/s).
-    #[must_use]
-    pub fn motions(&self) -> &[Table] {
-        &self.motions
-    }
-
-    /// Velocity of a prescribed component at an instant (m/s).
-    #[must_use]
-    pub fn prescribed_velocity(&self, which: &PrescribedComponent, t: f64) -> f64 {
-        which.motion.map_or(0.0, |m| self.motions[m].at(t)[0])
-    }
-
     /// Tractions on faces.
     #[must_use]
     pub fn face_loads(&self) -> &[FaceLoad<D>] {
         &self.face_loads
-    }
-
-    /// Tables of the tractions (Pa).
-    #[must_use]
-    pub fn traction_tables(&self) -> &[Table] {
-        &self.traction_tables
-    }
-
-    /// Body forces.
-    #[must_use]
-    pub fn body_loads(&self) -> &[BodyLoad] {
-        &self.body_loads
     }
 
     /// Force per volume on each element at an instant (N/m³); empty if there is none anywhere.
@@ -361,31 +284,6 @@ impl<const D: usize> Problem<D> {
         self.nearest(obstacle).map_or(f64::INFINITY, |(_, gap)| gap)
     }
 
-    /// Δt_c (s), made at first use.
-    pub(crate) fn critical_step(&self, make: impl FnOnce() -> f64) -> f64 {
-        *self.critical_step.get_or_init(make)
-    }
-
-    /// Volume of an element with section or thickness (m³).
-    #[must_use]
-    pub fn volume(&self, element: ElementId) -> f64 {
-        self.mesh.volume(element) * self.material(element).extent()
-    }
-
-    /// Area of a boundary face with section or thickness (m²).
-    #[must_use]
-    pub fn face_area(&self, face: FaceId) -> f64 {
-        let owner = self.mesh.face(face).owner;
-        self.mesh.normal_in::<D>(face).1 * self.material(owner).extent()
-    }
-
-    /// Distances below this count as touching (m): 1e-12 of the body's size, so that landing
-    /// exactly on an obstacle does not depend on rounding.
-    #[must_use]
-    pub fn contact_tolerance(&self) -> f64 {
-        1e-12 * self.mesh.size()
-    }
-
     /// Normal speeds below this count as zero at the start (m/s): 1e-12 of the largest speed, so that
     /// sliding along a tilted plane does not depend on rounding.
     #[must_use]
@@ -413,15 +311,5 @@ impl<const D: usize> Problem<D> {
     pub fn face_traction_at(&self, load: &FaceLoad<D>, t: f64) -> [[f64; D]; D] {
         let value = self.traction_tables[load.table].at(t);
         load.profile.map(|factor| std::array::from_fn(|c| factor * value[c]))
-    }
-
-    /// How far the loads and motions that are solved, with their values at the instants joined by
-    /// straight lines, are from the tables: the largest relative difference.
-    #[must_use]
-    pub fn resampling_error(&self, instants: &[f64]) -> f64 {
-        let motions = self.motions.iter().map(|t| t.resampling_error(instants));
-        let tractions = self.traction_tables.iter().map(|t| t.resampling_error(instants));
-        let forces = self.body_loads.iter().map(|l| l.value.resampling_error(instants));
-        motions.chain(tractions).chain(forces).fold(0.0, f64::max)
     }
 }

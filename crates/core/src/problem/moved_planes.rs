@@ -53,14 +53,8 @@ impl<const D: usize> Problem<D> {
                 speed = speed.max(-normal);
             }
             problem.surface.move_back(plane, distance);
-            problem.moved_planes.push(MovedPlane { plane, distance, speed, step });
+            problem.model.moved_planes.push(MovedPlane { plane, distance, speed, step });
         }
         Some(problem)
-    }
-
-    /// The planes that [`Problem::with_planes_moved`] has moved.
-    #[must_use]
-    pub fn moved_planes(&self) -> &[MovedPlane] {
-        &self.moved_planes
     }
 }

@@ -1,6 +1,6 @@
 //! The same problem under other numbers of nodes and elements.
 
-use super::{BodyLoad, FaceLoad, PrescribedComponent, Problem};
+use super::{BodyLoad, FaceLoad, Model, PrescribedComponent, Problem};
 use crate::mesh::Numbering;
 
 impl<const D: usize> Problem<D> {
@@ -29,25 +29,28 @@ impl<const D: usize> Problem<D> {
             BodyLoad { value: load.value.clone(), nodal_volume }
         };
         let body_forces = |_: &Vec<u16>| elements.iter().map(|e| self.element_body_loads[e.index()].clone()).collect();
-        Self {
+        let model = Model {
             stated: self.stated.clone(),
             materials: self.materials.clone(),
             element_material: elements.iter().map(|e| self.element_material[e.index()]).collect(),
             mass: nodes.iter().map(|node| self.mass[node.index()]).collect(),
-            initial_displacement: nodal(&self.initial_displacement),
-            initial_velocity: nodal(&self.initial_velocity),
-            supported,
             prescribed,
             motions: self.motions.clone(),
-            face_loads,
             traction_tables: self.traction_tables.clone(),
             body_loads: self.body_loads.iter().map(body_load).collect(),
             element_body_loads: self.element_body_loads.first().map_or_else(Vec::new, body_forces),
             contacts: self.contacts.clone(),
             moved_planes: self.moved_planes.clone(),
             critical_step: self.critical_step.clone(),
-            surface: self.surface.renumbered(&self.mesh, &new),
             mesh: mesh.into(),
+        };
+        Self {
+            model,
+            initial_displacement: nodal(&self.initial_displacement),
+            initial_velocity: nodal(&self.initial_velocity),
+            supported,
+            face_loads,
+            surface: self.surface.renumbered(&self.mesh, &new),
         }
     }
 }

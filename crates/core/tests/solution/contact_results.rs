@@ -3,7 +3,8 @@
 use crate::solution::run::{Run, aluminium, fixed, run, swinging_steps};
 use percute_core::border::vectors;
 use percute_core::contact::Obstacle;
-use percute_core::contact::{ContactRecorder, ContactResults, ContactSteps, Status};
+use percute_core::contact::Status;
+use percute_core::contact_results::{ContactRecorder, ContactResults, ContactSteps};
 use percute_core::dynamics::critical_time_step;
 use percute_core::history::StepSource;
 use percute_core::material::Elastic;

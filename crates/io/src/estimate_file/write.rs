@@ -10,7 +10,7 @@ use crate::mesh::{bytes_of_bodies, in_space, write_bodies, write_grid, write_gro
 use crate::steps::{give_steps, note_steps, write_steps};
 use crate::write::{Case, Texts, attribute, group, numbers, ours, statement, unit};
 use hdf5::Group;
-use percute_core::contact::{ContactResults, ContactSteps};
+use percute_core::contact_results::{ContactResults, ContactSteps};
 use percute_core::problem::AnyProblem;
 use percute_estimator::{AdmissibleFields, ElementMap, Estimate, Sample};
 use std::path::Path;

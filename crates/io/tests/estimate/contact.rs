@@ -3,7 +3,8 @@
 use crate::estimate::{block, estimated, stored, with_contact, written};
 use percute_core::border::vectors;
 use percute_core::contact::Obstacle;
-use percute_core::contact::{ContactRecorder, ContactResults, Status};
+use percute_core::contact::Status;
+use percute_core::contact_results::{ContactRecorder, ContactResults};
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::history::{History, StepSource};
 use percute_core::material::Elastic;

@@ -1,7 +1,7 @@
 //! Estimate files: what was estimated is in them, bit by bit.
 
-use percute_core::contact::ContactResults;
 use percute_core::contact::Obstacle;
+use percute_core::contact_results::ContactResults;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;

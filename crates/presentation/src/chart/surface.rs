@@ -2,7 +2,7 @@
 
 use crate::document::Document;
 use percute_core::border::{Vector, row};
-use percute_core::contact::{ContactPoint, ContactResults};
+use percute_core::contact_results::{ContactPoint, ContactResults};
 
 /// Most instants of a picture; of more, each piece gives its largest pressure.
 const INSTANTS: usize = 600;

@@ -2,7 +2,7 @@
 
 use super::{Branch, MOST};
 use crate::message::whole_percent;
-use percute_core::contact::ContactResults;
+use percute_core::contact_results::ContactResults;
 use percute_core::ids::NodeId;
 use percute_core::mesh::Mesh;
 use percute_estimator::{Estimate, Separation};

@@ -1,7 +1,7 @@
 //! What contact did, for the report: resultants at every step, and what each node went through, but not all nodes at
 //! all steps, which may be millions.
 
-use percute_core::contact::{AveragedPeak, ContactResults, Nearest, NodeSummary, Resultant};
+use percute_core::contact_results::{AveragedPeak, ContactResults, Nearest, NodeSummary, Resultant};
 use serde::Serialize;
 
 /// The gap that is left where nothing has touched.

@@ -3,7 +3,8 @@
 use super::rebound::time_of_phases;
 use crate::deformation::Deformation;
 use percute_core::border::Vector;
-use percute_core::contact::{ContactResults, Frame};
+use percute_core::contact::Frame;
+use percute_core::contact_results::ContactResults;
 use percute_core::problem::AnyProblem;
 use serde::Serialize;
 use std::collections::BTreeSet;

@@ -44,7 +44,7 @@ pub use warnings::{Warning, left_out};
 use crate::deformation::Deformation;
 use crate::foreign::{Checked, Consistency, Derived, Samples};
 use crate::outline::Outline;
-use percute_core::contact::ContactResults;
+use percute_core::contact_results::ContactResults;
 use percute_core::dynamics::{Balance, Simulation};
 use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;

@@ -1,7 +1,8 @@
 //! Contact of a curve that is narrower than the elements there.
 
 use super::touches::Surface;
-use percute_core::contact::{CORNER, ContactResults};
+use percute_core::contact::CORNER;
+use percute_core::contact_results::ContactResults;
 use percute_core::material::{Elastic, Hypothesis, Law};
 use percute_core::problem::AnyProblem;
 use std::f64::consts::PI;
@@ -62,7 +63,8 @@ fn plane_compliance(law: &Elastic) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percute_core::contact::{ContactRecorder, Obstacle};
+    use percute_core::contact::Obstacle;
+    use percute_core::contact_results::ContactRecorder;
     use percute_core::dynamics::{critical_time_step, simulate};
     use percute_core::history::History;
     use percute_core::mesh::Mesh;

@@ -1,6 +1,7 @@
 //! Contact and estimate at non-matching interfaces.
 
-use percute_core::contact::{ContactResults, Frame, Interface, Resultant};
+use percute_core::contact::{Frame, Interface};
+use percute_core::contact_results::{ContactResults, Resultant};
 use percute_core::problem::AnyProblem;
 use percute_core::ratio;
 use percute_estimator::SurfaceEstimate;

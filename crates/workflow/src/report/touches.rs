@@ -1,6 +1,7 @@
 //! How a body touches its planes, from the outline of the mesh and from the contact results.
 
-use percute_core::contact::{CORNER, ContactResults};
+use percute_core::contact::CORNER;
+use percute_core::contact_results::ContactResults;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::material::Elastic;
 use percute_core::problem::AnyProblem;

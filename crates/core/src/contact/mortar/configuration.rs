@@ -142,7 +142,7 @@ impl<'a, const D: usize> ContactConfiguration<'a, D> {
     }
 
     /// How far the parts of the slave of a non-matching interface are along the tangent against its master (m).
-    pub(in crate::contact) fn shifts(&self, non_matching: usize) -> &[f64] {
+    pub(crate) fn shifts(&self, non_matching: usize) -> &[f64] {
         self.couplings[non_matching].shifts()
     }
 

@@ -11,7 +11,7 @@ use super::side::{Part, Side};
 /// A multiplier with a smaller part of the largest weight does not act.
 const LEAST_WEIGHT: f64 = 1e-9;
 /// A force smaller than this part of the one that causes it is rounding, or that of a surface that ends there.
-pub(in crate::contact) const LEAST_PART: f64 = 1e-9;
+pub(crate) const LEAST_PART: f64 = 1e-9;
 
 /// D = ∫ψφ, M = ∫ψN and the weights w = ∫ψ of the multipliers (m), on the partition at an instant. The multipliers are
 /// those of the nodes of the slave; N are the hats of the master.

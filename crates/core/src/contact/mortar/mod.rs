@@ -40,7 +40,7 @@ mod tests;
 
 pub use configuration::ContactConfiguration;
 pub use coupling::Coupling;
-pub(super) use coupling::LEAST_PART;
+pub(crate) use coupling::LEAST_PART;
 pub use dual::DualShape;
 pub use partition::Segment;
 pub use side::{CORNER, Part, Side};

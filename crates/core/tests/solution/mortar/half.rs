@@ -2,7 +2,8 @@
 
 use super::setup::steps;
 use crate::solution::run::{aluminium, largest, run};
-use percute_core::contact::{ContactRecorder, Interface, Status};
+use percute_core::contact::{Interface, Status};
+use percute_core::contact_results::ContactRecorder;
 use percute_core::dynamics::{missed_contact, simulate};
 use percute_core::ids::NodeId;
 use percute_core::load::{Profile, Support, Table, Traction};

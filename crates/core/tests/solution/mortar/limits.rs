@@ -2,7 +2,8 @@
 
 use super::setup::{Blocks, GAP, HEIGHT, steps};
 use crate::solution::run::{aluminium, difference, largest, run};
-use percute_core::contact::{ContactRecorder, Interface, Obstacle};
+use percute_core::contact::{Interface, Obstacle};
+use percute_core::contact_results::ContactRecorder;
 use percute_core::history::StepSource;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;

@@ -3,7 +3,7 @@
 use super::setup::steps;
 use crate::solution::run::{aluminium, run};
 use percute_core::border::{cut, vectors};
-use percute_core::contact::ContactRecorder;
+use percute_core::contact_results::ContactRecorder;
 use percute_core::history::StepSource;
 use percute_core::mesh::Mesh;
 use percute_core::problem::{Between, Contact, Initial, Problem};

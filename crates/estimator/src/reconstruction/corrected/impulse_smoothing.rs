@@ -7,7 +7,7 @@
 //! that follows. Of two nodes that touch, the mass is 1/(1/m + 1/m'), and 1/(ρc) the sum of both. Steps as long as τ
 //! change nothing; on a uniform bar these are steps from half the critical one on.
 
-use percute_core::contact::stopping_times;
+use percute_core::contact_results::stopping_times;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::collections::VecDeque;

@@ -4,7 +4,7 @@ use crate::error::FileCause;
 use crate::write::{numbers, unit};
 use hdf5::Group;
 use percute_core::border::row;
-use percute_core::contact::{ContactResults, ContactSteps};
+use percute_core::contact_results::{ContactResults, ContactSteps};
 use percute_core::units::Units;
 
 /// Contact status of a node that is not on the contact surface.

@@ -11,7 +11,7 @@ use crate::error::FileCause;
 use crate::write::{group, numbers, unit};
 use hdf5::Group;
 use percute_core::border::Vector;
-use percute_core::contact::{AveragedPeak, ContactResults, ContactSteps, Resultant};
+use percute_core::contact_results::{AveragedPeak, ContactResults, ContactSteps, Resultant};
 use percute_core::units::Units;
 
 /// Size of the results in a file (bytes), at `instants` of maps over `nodes` nodes.

@@ -5,8 +5,9 @@ use crate::estimate_file::maps::size;
 use crate::kind::Kind;
 use crate::read::{Part, reading};
 use percute_core::border::{Vector, row};
-use percute_core::contact::{
-    AveragedPeak, ContactPoint, ContactResults, ContactSteps, Nearest, NodeSummary, Resultant, Status,
+use percute_core::contact::Status;
+use percute_core::contact_results::{
+    AveragedPeak, ContactPoint, ContactResults, ContactSteps, Nearest, NodeSummary, Resultant,
 };
 use percute_core::ids::NodeId;
 use std::path::Path;

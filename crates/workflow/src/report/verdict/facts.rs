@@ -12,7 +12,7 @@ use crate::report::rebound::Rebound;
 use crate::report::symptoms::auxiliary_contact_energy;
 use crate::report::touches::{FirstContact, first_contacts};
 use percute_core::border::Vector;
-use percute_core::contact::{ContactResults, Nearest};
+use percute_core::contact_results::{ContactResults, Nearest};
 use percute_core::material::Law;
 use percute_core::mesh::Mesh;
 use percute_core::problem::AnyProblem;

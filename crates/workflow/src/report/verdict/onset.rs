@@ -2,7 +2,7 @@
 
 use crate::report::rebound::{Rebound, strongest};
 use percute_core::border::Vector;
-use percute_core::contact::ContactResults;
+use percute_core::contact_results::ContactResults;
 use percute_core::dynamics::time_step_of_element;
 use percute_core::element_state::ElementState;
 use percute_core::ids::ElementId;

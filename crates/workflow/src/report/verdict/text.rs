@@ -10,7 +10,7 @@ use crate::report::flat;
 use crate::report::poor::PoorElement;
 use crate::report::symptoms::{AUXILIARY_CONTACT_ENERGY, CONTACT_ENERGY, DRIFT, IMPULSE_RATIO};
 use crate::report::touches::Touches;
-use percute_core::contact::Nearest;
+use percute_core::contact_results::Nearest;
 
 /// A mean error above this has as much energy as the deformation and the vibration together.
 const AS_VIBRATION: f64 = 1.0;

@@ -2,7 +2,7 @@
 //! very different impedance beside each other, and nearly incompressible ones.
 
 use crate::report::poor::{LONG, aspect};
-use percute_core::contact::ContactResults;
+use percute_core::contact_results::ContactResults;
 use percute_core::dynamics::time_step_of_element;
 use percute_core::ids::{ElementId, FaceId};
 use percute_core::material::{Elastic, Hypothesis, Law};

@@ -1,7 +1,7 @@
 //! Summary of one node.
 
 use crate::border::Vector;
-use crate::contact::coulomb::Status;
+use crate::contact::Status;
 
 /// The contact of one node up to the last instant.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -17,8 +17,8 @@ pub use recorder::{ContactMemoryError, ContactRecorder};
 pub use resultant::Resultant;
 pub use summary::NodeSummary;
 
-use super::coulomb::Status;
 use crate::border::Vector;
+use crate::contact::Status;
 use crate::ids::NodeId;
 
 /// Contact results of a run or a history, up to its last step.

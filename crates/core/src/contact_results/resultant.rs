@@ -1,7 +1,7 @@
 //! Sums over the nodes of one obstacle, or of all.
 
 use crate::border::Vector;
-use crate::contact::coulomb::Status;
+use crate::contact::Status;
 
 /// Sums over the nodes of one obstacle, or of all, at t_n.
 #[derive(Clone, Copy, Debug, PartialEq)]
