@@ -1,9 +1,9 @@
 //! The data of an element, computed once.
 
-use crate::lanes::Value;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::material::Law;
 use percute_core::problem::Problem;
+use percute_core::simd::lanes::Value;
 
 /// Geometry and mass of one element.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,8 @@
 //! Nodal fields at several time levels side by side, gathered for the nodes of a block.
 
-use crate::lanes::{LANES, Lanes, Value, load};
-use crate::wide::Wide;
 use percute_core::simd::Registers;
+use percute_core::simd::Wide;
+use percute_core::simd::lanes::{LANES, Lanes, Value, load};
 
 /// Takes the values of a nodal field at these nodes into their records, at each level that has the field; at the
 /// others, any values.

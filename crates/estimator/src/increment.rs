@@ -1,9 +1,9 @@
 //! ∫₀ᵗ dt of ã, or of a_c and o₂, of which u̇_DA is made \[13\].
 
-use crate::lanes::Value;
 use crate::nodal_field::{FieldPool, NodalField};
 use crate::parallel::by_pieces;
 use percute_core::ids::NodeId;
+use percute_core::simd::lanes::Value;
 
 /// The integral in the middle of a step of this length (s), from that at its end and the field at its start and its end
 /// (m/s²).

@@ -1,7 +1,7 @@
 //! Γ_DA on an element, from ã at its nodes (§6.2.2).
 
-use crate::lanes::Value;
 use crate::options::Acceleration;
+use percute_core::simd::lanes::Value;
 
 /// The linear map, constant in time, from nodal ã to the nodal values of Γ_DA/ρ.
 ///

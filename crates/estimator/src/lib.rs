@@ -23,7 +23,6 @@ mod field_lanes;
 mod increment;
 mod inertia;
 mod kinematic;
-mod lanes;
 mod loaded;
 mod map;
 mod measure;
@@ -46,7 +45,6 @@ mod sources;
 mod stress;
 mod time_level;
 mod traction;
-mod wide;
 
 pub use error::{EstimateError, RunError};
 pub use estimate::{ErrorMeasures, Estimate, Parts, Sample, Supplied, SurfaceEstimate};

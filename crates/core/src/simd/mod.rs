@@ -9,8 +9,12 @@
 //! makes short vectors with many permutations, three times as many instructions. Such loops are a
 //! [`Task`] over [`Registers`].
 
+pub mod lanes;
+mod wide;
 #[cfg(target_arch = "x86_64")]
 mod x86;
+
+pub use wide::Wide;
 
 use pulp::{Arch, NullaryFnOnce};
 

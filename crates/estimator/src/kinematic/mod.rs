@@ -27,13 +27,13 @@ pub(crate) use non_matching::NonMatchingInstant;
 pub(crate) use normal_motions::NormalMotions;
 
 use crate::field_lanes::gather;
-use crate::lanes::{Lanes, Value, load, store};
 use crate::numbers::Reader;
-use crate::wide::Wide;
 use percute_core::contact::Frame;
 use percute_core::ids::NodeId;
 use percute_core::problem::Problem;
 use percute_core::simd::Registers;
+use percute_core::simd::Wide;
+use percute_core::simd::lanes::{Lanes, Value, load, store};
 
 /// u_CA and u̇_CA at the nodes of one element at one half-step instant.
 #[derive(Clone, Copy, Debug)]

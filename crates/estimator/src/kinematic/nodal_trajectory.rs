@@ -1,11 +1,11 @@
 //! Nodal motion between contacts: velocity continuous and linear between the half-step instants,
 //! displacement its exact integral.
 
-use crate::lanes::Value;
 use crate::nodal_field::{FieldPool, NodalField};
 use crate::parallel::by_pieces;
 use percute_core::history::State;
 use percute_core::problem::Problem;
+use percute_core::simd::lanes::Value;
 use percute_core::time::TimeGrid;
 use std::sync::Arc;
 

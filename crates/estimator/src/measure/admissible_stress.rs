@@ -1,7 +1,7 @@
 //! σ_DA of an element by its mean and the rest.
 
-use crate::lanes::Value;
 use crate::stress::Fluctuation;
+use percute_core::simd::lanes::Value;
 
 /// σ_DA of an element at one sample, as its mean (Pa) and the rest.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! The dynamically admissible fields of an element.
 
-use crate::lanes::Value;
 use crate::stress::{Loading, face_node};
+use percute_core::simd::lanes::Value;
 
 /// The fields of an element that tractions and Γ_DA are made of.
 #[derive(Clone, Copy, Debug)]

@@ -3,12 +3,12 @@
 use super::balanced::{NodalBalance, outward};
 use crate::element::Element;
 use crate::field_lanes::gather;
-use crate::lanes::{Lanes, Value, load};
 use crate::traction::EquilibratedLevels;
-use crate::wide::Wide;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
 use percute_core::simd::Registers;
+use percute_core::simd::Wide;
+use percute_core::simd::lanes::{Lanes, Value, load};
 
 /// A node of a block of elements, with the fields of which tractions and Γ_DA are made at some levels.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! The part of an element in η.
 
 use crate::contact_density::ResidualStress;
-use crate::lanes::{LANES, Lanes, Value};
+use percute_core::simd::lanes::{LANES, Lanes, Value};
 
 /// The part of one element in η and d at one sample (J), contact apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

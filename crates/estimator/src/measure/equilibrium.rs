@@ -1,9 +1,9 @@
 //! Residuals of the equilibrium of an element.
 
 use super::{Balanced, ElementMeasure};
-use crate::lanes::Value;
 use crate::residual::{Residuals, worse};
 use percute_core::material::Law;
+use percute_core::simd::lanes::Value;
 
 impl<const D: usize, const N: usize> ElementMeasure<'_, D, N> {
     /// Residuals of the pointwise equilibrium of σ_DA; `scale` is the largest nodal force in the

@@ -10,7 +10,6 @@ use crate::concentrated::HatStress;
 use crate::element::Element;
 use crate::inertia::{Inertia, arms, mass_product};
 use crate::kinematic::ElementMotion;
-use crate::lanes::Value;
 use crate::options::Acceleration;
 use crate::stress::{FluctuationForm, LOADS, Loading, StressMap, face_node, hooke};
 use crate::time_level::{Side, Velocities};
@@ -24,6 +23,7 @@ use percute_core::cell::cell;
 use percute_core::ids::ElementId;
 use percute_core::material::{Elastic, Law, LinearLaw};
 use percute_core::problem::Problem;
+use percute_core::simd::lanes::Value;
 
 /// Elastic energy (J per unit of section or thickness) of the stress of hats beside that of the stress that balances a
 /// loading. Young's inequality bounds the products of several nodes.

@@ -12,11 +12,11 @@ use super::sampled_levels::SampledLevels;
 use super::sampling::{ElementSample, SharedData};
 use super::waiting;
 use crate::kinematic::ContactMotions;
-use crate::lanes::LANES;
 use crate::numbers::Reader;
 use crate::scratch_file::{ScratchError, ScratchFile};
 use crate::stress::ElementForm;
 use percute_core::problem::Problem;
+use percute_core::simd::lanes::LANES;
 use rayon::prelude::*;
 use std::ops::Range;
 

@@ -4,11 +4,11 @@ use super::Smoothing;
 use crate::blocks::{BLOCK, ElementBlocks};
 use crate::element::Element;
 use crate::field_lanes::FieldLanes;
-use crate::lanes::{Lanes, Value};
 use crate::pool::Pool;
-use crate::wide::Wide;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::problem::Problem;
+use percute_core::simd::Wide;
+use percute_core::simd::lanes::{Lanes, Value};
 use percute_core::simd::{Registers, Task, run_task};
 use rayon::prelude::*;
 

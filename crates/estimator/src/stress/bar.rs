@@ -1,9 +1,9 @@
 //! The stress of a bar element: the quadratic that its loading determines.
 
 use super::{Fluctuation, Loading, StressResiduals};
-use crate::lanes::Value;
 use crate::residual::worse;
 use percute_core::material::LinearLaw;
+use percute_core::simd::lanes::Value;
 
 /// A bar element of given length.
 #[derive(Clone, Copy, Debug)]

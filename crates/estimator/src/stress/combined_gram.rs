@@ -1,7 +1,7 @@
 //! Products of combinations of the stresses of the reference triangle.
 
 use super::reference::{ALL, PAIRS, Reference};
-use crate::lanes::Lanes;
+use percute_core::simd::lanes::Lanes;
 
 /// For each pair of components, ∫ of products of some combinations of the basis over the reference triangle, on and
 /// below the diagonal.

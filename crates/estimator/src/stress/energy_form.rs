@@ -18,7 +18,6 @@ use super::fluctuation::{MODES, START, gram};
 use super::reference::PAIRS;
 use super::triangle::reference_compliance;
 use super::{Fluctuation, Loading};
-use crate::lanes::{LANES, Lanes, Value};
 pub(crate) use element_form::ElementForm;
 use nalgebra::Matrix2;
 use percute_core::cell::{CellKind, cell};
@@ -26,6 +25,7 @@ use percute_core::ids::ElementId;
 use percute_core::material::LinearLaw;
 use percute_core::problem::Problem;
 use percute_core::simd::dispatch;
+use percute_core::simd::lanes::{LANES, Lanes, Value};
 
 /// Numbers that make up a fluctuation of a triangle: two for each edge, then two for each node.
 const LOADS: usize = 12;

@@ -2,7 +2,7 @@
 
 use super::combined_gram::{CombinedGram, unit};
 use super::reference::{ALL, FREE, LOADS};
-use crate::lanes::Value;
+use percute_core::simd::lanes::Value;
 use std::sync::OnceLock;
 
 /// Coordinates of a fluctuation in which its energy (J per unit of section or thickness) is the sum of squares, two for

@@ -10,12 +10,12 @@ mod reference;
 mod traction_forms;
 mod triangle;
 
-use crate::lanes::Value;
 use bar::BarStress;
 pub(crate) use energy_form::{ElementForm, EnergyForm, EnergyForms, FluctuationForm};
 pub(crate) use fluctuation::Fluctuation;
 use percute_core::cell::{Cell, CellKind};
 use percute_core::material::LinearLaw;
+use percute_core::simd::lanes::Value;
 pub(crate) use piecewise::MONOMIALS;
 pub(crate) use reference::LOADS;
 pub(crate) use traction_forms::{BasisForm, EDGES, TractionForms};

@@ -9,9 +9,9 @@ use super::LOADS;
 use super::combined_gram::{CombinedGram, unit};
 use super::reference::{ALL, FREE, PAIRS};
 use super::triangle::reference_compliance;
-use crate::lanes::{LANES, Lanes};
 use nalgebra::Matrix2;
 use percute_core::material::LinearLaw;
+use percute_core::simd::lanes::{LANES, Lanes};
 use std::sync::OnceLock;
 
 /// Components of the basis: two for each edge, then two for each node.

@@ -1,12 +1,12 @@
 //! Time levels with equilibrated tractions, side by side.
 
-use crate::lanes::Lanes;
 use crate::time_level::ForcesKnown;
 use percute_core::ids::ElementId;
+use percute_core::simd::lanes::Lanes;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// At most [`LANES`](crate::lanes::LANES) levels of which all fields are known. Only
+/// At most [`LANES`](percute_core::simd::lanes::LANES) levels of which all fields are known. Only
 /// [`Equilibration`](super::Equilibration) makes them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EquilibratedLevels<const D: usize> {

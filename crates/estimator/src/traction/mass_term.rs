@@ -1,6 +1,6 @@
 //! The mass term of the star problems.
 
-use crate::lanes::Value;
+use percute_core::simd::lanes::Value;
 
 /// The nodal inertia forces of the elements around a node.
 pub(super) enum MassTerm<'a, const D: usize, const N: usize, T: Value> {

@@ -6,14 +6,14 @@ use crate::blocks::{BLOCK, MeshPart, StarBlock};
 use crate::element::Element;
 use crate::field_lanes::FieldLanes;
 use crate::inertia::{add_lumping_stress, arms};
-use crate::lanes::{Lanes, Value, load};
 use crate::residual::worse;
 use crate::smoothing::{SmoothedStrains, Smoothing, Strained};
 use crate::stress::hooke;
 use crate::time_level::{ForcesKnown, Side};
-use crate::wide::Wide;
 use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::material::Law;
+use percute_core::simd::Wide;
+use percute_core::simd::lanes::{Lanes, Value, load};
 use percute_core::simd::{Registers, Task, run_task};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -40,7 +40,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         Strained { problem: self.problem, smoothing, elements: &self.elements, blocks: &self.blocks }
     }
 
-    /// Solves the star problems of at most [`LANES`](crate::lanes::LANES) levels, part by part, and gives `then` each
+    /// Solves the star problems of at most [`LANES`](percute_core::simd::lanes::LANES) levels, part by part, and gives `then` each
     /// part when all stars of its elements are solved. Returns the largest relative miss of their equations. `levels`
     /// gives its memory, `strains` those of which stress is made where it is not that of the displacements.
     pub(crate) fn solve(

@@ -1,8 +1,8 @@
 //! One star problem, solved from face to face, at some levels side by side.
 
 use super::{Equilibration, MassTerm};
-use crate::lanes::{Value, load};
 use percute_core::ids::{ElementId, NodeId};
+use percute_core::simd::lanes::{Value, load};
 
 /// The two ends of a star.
 pub(super) struct Ends<const D: usize, T> {

@@ -4,15 +4,15 @@ use super::FarLevels;
 use super::fields::{BlockFields, VelocityLanes};
 use super::{FarCourse, FarSamples};
 use crate::kinematic::ElementMotion;
-use crate::lanes::{Lanes, Value, load};
 use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, NodalBalance, at_places};
 use crate::pipeline::maps::Contribution;
 use crate::pipeline::sampling::{Course, ElementSample};
 use crate::residual::Residuals;
 use crate::stress::EnergyForm;
-use crate::wide::Wide;
 use percute_core::ids::ElementId;
 use percute_core::simd::Registers;
+use percute_core::simd::Wide;
+use percute_core::simd::lanes::{Lanes, Value, load};
 
 /// One far element.
 pub(super) struct FarElement<'f, 'a, 's, 'p, const D: usize, const N: usize> {

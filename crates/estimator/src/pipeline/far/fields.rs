@@ -4,11 +4,11 @@ use super::FarLevels;
 use crate::field_lanes::gather;
 use crate::increment::{self, Increment};
 use crate::kinematic::MotionLanes;
-use crate::lanes::{Lanes, Value, load, store};
 use crate::measure::BalanceFields;
 use crate::time_level::Velocities;
-use crate::wide::Wide;
 use percute_core::simd::Registers;
+use percute_core::simd::Wide;
+use percute_core::simd::lanes::{Lanes, Value, load, store};
 
 /// The fields of a block at some levels, and in the middles before them.
 #[derive(Default)]

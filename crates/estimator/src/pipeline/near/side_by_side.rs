@@ -3,12 +3,12 @@
 //! The contact force jumps at none of these levels: the fields at the end of an interval are those at the beginning of
 //! the next.
 
-use crate::lanes::{LANES, Lanes, Value, load};
 use crate::measure::{AdmissibleStress, Balanced, NodalBalance, outward};
 use crate::pipeline::sampling::{ElementSampler, SampledStress};
 use crate::stress::{ElementForm, Loading};
 use crate::traction::EquilibratedLevels;
-use crate::wide::Wide;
+use percute_core::simd::Wide;
+use percute_core::simd::lanes::{LANES, Lanes, Value, load};
 use percute_core::simd::{Registers, Task, run_task};
 use std::array::from_fn;
 

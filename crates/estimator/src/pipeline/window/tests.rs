@@ -1,10 +1,10 @@
 //! Residuals of the parallel part rise when its fields are changed.
 
 use super::*;
-use crate::lanes::LANES;
 use crate::options::Reconstruction;
 use crate::pipeline::fixture::{SHOWS, impact, prepared_with};
 use crate::request::Request;
+use percute_core::simd::lanes::LANES;
 
 /// A run with its levels.
 struct Run<'p> {

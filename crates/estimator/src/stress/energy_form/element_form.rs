@@ -1,11 +1,11 @@
 //! The form of a single element.
 
 use super::{COLUMNS, EnergyForm, EnergyForms, FluctuationForm, LOADS, ReferenceMap, coordinates};
-use crate::lanes::Value;
 use crate::stress::bar::BarStress;
 use crate::stress::{Fluctuation, Loading};
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
+use percute_core::simd::lanes::Value;
 
 /// The form of one element.
 #[derive(Clone, Debug)]

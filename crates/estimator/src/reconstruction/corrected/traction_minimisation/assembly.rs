@@ -4,11 +4,11 @@ use super::mode_forms::{ModeForm, edge, mode_forms};
 use super::modes::Numbers;
 use super::operator::{NONE, Operator, Sector, WithEdges, WithNodes};
 use crate::element::Element;
-use crate::lanes::LANES;
 use crate::stress::TractionForms;
 use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::problem::Problem;
 use percute_core::simd::dispatch;
+use percute_core::simd::lanes::LANES;
 
 /// The parts of the mesh that matter.
 #[derive(Clone, Copy, Debug)]

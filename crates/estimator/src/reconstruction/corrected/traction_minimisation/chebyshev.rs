@@ -10,9 +10,9 @@
 
 use super::modes::{Modes, ModesPart, Numbers};
 use super::operator::{Block, Operator};
-use crate::lanes::Lanes;
 use percute_core::ids::NodeId;
 use percute_core::simd::dispatch;
+use percute_core::simd::lanes::Lanes;
 
 /// Products with the matrix; the first step needs none. Over an impact or a vibration, the five steps gain 98.7 to 99.9
 /// % of what can be gained. Five of conjugate gradients, preconditioned by nodes and edges alone, would gain 96.2 to

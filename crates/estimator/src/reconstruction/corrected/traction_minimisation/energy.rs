@@ -1,9 +1,9 @@
 //! The slope of the energy of an element in the moments on its edges.
 
 use super::modes::MOMENTS;
-use crate::lanes::Value;
 use crate::measure::{ElementMeasure, NodalBalance};
 use crate::stress::{EnergyForm, LOADS, face_node};
+use percute_core::simd::lanes::Value;
 
 /// The slope of the elastic energy of σ_DA − σ in the moments on the element's edges, edge by edge and node by node, σ
 /// the stress of the displacement that is equilibrated.

@@ -1,10 +1,10 @@
 //! The energy of elements as a form of the coefficients of the modes around them, eight elements at once.
 
-use crate::lanes::{LANES, Lanes};
 use crate::stress::{BasisForm, EDGES, TractionForms};
 use nalgebra::Matrix2;
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
+use percute_core::simd::lanes::{LANES, Lanes};
 
 /// Coefficients that concern an element: three of each node, then one of each edge.
 pub(super) const COEFFICIENTS: usize = 12;

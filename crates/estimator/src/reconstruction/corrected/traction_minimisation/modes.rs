@@ -9,9 +9,9 @@
 //! Each edge and each node has coefficients, whether it has modes or not; without modes they stay 0. Edges are numbered
 //! by their lower ends, so that those of consecutive nodes follow each other.
 
-use crate::lanes::{Lanes, Value, load};
 use percute_core::ids::{FaceId, NodeId};
 use percute_core::mesh::{Face, Mesh};
+use percute_core::simd::lanes::{Lanes, Value, load};
 
 /// Components of the moments on the three edges of a triangle: 3 edges, 2 nodes, 2 components.
 pub(super) const MOMENTS: usize = 12;

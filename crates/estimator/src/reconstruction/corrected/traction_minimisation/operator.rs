@@ -4,7 +4,7 @@
 //! sizes, materials or axes.
 
 use super::modes::Numbers;
-use crate::lanes::Lanes;
+use percute_core::simd::lanes::Lanes;
 use std::ops::Range;
 
 /// The entries that couple an edge with nodes.

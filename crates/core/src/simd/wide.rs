@@ -1,15 +1,16 @@
 //! Numbers at several time levels side by side, in registers.
 //!
-//! [`Lanes`](crate::lanes::Lanes) are memory: where a formula holds many of them, the compiler keeps their arrays in
+//! [`Lanes`](super::lanes::Lanes) are memory: where a formula holds many of them, the compiler keeps their arrays in
 //! memory too, and moves three numbers for each operation. In registers a formula moves those that do not fit.
 
-use crate::lanes::{LANES, Lanes, Value};
-use percute_core::simd::Registers;
+use super::Registers;
+use super::lanes::{LANES, Lanes, Value};
+
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// A number at each level of some lanes, in registers of one kind.
 #[derive(Clone, Copy)]
-pub(crate) struct Wide<R: Registers> {
+pub struct Wide<R: Registers> {
     registers: R,
     numbers: R::Eight,
 }
@@ -17,7 +18,7 @@ pub(crate) struct Wide<R: Registers> {
 impl<R: Registers> Wide<R> {
     /// 0 at all levels; also the form of other numbers.
     #[inline(always)]
-    pub(crate) fn zeros(registers: R) -> Self {
+    pub fn zeros(registers: R) -> Self {
         Self { registers, numbers: registers.splat(0.0) }
     }
 
@@ -28,14 +29,14 @@ impl<R: Registers> Wide<R> {
 
     /// The first and the second components of a vector at each level.
     #[inline(always)]
-    pub(crate) fn transpose(self, vectors: [&[f64; 2]; LANES]) -> [Self; 2] {
+    pub fn transpose(self, vectors: [&[f64; 2]; LANES]) -> [Self; 2] {
         let [first, second] = self.registers.transpose(vectors);
         [self.with(first), self.with(second)]
     }
 
     /// The numbers of the levels before, that of the first level given.
     #[inline(always)]
-    pub(crate) fn later(self, first: f64) -> Self {
+    pub fn later(self, first: f64) -> Self {
         self.with(self.registers.later(first, self.numbers))
     }
 }

@@ -2,45 +2,45 @@
 //!
 //! The maps of elements and stars do not change in time. A formula that is written over [`Value`] takes a number at one
 //! level, an `f64`, or at [`LANES`] levels at once: the map is then read once for all of them. [`Lanes`] are such
-//! numbers in memory, [`Wide`](crate::wide::Wide) in registers. No lane depends on another, and all forms do the same
+//! numbers in memory, [`Wide`](super::Wide) in registers. No lane depends on another, and all forms do the same
 //! operations in the same order: the bits are the same.
 
 use std::array::from_fn;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// Levels that are worked on together.
-pub(crate) const LANES: usize = 8;
+pub const LANES: usize = 8;
 
 /// A number at each of [`LANES`] levels, in one cache line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(64))]
-pub(crate) struct Lanes(pub(crate) [f64; LANES]);
+pub struct Lanes(pub [f64; LANES]);
 
 impl Lanes {
     /// 0 at each level.
-    pub(crate) const ZERO: Self = Self([0.0; LANES]);
+    pub const ZERO: Self = Self([0.0; LANES]);
 
     /// The number at each level, by its position.
     #[inline(always)]
-    pub(crate) fn at_levels(number: impl FnMut(usize) -> f64) -> Self {
+    pub fn at_levels(number: impl FnMut(usize) -> f64) -> Self {
         Self(from_fn(number))
     }
 
     /// The same number at all levels.
     #[inline(always)]
-    pub(crate) fn constant(number: f64) -> Self {
+    pub fn constant(number: f64) -> Self {
         Self([number; LANES])
     }
 
     /// The numbers of these levels, 0 at the others.
     #[inline(always)]
-    pub(crate) fn only(self, wanted: &[bool; LANES]) -> Self {
+    pub fn only(self, wanted: &[bool; LANES]) -> Self {
         Self(from_fn(|lane| if wanted[lane] { self.0[lane] } else { 0.0 }))
     }
 }
 
 /// A number at one or more levels.
-pub(crate) trait Value:
+pub trait Value:
     Copy
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -110,7 +110,7 @@ impl Value for f64 {
 
     #[inline(always)]
     fn worse(self, other: Self) -> Self {
-        crate::residual::worse(self, other)
+        if other > self || other.is_nan() { other } else { self }
     }
 }
 
@@ -202,7 +202,7 @@ impl SubAssign for Lanes {
 
 /// A vector in memory, in the form of a number.
 #[inline(always)]
-pub(crate) fn load<T: Value, const D: usize>(like: T, stored: &[T::Stored; D]) -> [T; D] {
+pub fn load<T: Value, const D: usize>(like: T, stored: &[T::Stored; D]) -> [T; D] {
     let mut vector = [like; D];
     for c in 0..D {
         vector[c] = like.load(&stored[c]);
@@ -212,7 +212,7 @@ pub(crate) fn load<T: Value, const D: usize>(like: T, stored: &[T::Stored; D]) -
 
 /// A vector to memory.
 #[inline(always)]
-pub(crate) fn store<T: Value<Stored = Lanes>, const D: usize>(vector: &[T; D]) -> [Lanes; D] {
+pub fn store<T: Value<Stored = Lanes>, const D: usize>(vector: &[T; D]) -> [Lanes; D] {
     let mut stored = [Lanes::ZERO; D];
     for c in 0..D {
         stored[c] = vector[c].store();
