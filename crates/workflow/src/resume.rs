@@ -2,7 +2,7 @@
 
 mod numbers;
 
-use crate::case::{Case, Part, statement};
+use crate::case::{Case, SchemaPart, statement};
 use crate::difference::{self, OF_RUN};
 use crate::failure::Failure;
 use crate::history::Stored;
@@ -65,7 +65,7 @@ impl Stored {
     /// The first difference between the instants that the case asks for and those of the file. Those of a run that ends
     /// with the rebound follow from its simulation: its statement must be that of the case in the file.
     fn of_times(&self, case: &Case) -> Option<String> {
-        let stated = || self.of_texts(case, "time", &Part::case().key("time").keys());
+        let stated = || self.of_texts(case, "time", &SchemaPart::case().key("time").keys());
         if case.until.is_none() {
             let differs = numbers::of_instants(&case.times, self.file.run_times())?;
             return Some(stated().unwrap_or(differs));

@@ -1,5 +1,5 @@
-//! The keys of all tables. The schema is the one list of them: editors complete and check cases with it, and the readers
-//! accept the keys that it has.
+//! The keys of all tables. The schema is the one list of them: editors complete and check cases with it, and the
+//! readers accept the keys that it has.
 
 use serde_json::Value;
 use std::sync::LazyLock;
@@ -12,9 +12,9 @@ static CASE: LazyLock<Value> = LazyLock::new(|| serde_json::from_str(SCHEMA).unw
 
 /// The part of the schema on a table or a value.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Part(&'static Value);
+pub(crate) struct SchemaPart(&'static Value);
 
-impl Part {
+impl SchemaPart {
     /// That on the case as a whole.
     pub(crate) fn case() -> Self {
         Self(&CASE)

@@ -3,7 +3,7 @@
 mod absent;
 pub(super) mod table;
 
-use super::Part;
+use super::SchemaPart;
 use super::source::{At, CaseError, Source};
 use percute_core::border::Vector;
 use table::Table;
@@ -15,7 +15,7 @@ pub(crate) struct Value<'a> {
     pub(super) source: &'a Source,
     pub(super) value: &'a DeValue<'a>,
     pub(super) at: At,
-    pub(super) part: Part,
+    pub(super) part: SchemaPart,
 }
 
 impl<'a> Value<'a> {

@@ -2,7 +2,7 @@
 
 use super::Value;
 use super::absent::absent;
-use crate::case::Part;
+use crate::case::SchemaPart;
 use crate::case::source::{At, CaseError, Source};
 use crate::message::{hint, list};
 use toml::de::DeTable;
@@ -16,13 +16,13 @@ pub(crate) struct Table<'a> {
     /// What joins the table's path to that of a key: `, ` after a header, `.` inside.
     pub(in crate::case) joint: &'static str,
     /// What the schema says of it.
-    pub(in crate::case) part: Part,
+    pub(in crate::case) part: SchemaPart,
 }
 
 impl<'a> Table<'a> {
     /// The document as a whole.
     pub(in crate::case) fn root(source: &'a Source, table: &'a DeTable<'a>) -> Self {
-        Self { source, table, at: At { path: String::new(), span: 0..0 }, joint: "", part: Part::case() }
+        Self { source, table, at: At { path: String::new(), span: 0..0 }, joint: "", part: SchemaPart::case() }
     }
 
     /// An error of the table as a whole.

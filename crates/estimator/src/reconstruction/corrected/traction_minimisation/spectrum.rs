@@ -6,8 +6,8 @@
 //!
 //! It is another algorithm than that of the critical time step in `core/dynamics/critical_step.rs`, which runs until
 //! value plus residual is a bound, from one random vector in the scalar product of the mass, with α and β from the
-//! energies of a pass over the mesh. Here are eight vectors at once, a fixed number of steps and no bound: the iteration
-//! has its own margin. Only the three-term recurrence is the same.
+//! energies of a pass over the mesh. Here are eight vectors at once, a fixed number of steps and no bound: the
+//! iteration has its own margin. Only the three-term recurrence is the same.
 
 use super::Workspace;
 use super::chebyshev::{PRODUCT_STAGES, Product};
