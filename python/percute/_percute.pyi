@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 __all__ = [
     "AdaptingData",
+    "BarRowData",
     "CaseData",
     "EstimateData",
     "EstimateFileData",
-    "BarRowData",
     "ExactData",
     "HistoryData",
     "LIMIT",
@@ -31,6 +31,7 @@ __all__ = [
     "close_files",
     "colour_scale",
     "command",
+    "contact_name",
     "deformed_outline",
     "element_field",
     "errors_against_history",
@@ -51,8 +52,8 @@ __all__ = [
     "stranger",
     "sweep_case",
     "true_error_of_bar_impact",
-    "verification",
     "unit",
+    "verification",
 ]
 
 LIMIT: float

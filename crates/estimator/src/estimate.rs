@@ -175,7 +175,7 @@ pub struct Estimate {
     pub auxiliary_contact_energy: f64,
     /// That at non-matching interfaces, in the order of [`ContactSurface::non_matching`].
     ///
-    /// [`ContactSurface::non_matching`]: percute_core::contact::ContactSurface::sliding
+    /// [`ContactSurface::non_matching`]: percute_core::contact::ContactSurface::non_matching
     pub surfaces: Vec<SurfaceEstimate>,
     /// Where velocities and accelerations came from.
     pub supplied: Supplied,

@@ -97,7 +97,7 @@ pub struct AnyFaceLoad<'p> {
     pub face: FaceId,
     /// Factor at each of its nodes.
     pub profile: &'p [f64],
-    /// Its table among [`AnyProblem::traction_tables`].
+    /// Its table among [`Model::traction_tables`].
     pub table: usize,
 }
 
@@ -203,7 +203,7 @@ impl AnyProblem {
         on!(self, problem => problem.leads_interface(obstacle))
     }
 
-    /// The other one of the two obstacles of an interface: [`Problem::opposite_obstacle`].
+    /// The other one of the two obstacles of an interface: [`Problem::partner_obstacle`].
     #[must_use]
     pub fn partner_obstacle(&self, obstacle: usize) -> Option<usize> {
         on!(self, problem => problem.partner_obstacle(obstacle))

@@ -52,7 +52,7 @@ pub struct PrescribedComponent {
     pub node: NodeId,
     /// Which global component.
     pub component: usize,
-    /// Its velocity table among [`Problem::motions`]; `None` is at rest.
+    /// Its velocity table among [`Model::motions`]; `None` is at rest.
     pub motion: Option<usize>,
 }
 
@@ -63,7 +63,7 @@ pub struct FaceLoad<const D: usize> {
     pub face: FaceId,
     /// Factor at each of the face's nodes.
     pub profile: [f64; D],
-    /// The table of the traction among [`Problem::traction_tables`].
+    /// The table of the traction among [`Model::traction_tables`].
     pub table: usize,
 }
 
