@@ -42,7 +42,8 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
 
     /// Solves the star problems of at most [`LANES`](percute_core::simd::lanes::LANES) levels, part by part, and gives
     /// `then` each part when all stars of its elements are solved. Returns the largest relative miss of their
-    /// equations. `levels` gives its memory, `strains` those of which stress is made where it is not that of the displacements.
+    /// equations. `levels` gives its memory, `strains` those of which stress is made where it is not that of the
+    /// displacements.
     pub(crate) fn solve(
         &self,
         forces: Vec<ForcesKnown<D>>,
