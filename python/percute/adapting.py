@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 from numpy.typing import ArrayLike
 
-from percute import _percute
+from percute import _percute, adaptation_pictures
 from percute.attached import attached
 from percute.checks import flag, instance, number, path, text, warn, whole, wrong
 from percute.errors import InputError
@@ -20,7 +20,6 @@ from percute.estimation import Estimate
 from percute.history import History
 from percute.iterations import Iterations
 from percute.mesh import Mesh
-from percute.pictures import adaptation
 from percute.problem import Problem
 from percute.progress import ProgressOption, shown
 from percute.simulation import instants_of, simulate, with_planes_moved
@@ -99,7 +98,7 @@ class Adaptation:
             The axes of the two plots.
         """
         drawn = None if self.estimate is None or self.best is None else (self.estimate, self.best)
-        return adaptation.plot(drawn, self.iterations, self.measure, self.target, axes, save, flag("overwrite", overwrite))
+        return adaptation_pictures.plot(drawn, self.iterations, self.measure, self.target, axes, save, flag("overwrite", overwrite))
 
 
 def adapt(

@@ -6,10 +6,9 @@ import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
-from percute import tables
+from percute import contact_pictures as pictures, tables
 from percute.contact_results import ContactResults, Resultants
 from percute.contents import Contents, Quantity, components, instants, places
-from percute.pictures import contact as pictures
 
 if TYPE_CHECKING:
     import pandas as _pandas

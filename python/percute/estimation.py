@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from percute import _percute, notebook, tables
+from percute import _percute, error_pictures as pictures, notebook, tables
 from percute._percute import unit
 from percute.checks import flag, instance, vtkhdf, words
 from percute.checks import path as file_name
@@ -17,7 +17,6 @@ from percute.contact import Contact
 from percute.contents import Contents, Quantity, components, instants, places
 from percute.error_results import ErrorResults
 from percute.errors import InputError
-from percute.pictures import error as pictures
 from percute.records import ElementMap
 from percute.stored import MEASURES, StoredEstimate
 from percute.true_error import Effectivity, TrueError

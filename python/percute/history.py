@@ -10,13 +10,11 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from percute import _percute, element_fields, exports, history_tables, notebook, tables
+from percute import _percute, animation_pictures, element_fields, exports, field_pictures as pictures, history_tables, notebook, tables
 from percute.checks import flag, instance
 from percute.contact import Contact
 from percute.contents import chosen
 from percute.element_fields import Step
-from percute.pictures import animation
-from percute.pictures import fields as pictures
 from percute.progress import ProgressOption
 from percute.steps import Steps
 from percute.true_error import TrueError
@@ -214,7 +212,7 @@ class History(Steps, Views):
         ExistingFileError, StorageError
             The file exists already or cannot be written.
         """
-        animation.animate(self, path, quantity, frames, rate, scale, overwrite, progress)
+        animation_pictures.animate(self, path, quantity, frames, rate, scale, overwrite, progress)
 
     def export(
         self,

@@ -12,14 +12,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from percute import animation_pictures
 from percute.errors import ExistingFileError, FileFormatError, InputError, MissingFileError, PercuteError
 from percute.estimating import estimate
 from percute.estimation import Estimate
 from percute.files import open as open_file
 from percute.files import run
 from percute.history import History
-from percute.pictures import animation, canvas
-from percute.pictures.fields import MOTION, SCALARS, STRESSES
+from percute.pictures import canvas
+from percute.field_pictures import MOTION, SCALARS, STRESSES
 from percute.progress import shown
 from percute.verifying import Verification
 
@@ -141,7 +142,7 @@ def main(arguments: Sequence[str]) -> int:
     save = given.save or Path(f"{given.file.stem}-{given.kind}{'.gif' if moves else '.png'}")
     try:
         canvas.pyplot().switch_backend("Agg")
-        canvas.writable("save", save, given.force, animation.ENDINGS if moves else canvas.ENDINGS)
+        canvas.writable("save", save, given.force, animation_pictures.ENDINGS if moves else canvas.ENDINGS)
         with warnings.catch_warnings(), shown(not given.quiet) as tell:
             warnings.simplefilter("ignore" if given.quiet else "always")
             warnings.showwarning = lambda message, *_, **__: print(f"warning: {message}", file=sys.stderr)

@@ -7,8 +7,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from percute import contact_pictures, field_pictures
 from percute.contact import Contact
-from percute.pictures import contact, fields
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,7 +46,7 @@ class Views(ABC):
         matplotlib.axes.Axes
             The axes of the plot.
         """
-        return fields.plot_energies(self._energies(), axes, save, overwrite)
+        return field_pictures.plot_energies(self._energies(), axes, save, overwrite)
 
     def plot_force(self, *, axes: Axes | None = None, save: File = None, overwrite: bool = False) -> Axes:
         """Draw the normal and the tangential contact force of each plane over time (N).
@@ -66,7 +66,7 @@ class Views(ABC):
         InputError
             There are no planes or no contact results.
         """
-        return contact.plot_force(self._touch(), axes, save, overwrite)
+        return contact_pictures.plot_force(self._touch(), axes, save, overwrite)
 
     def plot_pressure(
         self,
@@ -95,4 +95,4 @@ class Views(ABC):
         InputError
             There are no planes or no contact results.
         """
-        return contact.plot_pressure(self._touch(), plane, axes, save, overwrite)
+        return contact_pictures.plot_pressure(self._touch(), plane, axes, save, overwrite)

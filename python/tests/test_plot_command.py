@@ -133,10 +133,10 @@ def test_an_animation_has_its_frames(quantity: str | None, block_history: pc.His
 
 
 def test_the_frames_of_a_bar_have_one_scale(bar_history: pc.History, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from percute.pictures import animation
+    from percute import animation_pictures
 
-    spans, drawn = [], animation.draw_field
-    monkeypatch.setattr(animation, "draw_field", lambda *arguments: spans.append(arguments[5]) or drawn(*arguments))
+    spans, drawn = [], animation_pictures.draw_field
+    monkeypatch.setattr(animation_pictures, "draw_field", lambda *arguments: spans.append(arguments[5]) or drawn(*arguments))
     bar_history.animate(tmp_path / "bar.gif", frames=3)
     last = len(bar_history) - 1
     values = bar_history.stress([0, round(last / 2), last])

@@ -1,5 +1,5 @@
 //! An adaptation: the error over the elements of the best mesh, and over the cost of the runs.
-//! `python/percute/pictures/adaptation.py` draws the same.
+//! `python/percute/adaptation_pictures.py` draws the same.
 
 use super::{Legend, ROOM, SIZE};
 use crate::axes::{Look, Plot};

@@ -16,7 +16,7 @@ from percute.checks import encodable, number, whole, wrong
 from percute.errors import PercuteError, StorageError
 from percute.pictures.body import SLIM
 from percute.pictures.canvas import SIGNED, Floats, pyplot, replacing, writable, writing
-from percute.pictures.fields import draw_field, field
+from percute.field_pictures import draw_field, field
 from percute.progress import Progress, ProgressOption, shown
 from percute.steps import Steps
 
