@@ -101,21 +101,12 @@ pub struct AnyFaceLoad<'p> {
     pub table: usize,
 }
 
-macro_rules! on {
-    ($any:expr, $problem:pat => $body:expr) => {
-        match $any {
-            AnyProblem::D1($problem) => $body,
-            AnyProblem::D2($problem) => $body,
-        }
-    };
-}
-
 impl Deref for AnyProblem {
     type Target = Model;
 
     #[inline]
     fn deref(&self) -> &Model {
-        on!(self, problem => problem)
+        on_problem!(ProblemRef::from(self), problem => problem)
     }
 }
 
@@ -140,19 +131,19 @@ impl AnyProblem {
     /// The two obstacles of each interface: [`Problem::sides_of_interfaces`].
     #[must_use]
     pub fn sides_of_interfaces(&self) -> Vec<[usize; 2]> {
-        on!(self, problem => problem.sides_of_interfaces().collect())
+        on_problem!(ProblemRef::from(self), problem => problem.sides_of_interfaces().collect())
     }
 
     /// u₀ at the nodes (m), in rows.
     #[must_use]
     pub fn initial_displacement(&self) -> &[f64] {
-        on!(self, problem => problem.initial_displacement().as_flattened())
+        on_problem!(ProblemRef::from(self), problem => problem.initial_displacement().as_flattened())
     }
 
     /// v₀ at the nodes (m/s), in rows.
     #[must_use]
     pub fn initial_velocity(&self) -> &[f64] {
-        on!(self, problem => problem.initial_velocity().as_flattened())
+        on_problem!(ProblemRef::from(self), problem => problem.initial_velocity().as_flattened())
     }
 
     /// Tractions on faces.
@@ -161,13 +152,13 @@ impl AnyProblem {
         fn of<const D: usize>(load: &FaceLoad<D>) -> AnyFaceLoad<'_> {
             AnyFaceLoad { face: load.face, profile: &load.profile, table: load.table }
         }
-        on!(self, problem => problem.face_loads().iter().map(of).collect())
+        on_problem!(ProblemRef::from(self), problem => problem.face_loads().iter().map(of).collect())
     }
 
     /// Forces of the tractions and body forces at an instant (N), in rows.
     #[must_use]
     pub fn external_forces(&self, t: f64) -> Vec<f64> {
-        on!(self, problem => {
+        on_problem!(ProblemRef::from(self), problem => {
             let mut force = vec![[0.0; _]; problem.mesh().node_count()];
             problem.external_forces(t, &mut force);
             force.into_flattened()
@@ -177,19 +168,19 @@ impl AnyProblem {
     /// Whether any traction or body force acts.
     #[must_use]
     pub fn is_loaded(&self) -> bool {
-        on!(self, problem => problem.is_loaded())
+        on_problem!(ProblemRef::from(self), problem => problem.is_loaded())
     }
 
     /// Number of obstacles.
     #[must_use]
     pub fn obstacle_count(&self) -> usize {
-        on!(self, problem => problem.obstacles().len())
+        on_problem!(ProblemRef::from(self), problem => problem.obstacles().len())
     }
 
     /// An obstacle.
     #[must_use]
     pub fn obstacle(&self, obstacle: usize) -> AnyObstacle {
-        on!(self, problem => problem.obstacles()[obstacle].clone().into())
+        on_problem!(ProblemRef::from(self), problem => problem.obstacles()[obstacle].clone().into())
     }
 
     /// All obstacles.
@@ -200,43 +191,43 @@ impl AnyProblem {
     /// Whether an obstacle is a plane or the first side of two surfaces that may touch.
     #[must_use]
     pub fn leads_interface(&self, obstacle: usize) -> bool {
-        on!(self, problem => problem.leads_interface(obstacle))
+        on_problem!(ProblemRef::from(self), problem => problem.leads_interface(obstacle))
     }
 
     /// The other one of the two obstacles of an interface: [`Problem::partner_obstacle`].
     #[must_use]
     pub fn partner_obstacle(&self, obstacle: usize) -> Option<usize> {
-        on!(self, problem => problem.partner_obstacle(obstacle))
+        on_problem!(ProblemRef::from(self), problem => problem.partner_obstacle(obstacle))
     }
 
     /// The obstacle on whose nodes contact acts: [`Problem::slave_of`].
     #[must_use]
     pub fn slave_of(&self, obstacle: usize) -> usize {
-        on!(self, problem => problem.slave_of(obstacle))
+        on_problem!(ProblemRef::from(self), problem => problem.slave_of(obstacle))
     }
 
     /// The two surfaces that may touch of which an obstacle is one; none for a plane.
     #[must_use]
     pub fn interface_of(&self, obstacle: usize) -> Option<&Interface> {
-        on!(self, problem => problem.interface_of(obstacle))
+        on_problem!(ProblemRef::from(self), problem => problem.interface_of(obstacle))
     }
 
     /// Where an obstacle is stated.
     #[must_use]
     pub fn place_of_obstacle(&self, obstacle: usize) -> Place {
-        on!(self, problem => problem.place_of_obstacle(obstacle))
+        on_problem!(ProblemRef::from(self), problem => problem.place_of_obstacle(obstacle))
     }
 
     /// The pairs of nodes of two bodies that face each other, of each interface with such pairs.
     #[must_use]
     pub fn facing_nodes(&self) -> Vec<Vec<[NodeId; 2]>> {
-        on!(self, problem => problem.facing_nodes())
+        on_problem!(ProblemRef::from(self), problem => problem.facing_nodes())
     }
 
     /// The nodes of the contact surface, in its order: rows of reactions and touching status.
     #[must_use]
     pub fn contact_nodes(&self) -> &[ContactNode] {
-        on!(self, problem => problem.surface().nodes())
+        on_problem!(ProblemRef::from(self), problem => problem.surface().nodes())
     }
 
     /// The faces of the contact surface.
@@ -246,38 +237,38 @@ impl AnyProblem {
             let &ContactFace { face, ref nodes, area, obstacle } = face;
             AnyContactFace { face, nodes, area, obstacle }
         }
-        on!(self, problem => problem.surface().faces().iter().map(of).collect())
+        on_problem!(ProblemRef::from(self), problem => problem.surface().faces().iter().map(of).collect())
     }
 
     /// The place of a node of the contact surface in the undeformed body (m).
     #[must_use]
     pub fn contact_point(&self, at: usize) -> Vector {
-        on!(self, problem => padded(problem.surface().point(at)))
+        on_problem!(ProblemRef::from(self), problem => padded(problem.surface().point(at)))
     }
 
     /// ℓ_k of each node of the contact surface (m²), eq. \[45\].
     #[must_use]
     pub fn tributary_areas(&self) -> Vec<f64> {
-        on!(self, problem => problem.surface().tributary_areas())
+        on_problem!(ProblemRef::from(self), problem => problem.surface().tributary_areas())
     }
 
     /// Number of interfaces whose nodes do not face each other.
     #[must_use]
     pub fn non_matching_count(&self) -> usize {
-        on!(self, problem => problem.surface().non_matching().len())
+        on_problem!(ProblemRef::from(self), problem => problem.surface().non_matching().len())
     }
 
     /// Of a node of the contact surface, the interface whose nodes do not face each other.
     #[must_use]
     pub fn non_matching_of(&self, at: usize) -> Option<usize> {
-        on!(self, problem => problem.surface().non_matching_of(at))
+        on_problem!(ProblemRef::from(self), problem => problem.surface().non_matching_of(at))
     }
 
     /// The positions in the contact surface of the two sides of an interface whose nodes do not face each other: slave
     /// and master.
     #[must_use]
     pub fn sides_of_non_matching(&self, non_matching: usize) -> [Vec<usize>; 2] {
-        on!(self, problem => {
+        on_problem!(ProblemRef::from(self), problem => {
             let sides = &problem.surface().non_matching()[non_matching];
             [sides.slave(), sides.master()].map(|side| (0..side.len()).map(|node| side.position(node)).collect())
         })
@@ -286,19 +277,21 @@ impl AnyProblem {
     /// Whether a node of the contact surface is on the slave of an interface whose nodes do not face each other.
     #[must_use]
     pub fn is_slave(&self, at: usize) -> bool {
-        on!(self, problem => problem.surface().non_matching().iter().any(|sides| sides.slave().node_at(at).is_some()))
+        on_problem!(ProblemRef::from(self), problem => {
+            problem.surface().non_matching().iter().any(|sides| sides.slave().node_at(at).is_some())
+        })
     }
 
     /// Whether the contact condition of a node is its own: [`crate::contact::ContactSurface::leads`].
     #[must_use]
     pub fn leads(&self, at: usize) -> bool {
-        on!(self, problem => problem.surface().leads(at))
+        on_problem!(ProblemRef::from(self), problem => problem.surface().leads(at))
     }
 
     /// The mass that a contact force moves (kg): [`crate::contact::ContactSurface::moved_mass`].
     #[must_use]
     pub fn moved_mass(&self, at: usize) -> f64 {
-        on!(self, problem => problem.surface().moved_mass(at, problem.mass()))
+        on_problem!(ProblemRef::from(self), problem => problem.surface().moved_mass(at, problem.mass()))
     }
 
     /// The frame of a node of the contact surface.
@@ -319,37 +312,37 @@ impl AnyProblem {
     /// Gap (m) and normal velocity (m/s) of all nodes of the contact surface at the start.
     #[must_use]
     pub fn starts_of_contact(&self) -> Vec<(f64, f64)> {
-        on!(self, problem => problem.starts_of_contact())
+        on_problem!(ProblemRef::from(self), problem => problem.starts_of_contact())
     }
 
     /// The candidate node of an obstacle with the smallest gap at the start: [`Problem::nearest`].
     #[must_use]
     pub fn nearest(&self, obstacle: usize) -> Option<(usize, f64)> {
-        on!(self, problem => problem.nearest(obstacle))
+        on_problem!(ProblemRef::from(self), problem => problem.nearest(obstacle))
     }
 
     /// The smallest gap of the candidate nodes of an obstacle at the start (m).
     #[must_use]
     pub fn initial_gap(&self, obstacle: usize) -> f64 {
-        on!(self, problem => problem.initial_gap(obstacle))
+        on_problem!(ProblemRef::from(self), problem => problem.initial_gap(obstacle))
     }
 
     /// Which components of a face are supported.
     #[must_use]
     pub fn supported(&self, face: FaceId) -> &[bool] {
-        on!(self, problem => &problem.supported[face.index()])
+        on_problem!(ProblemRef::from(self), problem => &problem.supported[face.index()])
     }
 
     /// Whether each node of the contact surface is on a line of symmetry: [`Problem::on_lines_of_symmetry`].
     #[must_use]
     pub fn on_lines_of_symmetry(&self) -> Vec<bool> {
-        on!(self, problem => problem.on_lines_of_symmetry())
+        on_problem!(ProblemRef::from(self), problem => problem.on_lines_of_symmetry())
     }
 
     /// Normal speeds below this count as zero at the start (m/s).
     #[must_use]
     pub fn speed_tolerance(&self) -> f64 {
-        on!(self, problem => problem.speed_tolerance())
+        on_problem!(ProblemRef::from(self), problem => problem.speed_tolerance())
     }
 
     /// Refuses a body that starts on a plane and moves into it.
@@ -357,18 +350,18 @@ impl AnyProblem {
     /// # Errors
     /// As [`Problem::check_planes`].
     pub fn check_planes(&self) -> Result<(), InputError> {
-        on!(self, problem => problem.check_planes())
+        on_problem!(ProblemRef::from(self), problem => problem.check_planes())
     }
 
     /// The problem with planes moved away that a body is on and moves into: [`Problem::with_planes_moved`].
     #[must_use]
     pub fn with_planes_moved(&self, step: f64) -> Option<Self> {
-        on!(self, problem => problem.with_planes_moved(step).map(Self::from))
+        on_problem!(ProblemRef::from(self), problem => problem.with_planes_moved(step).map(Self::from))
     }
 
     /// The problem under other numbers of nodes and elements: [`Problem::renumbered`].
     #[must_use]
     pub fn renumbered(&self, numbering: &Numbering) -> Self {
-        on!(self, problem => problem.renumbered(numbering).into())
+        on_problem!(ProblemRef::from(self), problem => problem.renumbered(numbering).into())
     }
 }
