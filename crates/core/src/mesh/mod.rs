@@ -35,7 +35,7 @@ pub use star::{Star, Stars};
 pub use strips::Strips;
 pub use topology::Face;
 
-use crate::border::{Vector, cut, padded};
+use crate::border::{Vector, cut, padded, row};
 use crate::cell::{CellGeometry, CellKind, cell};
 use crate::ids::{ElementId, FaceId, NodeId};
 use std::collections::BTreeMap;
@@ -410,7 +410,7 @@ impl Mesh {
     /// The place of a node (m).
     #[must_use]
     pub fn point(&self, node: NodeId) -> Vector {
-        in_kind!(self, D, N => padded(&self.points_in::<D>()[node.index()]))
+        row(&self.points, node.index(), self.dimension())
     }
 
     /// Places of the nodes (m).
