@@ -1,5 +1,6 @@
 //! How far the fields are from exactly admissible.
 
+use percute_core::simd::lanes::Value;
 use serde::{Deserialize, Serialize};
 
 /// The largest residual of every admissibility condition.
@@ -117,5 +118,5 @@ impl Residuals {
 #[inline]
 #[must_use]
 pub(crate) fn worse(a: f64, b: f64) -> f64 {
-    if b > a || b.is_nan() { b } else { a }
+    Value::worse(a, b)
 }
