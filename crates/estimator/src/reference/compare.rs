@@ -168,12 +168,14 @@ impl<const D: usize> Coarse<'_, D> {
             before.displacement.iter().zip(&now.displacement).map(|(a, b)| between(a, b)).collect::<Vec<_>>();
         let own = gradients::<D>(mesh, vectors(&self.motion.displacement[n]));
         let mut sample = TrueErrorSample { time: self.motion.times[n], ..Default::default() };
+        let mut nodal: Vec<[f64; D]> = Vec::new();
         for (e, coarse) in self.transfer.elements().iter().enumerate() {
             let (id, law) = (ElementId::new(e), fine.material(ElementId::new(e)));
             let mut gradient = displacement_gradient(fine.mesh(), id, &reference);
             let own = &own[coarse.index()];
             (0..D).for_each(|a| (0..D).for_each(|b| gradient[a][b] -= own[a][b]));
-            let nodal: Vec<[f64; D]> = fine.mesh().cell(id).iter().map(|node| velocity[node.index()]).collect();
+            nodal.clear();
+            nodal.extend(fine.mesh().cell(id).iter().map(|node| velocity[node.index()]));
             let volume = fine.volume(id);
             sample.kinetic += 0.5 * mass_product(law.density() * volume, &nodal, &nodal);
             sample.elastic += volume * law.strain_energy(&gradient);
