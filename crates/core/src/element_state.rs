@@ -12,13 +12,13 @@ use crate::problem::{Problem, ProblemRef};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElementState {
     dimension: usize,
-    /// ε, eq. \[5\].
+    /// ε, eq. \[5\], or the Green strain of a finite law.
     pub strain: Tensor<3>,
-    /// σ_h (Pa), eq. \[9\].
+    /// σ_h (Pa), eq. \[9\]: force per present area.
     pub stress: Tensor<3>,
-    /// σ_zz (Pa): λ tr ε in plane strain, 0 in plane stress and in a bar.
+    /// σ_zz (Pa), 0 in plane stress and in a bar.
     pub stress_across: f64,
-    /// ½∫σ:ε (J), over the element with its section or thickness.
+    /// ½∫σ:ε, or that of a finite law (J), over the element with its section or thickness.
     pub strain_energy: f64,
 }
 
@@ -35,10 +35,9 @@ impl ElementState {
     fn of<const D: usize>(problem: &Problem<D>, element: ElementId, displacement: &[[f64; D]]) -> Self {
         let law = problem.material(element);
         let gradient = displacement_gradient(problem.mesh(), element, displacement);
-        let strain = std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * (gradient[a][b] + gradient[b][a])));
         Self {
             dimension: D,
-            strain: in_space::<D>(&strain),
+            strain: in_space::<D>(&law.strain(&gradient)),
             stress: in_space(&law.stress(&gradient)),
             stress_across: law.stress_across(&gradient),
             strain_energy: problem.volume(element) * law.strain_energy(&gradient),

@@ -17,6 +17,7 @@ pub mod dynamics;
 pub mod element_state;
 pub mod history;
 pub mod ids;
+pub mod kernel;
 pub mod load;
 pub mod material;
 pub mod memory;

@@ -31,6 +31,12 @@ pub enum EstimateError {
         .groups[0], .groups[1]
     )]
     NotMatching { groups: [String; 2] },
+    /// A law for large displacements.
+    #[error(
+        "the error of bodies with finite kinematics is not estimated; simulate them without an estimate (`percute \
+         simulate`, `pc.simulate`), or give kinematics = \"small\""
+    )]
+    Finite,
     /// No threads to work with.
     #[error("the threads of the estimate could not be started: {cause}")]
     Threads { cause: String },

@@ -6,6 +6,7 @@ use super::contact::StepContact;
 use super::moving::MovingBody;
 use super::node_update::NodeMotion;
 use super::simulation::{Simulation, SimulationError, unstable};
+use super::stable_times::check_step;
 use super::start::{restart, start};
 use crate::history::{Checkpoint, State, StateSink, Step};
 use crate::observer::{Observer, Progress};
@@ -29,7 +30,7 @@ pub(super) fn simulate<const D: usize>(
 ) -> Result<Simulation, SimulationError> {
     let mut dynamics = Dynamics::new(problem, times);
     let threads = threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, Into::into));
-    let strips = dynamics.stiffness.strips.count();
+    let strips = dynamics.strips().count();
     if threads > 1 && strips >= FEWEST_STRIPS && problem.mesh().element_count() >= FEWEST_ELEMENTS {
         // The steps run inside the pool: a step of 50 µs leaves no time to wake a thread. A pool of its own: a process
         // forked later must not wait for threads it does not have.
@@ -79,11 +80,12 @@ fn run<const D: usize>(
         };
         let state = State::new(step, times, &body.forces, &body.velocity, &dynamics.inverse_mass);
         if !balance.record(problem, times, &state) {
-            return Err(unstable(dynamics, n, &body.velocity, balance.balance()));
+            return Err(unstable(dynamics, n, [&body.displacement, &body.velocity], balance.balance()));
         }
         sink.accept(&state.with_sums(&balance.sums())).map_err(|cause| SimulationError::Sink { step: n, cause })?;
         balance_over_time.push(*balance.balance());
         done = n;
+        check_step(dynamics, n, &body.displacement)?;
         let progress = Progress { stage: "simulating", done, total: times.step_count() };
         if observer.observe(progress) == ControlFlow::Break(()) && n < times.step_count() {
             interrupted = true;

@@ -1,10 +1,10 @@
 //! The critical time step Δt_c = 2/ω_max, eq. \[34\].
 
-use super::Stiffness;
 use super::node_update::{NodeMotion, StripSums};
 use super::pass::{Fields, Pass};
 use crate::cell::CellKind;
 use crate::ids::ElementId;
+use crate::kernel::{Kernel, Stiffness};
 use crate::material::{Law, LinearLaw};
 use crate::problem::Problem;
 
@@ -65,7 +65,7 @@ fn largest_eigenvalue<const D: usize>(problem: &Problem<D>) -> f64 {
     let fewest = (10.0 * (count as f64).ln()).ceil() as usize;
     let stiffness = Stiffness::new(problem);
     let inverse_mass: Vec<f64> = problem.mass().iter().map(|m| 1.0 / m).collect();
-    let mut sums = vec![StripSums::ZERO; stiffness.strips.count()];
+    let mut sums = vec![StripSums::ZERO; Kernel::<D>::strips(&stiffness).count()];
 
     let (mut current, mut previous) = (vec![[0.0; D]; problem.mesh().node_count()], random_start(problem));
     let mut force = vec![[0.0; D]; current.len()];
@@ -74,7 +74,7 @@ fn largest_eigenvalue<const D: usize>(problem: &Problem<D>) -> f64 {
     let (mut factors, mut check, mut norm) = ([0.0, 0.0, 1.0], 8, 1.0);
     loop {
         let pass = Pass {
-            stiffness: &stiffness,
+            kernel: &stiffness,
             mass: problem.mass(),
             inverse_mass: &inverse_mass,
             apart: &[],
@@ -84,7 +84,9 @@ fn largest_eigenvalue<const D: usize>(problem: &Problem<D>) -> f64 {
             parallel: false,
         };
         let (displacement, velocity) = (&mut previous[..], &mut current[..]);
-        let total = pass.run(Fields { start: 0, displacement, velocity, force: &mut force, sums: &mut sums });
+        let (start, internal_start, force, internal) = (0, 0, &mut force[..], &mut [][..]);
+        let sums = &mut sums[..];
+        let total = pass.run(Fields { start, displacement, velocity, force, internal_start, internal, sums });
         problem.prescribed().iter().for_each(|p| force[p.node.index()][p.component] = 0.0);
         std::mem::swap(&mut current, &mut previous);
         let beta = (2.0 * total.kinetic()).sqrt();

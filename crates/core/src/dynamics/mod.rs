@@ -5,15 +5,14 @@ mod balancing;
 mod central_difference;
 mod contact;
 mod critical_step;
-mod element_pairs;
 mod entry;
 mod evaluation;
-mod internal_force;
 mod missed;
 mod moving;
 mod node_update;
 mod pass;
 mod simulation;
+mod stable_times;
 mod start;
 mod update;
 mod work_meter;
@@ -25,11 +24,13 @@ pub use entry::{
     check_start, critical_time_step, missed_contact, replay, resume, simulate, simulate_threaded, time_step_of_element,
 };
 pub use evaluation::Evaluation;
-pub use internal_force::Stiffness;
 use missed::MissedContact;
 pub use simulation::{Simulation, SimulationError};
+pub use stable_times::{StableTimes, stable_times};
 pub use update::advance;
 
+use crate::kernel::{Kernel, ProblemKernel, on_kernel};
+use crate::mesh::Strips;
 use crate::problem::Problem;
 use crate::time::TimeGrid;
 
@@ -41,7 +42,7 @@ use crate::time::TimeGrid;
 pub struct Dynamics<'p, const D: usize> {
     problem: &'p Problem<D>,
     times: &'p TimeGrid,
-    stiffness: Stiffness,
+    kernel: ProblemKernel<D>,
     inverse_mass: Vec<f64>,
     /// Nodes on which contact or a support acts, ascending.
     apart: Vec<u32>,
@@ -59,7 +60,7 @@ impl<'p, const D: usize> Dynamics<'p, D> {
         let mut apart: Vec<u32> = contact.chain(supported).map(|node| node.index() as u32).collect();
         apart.sort_unstable();
         apart.dedup();
-        Self { problem, times, stiffness: Stiffness::new(problem), inverse_mass, apart, parallel: false }
+        Self { problem, times, kernel: ProblemKernel::new(problem), inverse_mass, apart, parallel: false }
     }
 
     /// The problem.
@@ -68,11 +69,9 @@ impl<'p, const D: usize> Dynamics<'p, D> {
         self.problem
     }
 
-    /// The stiffness K.
-    #[inline]
-    #[must_use]
-    pub fn stiffness(&self) -> &Stiffness {
-        &self.stiffness
+    /// Elements that are worked on at the same time.
+    fn strips(&self) -> &Strips {
+        on_kernel!(&self.kernel, kernel => Kernel::<D>::strips(kernel))
     }
 
     /// 1/m of each node (1/kg).
@@ -86,7 +85,12 @@ impl<'p, const D: usize> Dynamics<'p, D> {
     /// strain energy (J).
     pub fn forces(&self, n: usize, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
         self.problem.external_forces(self.times.instants()[n], force);
-        self.stiffness.subtract_internal_forces(displacement, force)
+        self.subtract_internal_forces(displacement, force)
+    }
+
+    /// Subtracts the internal forces (N) from `force` and returns the strain energy (J).
+    pub fn subtract_internal_forces(&self, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
+        on_kernel!(&self.kernel, kernel => kernel.subtract(displacement, &mut [], force))
     }
 
     /// The forces M a_n of all nodes (N) but for contact, supports included. Returns the strain

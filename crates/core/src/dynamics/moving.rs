@@ -4,6 +4,7 @@ use super::Dynamics;
 use super::node_update::{NodeMotion, StripSums};
 use super::pass::{Fields, Pass};
 use crate::history::{StepForces, half_of_last};
+use crate::kernel::{Kernel, on_kernel};
 use crate::problem::Problem;
 
 /// The fields of an instant.
@@ -15,6 +16,8 @@ pub(super) struct MovingBody<const D: usize> {
     pub(super) velocity: Vec<[f64; D]>,
     pub(super) forces: StepForces<D>,
     external: Vec<[f64; D]>,
+    /// Internal variables of the elements, in rows.
+    internal: Vec<f64>,
     sums: Vec<StripSums<D>>,
     total: StripSums<D>,
 }
@@ -29,7 +32,12 @@ impl<const D: usize> MovingBody<D> {
             velocity: problem.initial_velocity().to_vec(),
             forces: StepForces::new(problem),
             external: vec![[0.0; D]; loaded],
-            sums: vec![StripSums::ZERO; dynamics.stiffness.strips.count()],
+            internal: vec![
+                0.0;
+                on_kernel!(&dynamics.kernel, kernel => Kernel::<D>::variables(kernel))
+                    * problem.mesh().element_count()
+            ],
+            sums: vec![StripSums::ZERO; dynamics.strips().count()],
             total: StripSums::ZERO,
         }
     }
@@ -39,8 +47,25 @@ impl<const D: usize> MovingBody<D> {
         if !self.external.is_empty() {
             dynamics.problem.external_forces(dynamics.times.instants()[n], &mut self.external);
         }
+        self.total = on_kernel!(&dynamics.kernel, kernel => self.pass(kernel, dynamics, n, motion));
+        let StepForces { strain, total, before_contact, supports, .. } = &mut self.forces;
+        *strain = self.total.strain();
+        dynamics.apply_supports(n, total, |i, reaction| supports[i] = reaction);
+        for (contact, before) in dynamics.problem.surface().nodes().iter().zip(before_contact) {
+            *before = total[contact.node.index()];
+        }
+    }
+
+    /// The pass over the mesh.
+    fn pass<K: Kernel<D>>(
+        &mut self,
+        kernel: &K,
+        dynamics: &Dynamics<'_, D>,
+        n: usize,
+        motion: NodeMotion<'_, D>,
+    ) -> StripSums<D> {
         let pass = Pass {
-            stiffness: &dynamics.stiffness,
+            kernel,
             mass: dynamics.problem.mass(),
             inverse_mass: &dynamics.inverse_mass,
             apart: &dynamics.apart,
@@ -49,19 +74,15 @@ impl<const D: usize> MovingBody<D> {
             back: half_of_last(dynamics.times, n),
             parallel: dynamics.parallel,
         };
-        self.total = pass.run(Fields {
+        pass.run(Fields {
             start: 0,
             displacement: &mut self.displacement,
             velocity: &mut self.velocity,
             force: &mut self.forces.total,
+            internal_start: 0,
+            internal: &mut self.internal,
             sums: &mut self.sums,
-        });
-        let StepForces { strain, total, before_contact, supports, .. } = &mut self.forces;
-        *strain = self.total.strain();
-        dynamics.apply_supports(n, total, |i, reaction| supports[i] = reaction);
-        for (contact, before) in dynamics.problem.surface().nodes().iter().zip(before_contact) {
-            *before = total[contact.node.index()];
-        }
+        })
     }
 
     /// Kinetic energy and momentum, once the reactions are among the forces.

@@ -2,7 +2,11 @@
 
 use super::critical_step::critical_time_step;
 use super::{Balance, Dynamics};
+use crate::element_state::displacement_gradient;
 use crate::history::SinkError;
+use crate::ids::ElementId;
+use crate::material::volume_ratio;
+use crate::time::TimeError;
 use thiserror::Error;
 
 /// Why a simulation stopped before its end.
@@ -35,6 +39,38 @@ pub enum SimulationError {
         critical_step: f64,
         /// Whether steps are stable without contact, and contact forces did most of the work.
         by_contact: bool,
+    },
+    /// More steps than a run can have.
+    #[error(transparent)]
+    Times(TimeError),
+    /// An element of a finite law whose nodes have passed each other.
+    #[error(
+        "element {element} is turned inside out at step {step}, t = {time:.6e} s: its volume is {ratio:.3} times that of \
+         the undeformed element; the steps before are kept. Take a finer mesh there, a slower impact, or a law that \
+         hardens in compression (\"neo_hookean\")"
+    )]
+    InsideOut {
+        /// The step.
+        step: usize,
+        /// Its time (s).
+        time: f64,
+        /// The element.
+        element: usize,
+        /// det F.
+        ratio: f64,
+    },
+    /// A step above the stable one of the present stiffness.
+    #[error(
+        "the step from t = {time:.6e} s on, {step:.4e} s, is above the stable step of the deformed body, {stable:.4e} s: \
+         give courant = 0.9, with which steps follow the stiffness, or at most {stable:.4e} s from there on"
+    )]
+    StepTooLong {
+        /// Its time (s).
+        time: f64,
+        /// The step (s).
+        step: f64,
+        /// The stable step (s).
+        stable: f64,
     },
     /// A node that touches at step 1 from too near: no admissible velocity brings it to rest.
     #[error(
@@ -109,9 +145,12 @@ pub struct Simulation {
 pub(super) fn unstable<const D: usize>(
     dynamics: &Dynamics<'_, D>,
     step: usize,
-    velocity: &[[f64; D]],
+    [displacement, velocity]: [&[[f64; D]]; 2],
     balance: &Balance,
 ) -> SimulationError {
+    if let Some((element, ratio)) = inside_out(dynamics, displacement) {
+        return SimulationError::InsideOut { step, time: dynamics.times.instants()[step], element, ratio };
+    }
     let speed = |v: &[f64; D]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let energy = |(v, m): (&[f64; D], &f64)| m * speed(v) * speed(v);
     let energies: Vec<f64> = velocity.iter().zip(dynamics.problem.mass()).map(energy).collect();
@@ -128,4 +167,13 @@ pub(super) fn unstable<const D: usize>(
         critical_step,
         by_contact: longest_step < critical_step && 2.0 * balance.given_by_contact() > balance.kinetic + balance.strain,
     }
+}
+
+/// The element of a finite law with the least det F, if that is not positive.
+fn inside_out<const D: usize>(dynamics: &Dynamics<'_, D>, displacement: &[[f64; D]]) -> Option<(usize, f64)> {
+    let problem = dynamics.problem;
+    let elements = (0..problem.mesh().element_count()).map(ElementId::new);
+    let ratio = |e: ElementId| (e.index(), volume_ratio(&displacement_gradient(problem.mesh(), e, displacement)));
+    let finite = elements.filter(|e| problem.material(*e).is_finite()).map(ratio);
+    finite.filter(|(_, ratio)| *ratio <= 0.0).min_by(|a, b| a.1.total_cmp(&b.1))
 }

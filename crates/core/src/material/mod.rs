@@ -1,10 +1,17 @@
-//! Material laws for small strains: the trait [`Law`] and one file for each law.
+//! Material laws: the traits [`Law`], [`PointLaw`] and [`LinearLaw`], and one file for each law.
 //!
 //! A sweep over elements is generic over the law. Nothing is dispatched at run time.
 
 mod elastic;
+mod hyperelastic;
+mod kinematics;
+mod stability;
 
 pub use elastic::{Elastic, Hypothesis};
+pub use hyperelastic::{HyperelasticLaw, Response, volume_ratio};
+pub use kinematics::Kinematics;
+
+use crate::simd::lanes::Value;
 use thiserror::Error;
 
 /// Why a material was refused.
@@ -24,8 +31,8 @@ pub struct MaterialError {
 /// A tensor of second order in `D` dimensions.
 pub type Tensor<const D: usize> = [[f64; D]; D];
 
-/// A law between the displacement gradient ∂u_a/∂x_b and the stress (Pa), with the density and the extent of
-/// the body across the mesh.
+/// A law between the displacement gradient H = ∂u_a/∂X_b and the stress (Pa), with the density and the extent of the body
+/// across the mesh.
 pub trait Law {
     /// Density ρ (kg/m³).
     fn density(&self) -> f64;
@@ -42,26 +49,43 @@ pub trait Law {
         self.density() * self.wave_speed() * self.wave_speed()
     }
 
-    /// Stress σ (Pa) of a displacement gradient.
+    /// Strain: ε = sym H, eq. \[5\], or the Green strain E = ½(FᵀF − 1) of a finite law.
+    fn strain<const D: usize>(&self, gradient: &Tensor<D>) -> Tensor<D>;
+
+    /// Stress σ (Pa), force per present area.
     fn stress<const D: usize>(&self, gradient: &Tensor<D>) -> Tensor<D>;
 
     /// Normal stress (Pa) across the mesh, in the dimension that a plane body leaves out.
     fn stress_across<const D: usize>(&self, gradient: &Tensor<D>) -> f64;
 
-    /// First-order change of the stress (Pa) for a change of the gradient.
-    fn tangent<const D: usize>(&self, gradient: &Tensor<D>, change: &Tensor<D>) -> Tensor<D>;
-
-    /// Strain energy φ(ε) (J/m³).
+    /// Strain energy φ per undeformed volume (J/m³).
     fn strain_energy<const D: usize>(&self, gradient: &Tensor<D>) -> f64;
-
-    /// Complementary energy φ*(σ) (J/m³). Legendre–Fenchel: φ(ε) + φ*(σ) ≥ σ:ε, and equal where σ obeys the law.
-    fn complementary_energy<const D: usize>(&self, stress: &Tensor<D>) -> f64;
 }
+
+/// A law as the points of a body obey it, at one or at eight of them.
+pub trait PointLaw: Copy + Send + Sync {
+    /// Internal variables of a point, at most [`MOST_VARIABLES`].
+    const VARIABLES: usize;
+
+    /// First Piola–Kirchhoff stress P (Pa) of H = ∂u_a/∂X_b, with the work of P in dH, and the strain energy per reference
+    /// volume (J/m³). Takes the internal variables from the last instant to this one.
+    fn respond<V: Value, const D: usize>(&self, gradient: &[[V; D]; D], internal: &mut [V]) -> Response<V, D>;
+
+    /// A bound on the largest eigenvalue of (1⊗R) ∂P/∂F (1⊗R) for a symmetric R (1/m): that of K_T of an element over its
+    /// volume (Pa/m²), if R² = Σ ∇φ_i⊗∇φ_i.
+    fn stiffness_bound<V: Value, const D: usize>(&self, gradient: &[[V; D]; D], root: &[[V; D]; D]) -> V;
+}
+
+/// Room for internal variables of a point.
+pub const MOST_VARIABLES: usize = 8;
 
 /// A law with a constant tangent K. Methods that are valid for such laws only ask for this trait: internal
 /// forces from scaled gradients, the element bound on ω_max, the correction of the mass by K ã, energies as
 /// quadratic forms that do not change with time, and products of energy by polarisation.
 pub trait LinearLaw: Law {
+    /// Complementary energy φ*(σ) (J/m³). Legendre–Fenchel: φ(ε) + φ*(σ) ≥ σ:ε, and equal where σ obeys the law.
+    fn complementary_energy<const D: usize>(&self, stress: &Tensor<D>) -> f64;
+
     /// The factors (α, β) of τ : K⁻¹ : τ = α τ:τ − β (tr τ)² (1/Pa).
     fn compliance<const D: usize>(&self) -> (f64, f64);
 

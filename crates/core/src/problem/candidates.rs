@@ -4,7 +4,7 @@ use super::{Cause, HeldBy, InputError};
 use crate::contact::{ContactFace, ContactNode, ContactSurface, Obstacle, Plane, dot};
 use crate::ids::{FaceId, NodeId};
 use crate::mesh::Mesh;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A face faces an obstacle if its outward unit normal · n is below this.
 const FACES: f64 = -1e-9;
@@ -17,13 +17,14 @@ pub(super) const ALIGNED: f64 = 1e-12;
 pub(super) fn add<const D: usize>(
     surface: &mut ContactSurface<D>,
     mesh: &Mesh,
-    (obstacle, plane): (Obstacle<D>, &Plane<D>),
+    (obstacle, plane, turning): (Obstacle<D>, &Plane<D>, bool),
     held: impl Fn(FaceId) -> Option<HeldBy>,
     prescribed: impl Fn(NodeId) -> [bool; D],
     area: impl Fn(FaceId) -> f64,
 ) -> Result<(), InputError> {
     let index = surface.obstacles().len();
-    let facing = facing(mesh, &obstacle, held).map_err(|(cause, key)| cause.at("obstacle", Some(index), key))?;
+    let facing =
+        facing(mesh, &obstacle, held, turning).map_err(|(cause, key)| cause.at("obstacle", Some(index), key))?;
     if let Some(other) = surface.faces().iter().find(|other| facing.contains(&other.face)) {
         let nodes = mesh.face_nodes::<D>(other.face).map(NodeId::index).to_vec();
         return Err(Cause::TwoPlanes { nodes, first: other.obstacle + 1 }.at("obstacle", Some(index), "group"));
@@ -83,14 +84,17 @@ fn corner<const D: usize>(
     Ok(())
 }
 
-/// Free faces that face an obstacle, of its group if it names one. The error has the key of the statement.
+/// Free faces that face an obstacle, of its group if it names one; all of a body that may turn. The error has the key of
+/// the statement.
 fn facing<const D: usize>(
     mesh: &Mesh,
     obstacle: &Obstacle<D>,
     held: impl Fn(FaceId) -> Option<HeldBy>,
+    turning: bool,
 ) -> Result<Vec<FaceId>, (Cause, &'static str)> {
     let nodes = |face: FaceId| mesh.face_nodes::<D>(face).map(NodeId::index).to_vec();
-    let faces = |&face: &FaceId| dot(&mesh.normal_in::<D>(face).0, &normal_at(mesh, obstacle, face)) < FACES;
+    let inclination = |face: FaceId| dot(&mesh.normal_in::<D>(face).0, &normal_at(mesh, obstacle, face));
+    let faces = |&face: &FaceId| turning || inclination(face) < FACES;
     let mut found: Vec<FaceId>;
     if let Some(name) = obstacle.group() {
         let group = super::boundary::face_group(mesh, name).map_err(|cause| (cause, "group"))?;
@@ -110,7 +114,56 @@ fn facing<const D: usize>(
             return Err((Cause::AllHeld { nodes: nodes(face), by }, ""));
         }
     }
+    if turning {
+        open_loops(mesh, &mut found, inclination);
+    }
     Ok(found)
+}
+
+/// Leaves out of each closed curve of faces the one that faces away most, so that it has ends. Its nodes stay candidates
+/// with their other faces.
+fn open_loops(mesh: &Mesh, faces: &mut Vec<FaceId>, inclination: impl Fn(FaceId) -> f64) {
+    let mut pieces = Pieces::default();
+    faces.iter().for_each(|&face| pieces.join(mesh.face(face).nodes));
+    let mut ends: BTreeMap<NodeId, usize> = BTreeMap::new();
+    faces.iter().flat_map(|&face| mesh.face(face).nodes).for_each(|&node| *ends.entry(node).or_default() += 1);
+    let open: BTreeSet<NodeId> =
+        ends.iter().filter(|(_, count)| **count == 1).map(|(node, _)| pieces.of(*node)).collect();
+    let mut away: BTreeMap<NodeId, FaceId> = BTreeMap::new();
+    for &face in faces.iter() {
+        let most = away.entry(pieces.of(mesh.face(face).nodes[0])).or_insert(face);
+        if inclination(face) > inclination(*most) {
+            *most = face;
+        }
+    }
+    faces.retain(|face| {
+        let piece = pieces.of(mesh.face(*face).nodes[0]);
+        open.contains(&piece) || away[&piece] != *face
+    });
+}
+
+/// Nodes in connected pieces, each with the name of its lowest node.
+#[derive(Default)]
+struct Pieces(BTreeMap<NodeId, NodeId>);
+
+impl Pieces {
+    fn of(&self, node: NodeId) -> NodeId {
+        let mut of = node;
+        while let Some(&lower) = self.0.get(&of).filter(|lower| **lower != of) {
+            of = lower;
+        }
+        of
+    }
+
+    fn join(&mut self, nodes: &[NodeId]) {
+        let lowest = nodes.iter().map(|node| self.of(*node)).min();
+        for node in nodes {
+            let of = self.of(*node);
+            lowest.into_iter().for_each(|lowest| {
+                self.0.insert(of, lowest);
+            });
+        }
+    }
 }
 
 /// The normal of a group that does not face the obstacle, and the groups that do face it.

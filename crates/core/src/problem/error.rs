@@ -75,6 +75,18 @@ pub enum Cause {
         short(*.density), short(*.young), short(*.speed)
     )]
     FasterThanLight { density: f64, young: f64, speed: f64 },
+    /// Contact between bodies that may turn.
+    #[error(
+        "cannot be given with kinematics = \"finite\": contact between bodies has the normals of the undeformed surfaces; \
+         give kinematics = \"small\", or planes alone"
+    )]
+    FiniteContact,
+    /// Several planes for bodies that may turn.
+    #[error(
+        "is one of {planes} planes; with kinematics = \"finite\" one is possible: the nodes of a body that turns would \
+         have to find theirs"
+    )]
+    FinitePlanes { planes: usize },
     /// More materials or body forces than can be told apart.
     #[error("{count} are given; at most {most} are possible")]
     TooMany { count: usize, most: usize },

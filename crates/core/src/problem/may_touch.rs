@@ -55,7 +55,8 @@ fn planes<const D: usize>(
             in_front(bodies.mesh, &plane, displacement).map_err(|cause| cause.at("obstacle", Some(index), "normal"))?;
         }
         let (held, fixed) = (|f: FaceId| bodies.held[f.index()], |node: NodeId| bodies.fixed[node.index()]);
-        candidates::add(&mut surface, bodies.mesh, (obstacle, &plane), held, fixed, |f| bodies.area(f))?;
+        let turning = bodies.mesh.boundary().any(|face| (bodies.law)(face).is_finite());
+        candidates::add(&mut surface, bodies.mesh, (obstacle, &plane, turning), held, fixed, |f| bodies.area(f))?;
         surface.place(surface.obstacles().len() - 1, displacement);
     }
     Ok(surface)

@@ -48,6 +48,12 @@ impl Model {
         &self.materials[usize::from(self.element_material[element.index()])]
     }
 
+    /// Whether a body may turn and strain by any amount.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.materials.iter().any(Elastic::is_finite)
+    }
+
     /// All materials.
     #[must_use]
     pub fn materials(&self) -> &[Elastic] {

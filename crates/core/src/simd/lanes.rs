@@ -72,6 +72,12 @@ pub trait Value:
     /// Absolute values.
     fn abs(self) -> Self;
 
+    /// Square roots.
+    fn sqrt(self) -> Self;
+
+    /// The same numbers, but f(x) where `wanted` holds of the number x of another.
+    fn replaced_where(self, x: Self, wanted: impl Fn(f64) -> bool, f: impl Fn(f64) -> f64) -> Self;
+
     /// The larger of each two; `other` is ignored where it is NaN.
     fn max(self, other: Self) -> Self;
 
@@ -100,6 +106,16 @@ impl Value for f64 {
     #[inline(always)]
     fn abs(self) -> Self {
         self.abs()
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn replaced_where(self, x: Self, wanted: impl Fn(f64) -> bool, f: impl Fn(f64) -> f64) -> Self {
+        if wanted(x) { f(x) } else { self }
     }
 
     #[inline(always)]
@@ -135,6 +151,16 @@ impl Value for Lanes {
     #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.map(f64::abs))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+
+    #[inline(always)]
+    fn replaced_where(self, x: Self, wanted: impl Fn(f64) -> bool, f: impl Fn(f64) -> f64) -> Self {
+        Self(from_fn(|lane| if wanted(x.0[lane]) { f(x.0[lane]) } else { self.0[lane] }))
     }
 
     #[inline(always)]

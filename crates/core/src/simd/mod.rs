@@ -71,6 +71,8 @@ pub trait Registers: Copy {
     fn mul(self, a: Self::Eight, b: Self::Eight) -> Self::Eight;
     /// Quotient.
     fn div(self, a: Self::Eight, b: Self::Eight) -> Self::Eight;
+    /// Square roots.
+    fn sqrt(self, v: Self::Eight) -> Self::Eight;
     /// The larger of each two; that of `b` is ignored where it is NaN.
     fn max(self, a: Self::Eight, b: Self::Eight) -> Self::Eight;
     /// The larger of each two numbers by their bits: NaN counts as largest among numbers that are not negative.
@@ -250,6 +252,11 @@ impl Registers for Portable {
     #[inline(always)]
     fn div(self, a: Eight, b: Eight) -> Eight {
         each(a, b, over)
+    }
+
+    #[inline(always)]
+    fn sqrt(self, v: Eight) -> Eight {
+        v.map(f64::sqrt)
     }
 
     #[inline(always)]

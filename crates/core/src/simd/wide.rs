@@ -65,6 +65,20 @@ impl<R: Registers> Value for Wide<R> {
     }
 
     #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.with(self.registers.sqrt(self.numbers))
+    }
+
+    #[inline(always)]
+    fn replaced_where(self, x: Self, wanted: impl Fn(f64) -> bool, f: impl Fn(f64) -> f64) -> Self {
+        let other = x.store();
+        if !other.0.iter().any(|x| wanted(*x)) {
+            return self;
+        }
+        self.load(&self.store().replaced_where(other, wanted, f))
+    }
+
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         self.with(self.registers.max(self.numbers, other.numbers))
     }

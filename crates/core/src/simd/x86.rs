@@ -95,6 +95,11 @@ impl Registers for V3 {
     }
 
     #[inline(always)]
+    fn sqrt(self, v: Self::Eight) -> Self::Eight {
+        [self.avx._mm256_sqrt_pd(v[0]), self.avx._mm256_sqrt_pd(v[1])]
+    }
+
+    #[inline(always)]
     fn max(self, a: Self::Eight, b: Self::Eight) -> Self::Eight {
         // Where one is NaN, the instruction gives its second operand.
         [self.avx._mm256_max_pd(b[0], a[0]), self.avx._mm256_max_pd(b[1], a[1])]
@@ -257,6 +262,11 @@ impl Registers for V4 {
     #[inline(always)]
     fn div(self, a: __m512d, b: __m512d) -> __m512d {
         self.avx512f._mm512_div_pd(a, b)
+    }
+
+    #[inline(always)]
+    fn sqrt(self, v: __m512d) -> __m512d {
+        self.avx512f._mm512_sqrt_pd(v)
     }
 
     #[inline(always)]

@@ -2,7 +2,8 @@
 
 use crate::solution::run::{Run, aluminium, difference, largest, run};
 use percute_core::contact::Obstacle;
-use percute_core::dynamics::{Stiffness, critical_time_step};
+use percute_core::dynamics::critical_time_step;
+use percute_core::kernel::Stiffness;
 use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;

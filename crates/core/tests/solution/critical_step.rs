@@ -2,7 +2,8 @@
 
 use crate::solution::run::{aluminium, fixed};
 use nalgebra::DMatrix;
-use percute_core::dynamics::{Stiffness, critical_time_step, element_time_step};
+use percute_core::dynamics::{critical_time_step, element_time_step};
+use percute_core::kernel::Stiffness;
 use percute_core::load::Support;
 use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};

@@ -8,6 +8,7 @@ mod corner;
 mod critical_step;
 mod early_end;
 mod element_state;
+mod finite;
 mod free_vibration;
 mod from_rest;
 mod invariance;

@@ -1,8 +1,9 @@
 //! Runs, and the quantities that follow from their steps by the scheme alone.
 
-use percute_core::dynamics::{Simulation, Stiffness, simulate};
+use percute_core::dynamics::{Simulation, simulate};
 use percute_core::history::{History, StepSource};
 use percute_core::ids::NodeId;
+use percute_core::kernel::Stiffness;
 use percute_core::load::{BodyForce, Support, Table};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;

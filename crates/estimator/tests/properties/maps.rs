@@ -5,7 +5,7 @@ use crate::properties::estimating::{all_choices, estimate_with_maps, history};
 use percute_core::border::vectors;
 use percute_core::history::History;
 use percute_core::load::{Profile, Table, Traction};
-use percute_core::material::Law;
+use percute_core::material::LinearLaw;
 use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;

@@ -4,7 +4,7 @@ use percute_core::border::vectors;
 use percute_core::dynamics::{critical_time_step, simulate};
 use percute_core::ids::ElementId;
 use percute_core::load::Support;
-use percute_core::material::{Elastic, Law};
+use percute_core::material::{Elastic, Law, LinearLaw};
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem};

@@ -2,7 +2,7 @@
 
 use percute_core::dynamics::critical_time_step;
 use percute_core::load::{BodyForce, Profile, Support, Table, Traction};
-use percute_core::material::{Elastic, Law};
+use percute_core::material::{Elastic, Law, LinearLaw};
 use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem};

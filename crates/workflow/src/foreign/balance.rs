@@ -2,7 +2,7 @@
 
 use super::window::{Held, Window, vectors_of};
 use percute_core::border::Vector;
-use percute_core::dynamics::Stiffness;
+use percute_core::kernel::Stiffness;
 use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 

@@ -7,8 +7,8 @@ use super::limits::BALANCE;
 use super::residual::{fit, norm};
 use super::window::{vectors_of, windows};
 use crate::message::trimmed;
-use percute_core::dynamics::Stiffness;
 use percute_core::history::SinkError;
+use percute_core::kernel::Stiffness;
 use percute_core::material::{Elastic, Hypothesis, Law, LinearLaw};
 use percute_core::problem::{AnyProblem, Statement};
 

@@ -4,7 +4,8 @@ use super::diagnosis::Diagnosis;
 use super::limits::{DRIFT, Excess, by_a_penalty};
 use crate::message::{percent, trimmed};
 use percute_core::border::row;
-use percute_core::dynamics::{Stiffness, critical_time_step};
+use percute_core::dynamics::critical_time_step;
+use percute_core::kernel::Stiffness;
 use percute_core::time::is_stable;
 
 /// The name of what is over its limit where a penalty makes the run unstable.

@@ -116,7 +116,7 @@ impl<const D: usize> Plain<D> {
         let (problem, inverse) = (dynamics.problem(), dynamics.inverse_mass());
         let mut force = vec![[0.0; D]; inverse.len()];
         if self.from_rest {
-            dynamics.stiffness().subtract_internal_forces(&self.displacement, &mut force);
+            dynamics.subtract_internal_forces(&self.displacement, &mut force);
         } else {
             dynamics.forces_without_contact(n, &self.displacement, &mut force);
         }
@@ -133,7 +133,7 @@ impl<const D: usize> Plain<D> {
         let twice = lumping_difference::<D, N>(problem, inverse, &once);
         let thrice = lumping_difference::<D, N>(problem, inverse, &twice);
         let mut internal = vec![[0.0; D]; inverse.len()];
-        dynamics.stiffness().subtract_internal_forces(&plain, &mut internal);
+        dynamics.subtract_internal_forces(&plain, &mut internal);
         problem.prescribed().iter().for_each(|p| internal[p.node.index()][p.component] = 0.0);
         let [next, last] = [times.step(n.min(times.step_count() - 1)), times.step(n.saturating_sub(1))];
         let smoothing = Smoothing::new(problem);

@@ -1,5 +1,6 @@
 //! The elements of the sweep, two and two across a common face.
 
+use super::Reach;
 use crate::ids::{ElementId, NodeId};
 use crate::material::LinearLaw;
 use crate::mesh::Strips;
@@ -10,9 +11,6 @@ use std::ops::Range;
 /// of the next come from memory; fewer have more work at their ends.
 const CHUNK: usize = 32;
 
-/// Nodes are handled so many at a time, the numbers of a cache line.
-const GRAIN: u32 = 8;
-
 /// A partner of an element reaches at most so many nodes farther than the elements before. In a triangulation by levels
 /// of nodes it would else reach a level farther: twice the nodes would be in work at a time, too many for the first
 /// cache on meshes of some hundred thousand elements, and a step would take 1.4 times as long. With fewer nodes than
@@ -20,23 +18,20 @@ const GRAIN: u32 = 8;
 const AHEAD: usize = 16;
 
 /// Numbers of the four nodes of a pair in its strip: A has nodes 0 to D, B has node 0 and nodes 2 to D + 1.
-pub(super) type PairNodes = [u32; 4];
+pub(crate) type PairNodes = [u32; 4];
 
 /// √(|E| G) ∇φ_i in two pairs: `[i][2 (2 p + l) + b]` is component b at node i + 1 + l of element l of pair p.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
-pub(super) struct Gradients(pub(super) [[f64; 8]; 2]);
+pub(crate) struct Gradients(pub(crate) [[f64; 8]; 2]);
 
 /// Pairs of elements of one law.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Chunk {
+struct Chunk {
     /// Where the quads of the next chunk begin.
     end: u32,
     law: u32,
-    /// No node of this chunk or of those before it in the strip has this number or a higher one.
-    pub(super) reached: u32,
-    /// No node of a later chunk of the strip has a lower number.
-    pub(super) left: u32,
+    reach: Reach,
 }
 
 /// The elements of all strips in pairs, and the pairs two and two: 40 bytes for each element of a plane mesh.
@@ -53,10 +48,10 @@ pub(super) struct ElementPairs {
 
 /// One chunk as the sweep needs it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ChunkData<'a> {
-    pub(super) nodes: &'a [[PairNodes; 2]],
-    pub(super) gradients: &'a [Gradients],
-    pub(super) law: [f64; 2],
+pub(crate) struct ChunkData<'a> {
+    pub(crate) nodes: &'a [[PairNodes; 2]],
+    pub(crate) gradients: &'a [Gradients],
+    pub(crate) law: [f64; 2],
 }
 
 /// An element and the element across one of its faces, if it has a partner.
@@ -89,7 +84,8 @@ impl ElementPairs {
                     all.add(problem, strips.nodes(strip).start, same, law(same[0].first.index()));
                 }
             }
-            all.close(first_chunk, strips.nodes(strip).len());
+            Reach::close(all.chunks[first_chunk..].iter_mut().map(|chunk| &mut chunk.reach), strips.nodes(strip).len());
+            all.of_strip.push(all.chunks.len() as u32);
         }
         all.nodes.shrink_to_fit();
         all.gradients.shrink_to_fit();
@@ -131,34 +127,13 @@ impl ElementPairs {
             self.gradients.push(gradients);
         }
         let quads = &self.nodes[self.chunks.last().map_or(0, |chunk| chunk.end as usize)..];
-        let reached = quads.as_flattened().as_flattened().iter().fold(0, |most, node| most.max(node + 1));
-        self.chunks.push(Chunk { end: self.nodes.len() as u32, law, reached, left: 0 });
-    }
-
-    /// Completes the chunks of a strip of so many nodes.
-    fn close(&mut self, first_chunk: usize, nodes: usize) {
-        let mut reached = 0;
-        for chunk in &mut self.chunks[first_chunk..] {
-            reached = chunk.reached.next_multiple_of(GRAIN).min(nodes as u32).max(reached);
-            chunk.reached = reached;
-        }
-        // The last chunk is followed by no other: all nodes have been reached, and all are left.
-        if let Some(last) = self.chunks[first_chunk..].last_mut() {
-            last.reached = nodes as u32;
-        }
-        let mut left = nodes as u32;
-        for k in (first_chunk..self.chunks.len()).rev() {
-            self.chunks[k].left = if left < nodes as u32 { left - left % GRAIN } else { left };
-            let start = if k == 0 { 0 } else { self.chunks[k - 1].end as usize };
-            let quads = &self.nodes[start..self.chunks[k].end as usize];
-            left = quads.as_flattened().as_flattened().iter().fold(left, |least, &node| least.min(node));
-        }
-        self.of_strip.push(self.chunks.len() as u32);
+        let reach = Reach::of(quads.as_flattened().as_flattened().iter().copied());
+        self.chunks.push(Chunk { end: self.nodes.len() as u32, law, reach });
     }
 
     /// The chunks of a strip, with their data.
     #[inline(always)]
-    pub(super) fn strip(&self, strip: usize) -> impl Iterator<Item = (&Chunk, ChunkData<'_>)> {
+    pub(super) fn strip(&self, strip: usize) -> impl Iterator<Item = (&Reach, ChunkData<'_>)> {
         let range = self.of_strip[strip] as usize..self.of_strip[strip + 1] as usize;
         let first = if range.start == 0 { 0 } else { self.chunks[range.start - 1].end as usize };
         self.chunks[range].iter().scan(
@@ -168,7 +143,7 @@ impl ElementPairs {
                 let quads = *start..chunk.end as usize;
                 *start = quads.end;
                 let (nodes, gradients) = (&self.nodes[quads.clone()], &self.gradients[quads]);
-                Some((chunk, ChunkData { nodes, gradients, law: self.laws[chunk.law as usize] }))
+                Some((&chunk.reach, ChunkData { nodes, gradients, law: self.laws[chunk.law as usize] }))
             },
         )
     }
@@ -247,7 +222,8 @@ mod tests {
         let problem = Problem::<2>::builder(mesh).material(law).build().unwrap().renumbered(&numbering);
         let strips = Strips::new(problem.mesh());
         let pairs = ElementPairs::new(&problem, &strips);
-        let longest = pairs.chunks.iter().map(|chunk| chunk.reached.saturating_sub(chunk.left)).max().unwrap();
+        let longest =
+            pairs.chunks.iter().map(|chunk| chunk.reach.reached.saturating_sub(chunk.reach.left)).max().unwrap();
         assert!((longest as usize) < 2 * side, "{longest}");
         let quads = 4 * pairs.nodes.len();
         assert!(quads * 100 < 108 * problem.mesh().element_count(), "{quads}");

@@ -1,12 +1,13 @@
-//! Internal forces of the P1 elements, ∫σ_h ∇φ_i.
+//! Internal forces of P1 elements with linear laws.
 
-use super::element_pairs::{ChunkData, ElementPairs, PairNodes};
+use super::pairs::{ChunkData, ElementPairs, PairNodes};
+use super::{Kernel, Reach};
 use crate::border::vectors;
 use crate::cell::CellKind;
 use crate::mesh::Strips;
 use crate::on_problem;
 use crate::problem::{Problem, ProblemRef};
-use crate::simd::{Eight, Registers, Task, run_task};
+use crate::simd::{Eight, Registers};
 
 /// The stiffness of a problem, applied element by element. Its scaled gradients are valid for linear laws only.
 ///
@@ -14,9 +15,9 @@ use crate::simd::{Eight, Registers, Task, run_task};
 /// triangles have six. First all even strips are swept, then all odd ones.
 #[derive(Clone, Debug)]
 pub struct Stiffness {
-    pub(super) kind: CellKind,
-    pub(super) strips: Strips,
-    pub(super) pairs: ElementPairs,
+    kind: CellKind,
+    strips: Strips,
+    pairs: ElementPairs,
 }
 
 impl Stiffness {
@@ -31,7 +32,7 @@ impl Stiffness {
     }
 
     /// The same with a cut of its own.
-    pub(super) fn on_strips<const D: usize>(problem: &Problem<D>, strips: Strips) -> Self {
+    fn on_strips<const D: usize>(problem: &Problem<D>, strips: Strips) -> Self {
         let pairs = ElementPairs::new(problem, &strips);
         Self { kind: problem.mesh().kind(), strips, pairs }
     }
@@ -46,60 +47,38 @@ impl Stiffness {
 
     /// Subtracts K u from `force` (N) and returns the strain energy ½ u·K u (J).
     pub fn subtract_internal_forces<const D: usize>(&self, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
-        let mut energies = vec![0.0; self.strips.count()];
-        for parity in 0..2 {
-            for strip in (parity..self.strips.count()).step_by(2) {
-                let nodes = self.strips.nodes(strip);
-                let sweep = StripSweep {
-                    stiffness: self,
-                    strip,
-                    displacement: &displacement[nodes.clone()],
-                    force: &mut force[nodes],
-                };
-                energies[strip] = run_task(sweep);
-            }
-        }
-        0.5 * energies.iter().sum::<f64>()
+        self.subtract(displacement, &mut [], force)
     }
 }
 
-/// The sweep over one strip alone.
-struct StripSweep<'a, const D: usize> {
-    stiffness: &'a Stiffness,
-    strip: usize,
-    displacement: &'a [[f64; D]],
-    force: &'a mut [[f64; D]],
-}
+impl<const D: usize> Kernel<D> for Stiffness {
+    type Chunk<'a> = ChunkData<'a>;
 
-impl<const D: usize> Task for StripSweep<'_, D> {
-    type Output = f64;
+    fn strips(&self) -> &Strips {
+        &self.strips
+    }
 
     #[inline(always)]
-    fn run<L: Registers>(self, lanes: L) -> f64 {
-        let Self { stiffness, strip, displacement, force } = self;
-        let mut energy = [0.0; 8];
-        for (_, chunk) in stiffness.pairs.strip(strip) {
-            sweep(lanes, stiffness.kind, &chunk, displacement, force, &mut energy);
-        }
-        energy.iter().sum()
+    fn chunks(&self, strip: usize) -> impl Iterator<Item = (&Reach, ChunkData<'_>)> {
+        self.pairs.strip(strip)
     }
-}
 
-/// Subtracts the internal forces of a chunk and adds twice its strain energy; nodes are counted in the strip.
-#[inline(always)]
-pub(super) fn sweep<L: Registers, const D: usize>(
-    lanes: L,
-    kind: CellKind,
-    chunk: &ChunkData<'_>,
-    displacement: &[[f64; D]],
-    force: &mut [[f64; D]],
-    energy: &mut Eight,
-) {
-    match kind {
-        CellKind::Bar => any(chunk, displacement, force, energy),
-        CellKind::Triangle => {
-            let displacement = displacement.as_flattened().as_chunks().0;
-            triangles(lanes, chunk, displacement, force.as_flattened_mut().as_chunks_mut().0, energy);
+    #[inline(always)]
+    fn sweep<L: Registers>(
+        &self,
+        lanes: L,
+        chunk: &ChunkData<'_>,
+        displacement: &[[f64; D]],
+        _: &mut [f64],
+        force: &mut [[f64; D]],
+        energy: &mut Eight,
+    ) {
+        match self.kind {
+            CellKind::Bar => any(chunk, displacement, force, energy),
+            CellKind::Triangle => {
+                let force = force[..displacement.len()].as_flattened_mut().as_chunks_mut().0;
+                triangles(lanes, chunk, displacement.as_flattened().as_chunks().0, force, energy);
+            }
         }
     }
 }
@@ -201,9 +180,10 @@ fn any<const D: usize>(chunk: &ChunkData<'_>, u: &[[f64; D]], force: &mut [[f64;
 mod tests {
     use super::*;
     use crate::ids::ElementId;
+    use crate::kernel::StripSweep;
     use crate::material::{Elastic, Law};
     use crate::mesh::Mesh;
-    use crate::simd::Portable;
+    use crate::simd::{Portable, Task, run_task};
     use percute_testkit::{Random, random_rectangle};
 
     /// A random mesh of this crate's own types, with groups of elements.
@@ -290,8 +270,13 @@ mod tests {
             .map(|_| [random.between(-1.0, 1.0), random.between(-1.0, 1.0)])
             .collect();
         let mut forces = [vec![[0.0; 2]; u.len()], vec![[0.0; 2]; u.len()]];
-        let [a, b] =
-            forces.each_mut().map(|force| StripSweep { stiffness: &stiffness, strip: 0, displacement: &u, force });
+        let [a, b] = forces.each_mut().map(|force| StripSweep {
+            kernel: &stiffness,
+            strip: 0,
+            displacement: &u,
+            internal: &mut [],
+            force,
+        });
         assert_eq!(run_task(a).to_bits(), b.run(Portable).to_bits());
         assert!(forces[0] == forces[1]);
     }

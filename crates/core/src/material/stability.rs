@@ -1,0 +1,198 @@
+//! A bound on the tangent stiffness of an element, for the stable time step.
+//!
+//! On the principal axes, with δF_ab along current axis a and reference axis b, the tangent ∂P/∂F of an isotropic law
+//! couples δF₁₁ with δF₂₂ by the second derivatives of the energy in the stretches, and δF₁₂ with δF₂₁.
+
+use super::hyperelastic::{HyperelasticLaw, Moduli, across, dilatation, green_strain, log_and_rest};
+use crate::simd::lanes::Value;
+
+/// Squarings of the matrix whose trace bounds its eigenvalue: (tr M³²)^(1/32) is at most 4^(1/32) = 1.044 times the
+/// largest of four eigenvalues without their signs.
+const SQUARINGS: usize = 5;
+
+/// The bound on the largest eigenvalue of (1⊗R) ∂P/∂F (1⊗R).
+#[inline(always)]
+pub(super) fn bound<V: Value, const D: usize>(
+    law: HyperelasticLaw,
+    moduli: &Moduli,
+    h: &[[V; D]; D],
+    root: &[[V; D]; D],
+) -> V {
+    let strain = green_strain(h);
+    if D == 1 {
+        let half = strain[0][0] * 0.5;
+        let principal = Principal::new(law, moduli, [half, half], dilatation(h));
+        return principal.direct[0] * root[0][0] * root[0][0];
+    }
+    // Of two equal stretches any axes will do; the numbers are far below the rounding of strains.
+    let tiny = strain[0][0].fill(1e-150);
+    let (mean, half) = ((strain[0][0] + strain[1][1]) * 0.5, (strain[0][0] - strain[1][1]) * 0.5 + tiny);
+    let radius = (half * half + strain[0][1] * strain[0][1]).sqrt();
+    let (cosine, sine) = (half / radius, strain[0][1] / radius);
+    let principal = Principal::new(law, moduli, [mean, radius], dilatation(h));
+    // R on the axes of C.
+    let (middle, across, off) = ((root[0][0] + root[1][1]) * 0.5, (root[0][0] - root[1][1]) * 0.5, root[0][1]);
+    let (turned, off) = (across * cosine + off * sine, off * cosine - across * sine);
+    largest_eigenvalue(&principal, [[middle + turned, off], [off, middle - turned]])
+}
+
+/// The tangent on the principal axes.
+struct Principal<V> {
+    /// ∂²W/∂λ_a².
+    direct: [V; 2],
+    /// ∂²W/∂λ₁∂λ₂.
+    coupled: V,
+    /// ∂P₁₂/∂F₁₂ and ∂P₁₂/∂F₂₁.
+    shear: [V; 2],
+}
+
+impl<V: Value> Principal<V> {
+    /// At principal Green strains of this mean and half difference, which is not 0.
+    #[inline(always)]
+    fn new(law: HyperelasticLaw, moduli: &Moduli, [mean, radius]: [V; 2], dilatation: V) -> Self {
+        let &Moduli { lambda, shear, .. } = moduli;
+        let (one, strains) = (mean.fill(1.0), [mean + radius, mean - radius]);
+        let squares = strains.map(|e| one + e * 2.0);
+        let stretches = squares.map(Value::sqrt);
+        let product = stretches[0] * stretches[1];
+        match law {
+            // P_a = μλ_a + (λ ln J − μ)/λ_a.
+            HyperelasticLaw::NeoHookean => {
+                let mut log = log_and_rest(dilatation).0;
+                let mut effective = one * lambda;
+                if moduli.free_thickness {
+                    let z = across(moduli, log);
+                    log += log_and_rest(z).0 * 0.5;
+                    let resistance = (one + z) * shear;
+                    effective = resistance * lambda / (resistance + one * (0.5 * lambda));
+                }
+                let rest = one * shear - log * lambda;
+                let direct = squares.map(|c| one * shear + (rest + effective) / c);
+                let quotient = rest / product;
+                Self::of(direct, effective / product, one * shear + quotient, one * shear - quotient)
+            }
+            // P_a = μλ_a³ + (λ tr E − μ) λ_a.
+            HyperelasticLaw::SaintVenantKirchhoff => {
+                let trace = (strains[0] + strains[1]) * lambda;
+                let direct = [0, 1].map(|a| strains[a] * (2.0 * shear) + trace + squares[a] * (lambda + 2.0 * shear));
+                let rest = (squares[0] + squares[1] - one) * shear + trace;
+                let mixed = product * shear;
+                Self::of(direct, product * lambda, rest + mixed, rest - mixed)
+            }
+            // P_a = τ_a/λ_a with τ_a = 2μ ln λ_a + λ ln J.
+            HyperelasticLaw::Hencky => {
+                let logs = strains.map(|e| log_and_rest(e * 2.0).0 * 0.5);
+                let trace = (logs[0] + logs[1]) * lambda;
+                let kirchhoff = logs.map(|log| log * (2.0 * shear) + trace);
+                let direct = [0, 1].map(|a| (one * (lambda + 2.0 * shear) - kirchhoff[a]) / squares[a]);
+                let sum = stretches[0] + stretches[1];
+                let difference = radius * 4.0 / sum;
+                let slope = log_and_rest(difference / stretches[1]).0 / difference;
+                let symmetric = (slope * stretches[1] * (2.0 * shear) - kirchhoff[1]) / product;
+                let skew = (kirchhoff[0] / stretches[0] + kirchhoff[1] / stretches[1]) / sum;
+                Self::of(direct, one * lambda / product, symmetric, skew)
+            }
+        }
+    }
+
+    /// From the tangents of the symmetric and the skew part of the shear, (P₁ ∓ P₂)/(λ₁ ∓ λ₂).
+    #[inline(always)]
+    fn of(direct: [V; 2], coupled: V, symmetric: V, skew: V) -> Self {
+        Self { direct, coupled, shear: [(symmetric + skew) * 0.5, (symmetric - skew) * 0.5] }
+    }
+}
+
+/// The bound on that of (1⊗R) A (1⊗R), with rows (1,1), (1,2), (2,1), (2,2).
+#[inline(always)]
+fn largest_eigenvalue<V: Value>(tangent: &Principal<V>, root: [[V; 2]; 2]) -> V {
+    let Principal { direct, coupled, shear: [straight, crossed] } = *tangent;
+    let zero = coupled.zero();
+    let blocks = [
+        [[[direct[0], zero], [zero, straight]], [[zero, coupled], [crossed, zero]]],
+        [[[zero, crossed], [coupled, zero]], [[straight, zero], [zero, direct[1]]]],
+    ];
+    let mut matrix = [[zero; 4]; 4];
+    for i in 0..4 {
+        for j in 0..4 {
+            for k in 0..2 {
+                for l in 0..2 {
+                    matrix[i][j] += root[i % 2][k] * blocks[i / 2][j / 2][k][l] * root[l][j % 2];
+                }
+            }
+        }
+    }
+    let trace = |m: &[[V; 4]; 4]| m[0][0] + m[1][1] + m[2][2] + m[3][3];
+    // Numbers near 1, so that no power leaves their range.
+    let mut size = zero.fill(f64::MIN_POSITIVE);
+    (0..4).for_each(|i| (0..4).for_each(|j| size = size.max(matrix[i][j].abs())));
+    let scale = zero.fill(1.0) / size;
+    matrix = matrix.map(|row| row.map(|x| x * scale));
+    for _ in 0..SQUARINGS {
+        let m = matrix;
+        for i in 0..4 {
+            for j in i..4 {
+                matrix[i][j] = m[i][0] * m[0][j] + m[i][1] * m[1][j] + m[i][2] * m[2][j] + m[i][3] * m[3][j];
+                matrix[j][i] = matrix[i][j];
+            }
+        }
+    }
+    let mut bound = trace(&matrix);
+    (0..SQUARINGS).for_each(|_| bound = bound.sqrt());
+    bound * size
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::material::{Elastic, HyperelasticLaw, Kinematics, PointLaw, Tensor};
+    use nalgebra::{Matrix4, SymmetricEigen};
+
+    /// ∂P_a J/∂F_b K by a central difference of fourth order.
+    fn tangent(law: &Elastic, h: &Tensor<2>) -> Matrix4<f64> {
+        let mut matrix = Matrix4::zeros();
+        for column in 0..4 {
+            let stress = |s: f64| {
+                let mut moved = *h;
+                moved[column / 2][column % 2] += s;
+                let (stress, _): (Tensor<2>, f64) = law.respond(&moved, &mut []);
+                stress
+            };
+            let [near, far] = [1e-3, 2e-3].map(|s| [stress(s), stress(-s)]);
+            for row in 0..4 {
+                let slope = |[a, b]: &[Tensor<2>; 2], s: f64| (a[row / 2][row % 2] - b[row / 2][row % 2]) / (2.0 * s);
+                matrix[(row, column)] = (4.0 * slope(&near, 1e-3) - slope(&far, 2e-3)) / 3.0;
+            }
+        }
+        matrix
+    }
+
+    proptest::proptest! {
+        /// At least the eigenvalue without its sign, and at most 4^(1/32) = 1.044 times it. The differences are right to
+        /// 1e-9.
+        #[test]
+        fn the_bound_is_close_to_the_eigenvalue(
+            entries in proptest::array::uniform4(-0.3..0.3), root in proptest::array::uniform3(0.1..1.0), nu in 0.0..0.45,
+        ) {
+            let h = [[entries[0], entries[1]], [entries[2], entries[3]]];
+            let root = [[root[0], 0.3 * root[1]], [0.3 * root[1], root[2]]];
+            for law in [HyperelasticLaw::NeoHookean, HyperelasticLaw::SaintVenantKirchhoff, HyperelasticLaw::Hencky] {
+                for plane in [Elastic::plane_strain, Elastic::plane_stress] {
+                    let law = plane(1.0, nu, 1.0, 1.0).unwrap().with_kinematics(Kinematics::Finite(law)).unwrap();
+                    let factor = Matrix4::from_fn(|i, j| if i / 2 == j / 2 { root[i % 2][j % 2] } else { 0.0 });
+                    let values = SymmetricEigen::new(factor * tangent(&law, &h) * factor).eigenvalues;
+                    let exact = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+                    let bound = law.stiffness_bound(&h, &root);
+                    let sharp = exact * (1.0 - 1e-8) <= bound && bound <= 1.0443 * exact * (1.0 + 1e-8);
+                    proptest::prop_assert!(sharp, "{law:?}: {bound} for {exact}");
+                }
+            }
+        }
+    }
+
+    /// At rest the bound is that of Hooke's law, λ + 2G in a bar.
+    #[test]
+    fn a_bar_has_its_modulus() {
+        let bar =
+            Elastic::bar(3.0, 1.0, 1.0).unwrap().with_kinematics(Kinematics::Finite(HyperelasticLaw::Hencky)).unwrap();
+        assert!((bar.stiffness_bound(&[[0.0]], &[[2.0]]) - 12.0).abs() < 1e-14);
+    }
+}
