@@ -63,7 +63,7 @@ def _table(name: str, value: object, time: object, columns: tuple[str, ...] | No
 
 @dataclass(frozen=True, kw_only=True)
 class Elastic:
-    """An isotropic linear elastic material, eq. [9].
+    """An isotropic elastic material: Hooke's law, eq. [9], or a hyperelastic law for large strains and rotations.
 
     Parameters
     ----------
@@ -81,6 +81,11 @@ class Elastic:
         Section of a bar (m²). Bars need it, plane bodies have none.
     yield_stress : float, optional
         Yield stress (Pa). The simulation does not use it; the verdict says where the von Mises stress is above it.
+    kinematics : {"small", "finite"}, default: "small"
+        Small strains and rotations, or any. The error of finite ones is not estimated.
+    law : {"neo_hookean", "svk", "hencky"}, optional
+        With ``kinematics="finite"``: the hyperelastic law, by default neo-Hookean. "svk" is that of Saint Venant and Kirchhoff,
+        which softens in compression. A bar has the law for ν = 0.
     """
 
     young: float
@@ -90,6 +95,8 @@ class Elastic:
     thickness: float = 1.0
     section: float | None = None
     yield_stress: float | None = None
+    kinematics: Literal["small", "finite"] = "small"
+    law: Literal["neo_hookean", "svk", "hencky"] | None = None
 
     def __post_init__(self) -> None:
         units = {"young": "Pa", "density": "kg/m³", "thickness": "m", "poisson": "", "section": "m²", "yield_stress": "Pa"}
@@ -98,6 +105,12 @@ class Elastic:
                 object.__setattr__(self, name, number(name, getattr(self, name), unit=unit))
         if self.plane is not None and text("plane", self.plane) not in ("stress", "strain"):
             raise wrong("plane", self.plane, "'stress' or 'strain'")
+        if text("kinematics", self.kinematics) not in ("small", "finite"):
+            raise wrong("kinematics", self.kinematics, "'small' or 'finite'")
+        if self.law is not None and text("law", self.law) not in ("neo_hookean", "svk", "hencky"):
+            raise wrong("law", self.law, "'neo_hookean', 'svk' or 'hencky'")
+        if self.law is not None and self.kinematics != "finite":
+            raise InputError("`law` is one for kinematics=\"finite\": give this, or leave the law out")
 
 
 @dataclass(frozen=True, kw_only=True)

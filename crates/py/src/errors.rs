@@ -112,9 +112,11 @@ pub(crate) fn simulation(py: Python<'_>, error: &SimulationError) -> PyErr {
             Some(MemoryError::Full { .. }) => input(py, format!("`store`: {cause}")),
             _ => steps(py, cause),
         },
-        SimulationError::Unstable { .. } | SimulationError::Missed { .. } => {
-            exception(py, "SimulationError", &error.to_string())
-        }
+        SimulationError::Times(error) => input(py, error),
+        SimulationError::Unstable { .. }
+        | SimulationError::InsideOut { .. }
+        | SimulationError::StepTooLong { .. }
+        | SimulationError::Missed { .. } => exception(py, "SimulationError", &error.to_string()),
     }
 }
 
@@ -126,6 +128,7 @@ fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
             EstimateError::Zero { .. }
             | EstimateError::TooManyThreads { .. }
             | EstimateError::Acceleration(_)
+            | EstimateError::Finite
             | EstimateError::Request(_),
         ) => input(py, error),
         RunError::Estimate(EstimateError::Scratch(_)) => {

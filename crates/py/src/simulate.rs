@@ -65,7 +65,13 @@ pub(crate) fn simulate(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(HistoryData, Option<String>)> {
     let (end, courant, step, steps) = times;
-    let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
+    let mut times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
+    if let Some(courant) = courant.filter(|_| problem.problem.is_finite()) {
+        let (problem, end) = (problem.problem.clone(), times.end());
+        let work = move |mut watch: Watch| run::following(&problem, end, courant, &mut watch);
+        let found = bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))?;
+        times = found.ok_or_else(|| errors::percute_error(py, "the search for stable steps was stopped"))?;
+    }
     let keep = keep_of(py, keep, &times)?;
     let store = store.map(|path| Store::new(path, overwrite, keep));
     let problem = &problem.problem;

@@ -4,7 +4,7 @@ use crate::errors;
 use percute_core::border::{Vector, row};
 use percute_core::contact::{AnyObstacle, Interface, ObstacleError, PlaneAt};
 use percute_core::load::{BodyForce, Profile, Support, Table, TableError, Traction};
-use percute_core::material::{Elastic, Hypothesis, Law, MaterialError};
+use percute_core::material::{Elastic, Hypothesis, Kinematics, Law, MaterialError};
 use percute_core::problem::{Between, Contact};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -46,7 +46,13 @@ pub(crate) fn material(name: &str, given: &Bound<'_, PyAny>, dimension: usize) -
     let refused = |MaterialError { name, value, unit, allowed, .. }| {
         bad(name, &format!("is {value} {unit}; it must be {allowed}"))
     };
-    let yielding = |law: Elastic| yield_stress.map_or(Ok(law), |stress| law.with_yield_stress(stress));
+    let kinematics: (Option<String>, Option<String>) = (attribute(given, "kinematics")?, attribute(given, "law")?);
+    let kinematics = Kinematics::from_names(kinematics.0.as_deref(), kinematics.1.as_deref());
+    let kinematics = kinematics.map_err(|(key, told)| bad(key, told))?;
+    let yielding = |law: Elastic| {
+        let law = law.with_kinematics(kinematics)?;
+        yield_stress.map_or(Ok(law), |stress| law.with_yield_stress(stress))
+    };
     if dimension == 1 {
         for (key, there) in
             [("poisson", poisson.is_some()), ("plane", plane.is_some()), ("thickness", thickness != 1.0)]
@@ -179,6 +185,9 @@ pub(crate) fn material_arguments<'py>(py: Python<'py>, law: &Elastic) -> PyResul
     arguments.set_item("young", law.young())?;
     arguments.set_item("density", law.density())?;
     arguments.set_item("yield_stress", law.yield_stress())?;
+    let (kinematics, finite) = law.kinematics().names();
+    arguments.set_item("kinematics", kinematics)?;
+    arguments.set_item("law", finite)?;
     if law.hypothesis() == Hypothesis::Bar {
         arguments.set_item("section", law.extent())?;
         return Ok(arguments);

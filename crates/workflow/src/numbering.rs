@@ -141,6 +141,9 @@ impl<'p> Ordered<'p> {
         {
             *node = self.node(*node);
         }
+        if let SimulationError::InsideOut { element, .. } = &mut error {
+            *element = self.numbering().map_or(*element, |numbering| numbering.elements()[*element].index());
+        }
         error
     }
 

@@ -66,7 +66,7 @@ impl Stored {
     /// with the rebound follow from its simulation: its statement must be that of the case in the file.
     fn of_times(&self, case: &Case) -> Option<String> {
         let stated = || self.of_texts(case, "time", &SchemaPart::case().key("time").keys());
-        if case.until.is_none() {
+        if case.until.is_none() && case.following.is_none() {
             let differs = numbers::of_instants(&case.times, self.file.run_times())?;
             return Some(stated().unwrap_or(differs));
         }

@@ -15,7 +15,9 @@ use crate::storing::drive;
 pub use crate::storing::{Outcome, Storage};
 use crate::until::{FoundEnd, Stop, Until};
 use percute_core::contact_results::{ContactMemoryError, ContactRecorder, ContactResults};
-use percute_core::dynamics::{Balance, Balancing, Simulation, replay, simulate_threaded};
+use percute_core::dynamics::{
+    Balance, Balancing, Simulation, StableTimes, critical_time_step, replay, simulate_threaded, stable_times,
+};
 use percute_core::history::{Discard, SinkError, State, StateSink, Step, StepSource};
 use percute_core::observer::Observer;
 use percute_core::problem::AnyProblem;
@@ -100,7 +102,12 @@ pub fn rebound(problem: &AnyProblem, until: &Until, observer: &mut dyn Observer)
     let (ordered, times, seen) = (Ordered::new(problem), until.times().map_err(refused)?, AtomicBool::new(false));
     let mut leaving = Leaving::new(ordered.problem(), until.after, &seen);
     let mut stop = Stop { inner: observer, left: &seen, asked: false };
-    let done = simulate_threaded(ordered.problem(), &times, None, &mut leaving, &mut stop);
+    let done = if problem.is_finite() {
+        let bounds = [until.longest, until.step / critical_time_step(problem)];
+        stable_times(ordered.problem(), bounds, None, &mut leaving, &mut stop).map(drop)
+    } else {
+        simulate_threaded(ordered.problem(), &times, None, &mut leaving, &mut stop).map(drop)
+    };
     done.map_err(|error| ordered.failure(error.into()))?;
     let (left, asked) = (leaving.left, stop.asked);
     if asked && left.is_none() {
@@ -110,15 +117,39 @@ pub fn rebound(problem: &AnyProblem, until: &Until, observer: &mut dyn Observer)
     until.found(left.ok_or(&going_on)).map(Some).map_err(refused)
 }
 
-/// The case with the end of its run: that of a run which ends with the rebound is looked for. With a warning if contact
-/// does not end in time; no case if the observer stops the search.
+/// The case with the instants of its run: the end with the rebound and the steps of finite laws are looked for. With a
+/// warning if contact does not end in time; no case if the observer stops the search.
 ///
 /// # Errors
 /// As [`simulate`].
 pub fn resolved(case: &Case, observer: &mut dyn Observer) -> Result<Option<Case>, Failure> {
-    let Some(until) = &case.until else { return Ok(Some(case.clone())) };
-    let found = rebound(&case.problem, until, observer)?;
-    Ok(found.map(|FoundEnd { times, warning }| Case { times, until: None, unended: warning, ..case.clone() }))
+    let mut case = case.clone();
+    if let Some(until) = case.until.take() {
+        let Some(FoundEnd { times, warning }) = rebound(&case.problem, &until, observer)? else { return Ok(None) };
+        (case.times, case.unended) = (times, warning);
+    }
+    if let Some(courant) = case.following.take() {
+        let Some(times) = following(&case.problem, case.times.end(), courant, observer)? else { return Ok(None) };
+        case.times = times;
+    }
+    Ok(Some(case))
+}
+
+/// Finds steps that follow the stiffness of finite laws, to an end (s): a pass of the integrator alone. None if the
+/// observer stops it.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn following(
+    problem: &AnyProblem,
+    end: f64,
+    courant: f64,
+    observer: &mut dyn Observer,
+) -> Result<Option<TimeGrid>, Failure> {
+    let ordered = Ordered::new(problem);
+    let found = stable_times(ordered.problem(), [end, courant], None, &mut Discard, observer);
+    let StableTimes { times, steps } = found.map_err(|error| ordered.failure(error.into()))?;
+    Ok(Some(times).filter(|times| steps == times.step_count()))
 }
 
 /// Simulates a problem and analyses the steps beside the run.

@@ -3,7 +3,7 @@
 use super::source::CaseError;
 use super::table::Table;
 use percute_core::cell::CellKind;
-use percute_core::material::{Elastic, MaterialError};
+use percute_core::material::{Elastic, Kinematics, MaterialError};
 
 /// Keys of plane bodies alone, and of bars alone.
 const OF_PLANE: [&str; 3] = ["poisson", "plane", "thickness"];
@@ -35,8 +35,24 @@ pub(super) fn law(table: &Table<'_>, shape: CellKind) -> Result<Elastic, CaseErr
         CellKind::Bar => bar(table),
         CellKind::Triangle => plane(table),
     }?;
+    let law = law.with_kinematics(kinematics(table)?).map_err(|error| out_of_range(table, &error))?;
     let Some(yield_stress) = table.get("yield_stress") else { return Ok(law) };
     law.with_yield_stress(yield_stress.number("Pa")?).map_err(|error| out_of_range(table, &error))
+}
+
+/// Small or finite kinematics, and the law of the latter.
+fn kinematics(table: &Table<'_>) -> Result<Kinematics, CaseError> {
+    let named = |key: &str, names: &str| table.get(key).map(|value| value.text(names)).transpose();
+    let kinematics = named("kinematics", "\"small\" or \"finite\"")?;
+    let law = named("law", "\"neo_hookean\", \"svk\" or \"hencky\"")?;
+    Kinematics::from_names(kinematics, law).map_err(|(key, told)| {
+        let hint = match key {
+            "law" => crate::message::hint(law.unwrap_or_default(), Kinematics::law_names()),
+            _ => crate::message::hint(kinematics.unwrap_or_default(), Kinematics::NAMES),
+        };
+        let told = format!("{told}{hint}");
+        table.get(key).map_or_else(|| table.error(&told), |value| value.error(&told))
+    })
 }
 
 fn bar(table: &Table<'_>) -> Result<Elastic, CaseError> {

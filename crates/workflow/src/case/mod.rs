@@ -70,11 +70,12 @@ use crate::until::Until;
 use body::Bodies;
 use mesh::Coarsest;
 use percute_core::dynamics::{SimulationError, check_start};
+use percute_core::material::Elastic;
 use percute_core::memory::can_be_had;
 use percute_core::mesh::Mesh;
 use percute_core::problem::{AnyProblem, Place, RefusedStart, cause_of_refused_start};
 use percute_core::time::TimeGrid;
-use percute_estimator::Options;
+use percute_estimator::{EstimateError, Options};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::de::DeTable;
@@ -99,6 +100,8 @@ pub struct Case {
     pub times: TimeGrid,
     /// The Courant number that the case states, if it does.
     pub courant: Option<f64>,
+    /// The Courant number of steps that follow the stiffness of finite laws, if they have not been resolved.
+    pub following: Option<f64>,
     /// The end with the rebound, if the run ends so and has not been resolved.
     pub until: Option<Until>,
     /// The warning of a run that was to end with the rebound, if contact does not end before its latest end.
@@ -184,7 +187,21 @@ fn read(
     output::check(root, &output, times.end())?;
     let (source, unended, courant) = (source.clone(), None, wanted.courant());
     let mesh_scale = root.single("mesh")?.map_or(1.0, |mesh| mesh::scale(&mesh));
-    Ok(Case { source, problem, times, courant, until, unended, critical_step, options, output, mesh_files, mesh_scale })
+    let following = courant.filter(|_| problem.is_finite());
+    Ok(Case {
+        source,
+        problem,
+        times,
+        courant,
+        following,
+        until,
+        unended,
+        critical_step,
+        options,
+        output,
+        mesh_files,
+        mesh_scale,
+    })
 }
 
 /// The place and the cause of a start that the simulation refuses: a unit that is hardly right, beside which there is
@@ -252,13 +269,18 @@ impl Case {
         self.error_at(place, message)
     }
 
-    /// Refuses a start that the simulation would refuse, a run for which there is no memory, and one that takes long
+    /// Refuses an estimate that is not available, a start that the simulation would refuse, a run for which there is no memory, and one that takes long
     /// unless `long` says so, before warnings and before any work; `estimated` if the error is estimated beside the
     /// run.
     ///
     /// # Errors
     /// The place in the file.
     pub fn check_run(&self, estimated: bool, long: Long) -> Result<(), CaseError> {
+        if let (true, Some(index)) = (estimated, self.problem.materials().iter().position(Elastic::is_finite)) {
+            let place = Place { table: "material", index: Some(index), key: "kinematics" };
+            let told = EstimateError::Finite.to_string();
+            self.error_at(place, told).map_or(Ok(()), Err)?;
+        }
         let start = check_start(&self.problem, &self.times).err();
         let refused = start.and_then(|error| self.refused_start(&error)).or_else(|| {
             let effort = Effort::of(&self.problem, &self.times, self.options.every);

@@ -125,6 +125,11 @@ fn material(
     if let Some(yield_stress) = law.yield_stress() {
         text.number("yield_stress", yield_stress);
     }
+    let (kinematics, finite) = law.kinematics().names();
+    if let Some(finite) = finite {
+        text.key("kinematics", quoted(kinematics));
+        text.key("law", quoted(finite));
+    }
     let plane = match hypothesis {
         Hypothesis::Bar => {
             text.number("section", law.extent());
