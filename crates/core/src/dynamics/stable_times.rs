@@ -11,7 +11,11 @@ use crate::time::TimeGrid;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// The stable step is computed at each so many steps. In a step it falls by 4 % at the most (rubber at 40 m/s) …
+/// A run looks at the stable step each so many steps: a look takes as long as two steps, and an unstable run needs some
+/// tens of steps to be seen by its energy.
+const RUN: usize = 20;
+/// The pass that finds the steps looks more often. In a step the stable one falls by 4 % at the most (rubber at
+/// 40 m/s) …
 const EVERY: usize = 5;
 /// … and by less than this, where it is computed again at once.
 const FALLING: f64 = 0.005;
@@ -169,7 +173,7 @@ pub(super) fn check_step<const D: usize>(
     displacement: &[[f64; D]],
 ) -> Result<(), SimulationError> {
     let ProblemKernel::Points(kernel) = &dynamics.kernel else { return Ok(()) };
-    if !n.is_multiple_of(EVERY) || n >= dynamics.times.step_count() {
+    if !n.is_multiple_of(RUN) || n >= dynamics.times.step_count() {
         return Ok(());
     }
     let (step, stable) = (dynamics.times.step(n), kernel.stable_step(dynamics.problem, displacement));

@@ -207,10 +207,12 @@ pub(super) fn log_and_rest<V: Value>(e: V) -> (V, V) {
         series = series * square + e.fill(1.0 / (2 * k + 1) as f64);
     }
     let cubic = s * square * series * 2.0;
+    let (log, rest) = (s * 2.0 + cubic, e * s - cubic);
     let far = |e: f64| !(-0.3..0.4).contains(&e);
-    let log = (s * 2.0 + cubic).replaced_where(e, far, f64::ln_1p);
-    let rest = (e * s - cubic).replaced_where(e, far, |e| e - e.ln_1p());
-    (log, rest)
+    if !e.any(far) {
+        return (log, rest);
+    }
+    (log.replaced_where(e, far, f64::ln_1p), rest.replaced_where(e, far, |e| e - e.ln_1p()))
 }
 
 /// For e in −0.3 to 0.4, s² is below 0.032, and the first term left out, 0.032¹¹/25, below 2⁻⁵³ of 1/3.

@@ -75,6 +75,9 @@ pub trait Value:
     /// Square roots.
     fn sqrt(self) -> Self;
 
+    /// Whether `wanted` holds of any of the numbers.
+    fn any(self, wanted: impl Fn(f64) -> bool) -> bool;
+
     /// The same numbers, but f(x) where `wanted` holds of the number x of another.
     fn replaced_where(self, x: Self, wanted: impl Fn(f64) -> bool, f: impl Fn(f64) -> f64) -> Self;
 
@@ -111,6 +114,11 @@ impl Value for f64 {
     #[inline(always)]
     fn sqrt(self) -> Self {
         self.sqrt()
+    }
+
+    #[inline(always)]
+    fn any(self, wanted: impl Fn(f64) -> bool) -> bool {
+        wanted(self)
     }
 
     #[inline(always)]
@@ -156,6 +164,12 @@ impl Value for Lanes {
     #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.map(f64::sqrt))
+    }
+
+    #[inline(always)]
+    fn any(self, wanted: impl Fn(f64) -> bool) -> bool {
+        // No branch in between, so that it is one comparison of vectors.
+        self.0.iter().fold(false, |any, x| any | wanted(*x))
     }
 
     #[inline(always)]

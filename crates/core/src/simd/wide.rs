@@ -70,12 +70,13 @@ impl<R: Registers> Value for Wide<R> {
     }
 
     #[inline(always)]
+    fn any(self, wanted: impl Fn(f64) -> bool) -> bool {
+        self.store().any(wanted)
+    }
+
+    #[inline(always)]
     fn replaced_where(self, x: Self, wanted: impl Fn(f64) -> bool, f: impl Fn(f64) -> f64) -> Self {
-        let other = x.store();
-        if !other.0.iter().any(|x| wanted(*x)) {
-            return self;
-        }
-        self.load(&self.store().replaced_where(other, wanted, f))
+        self.load(&self.store().replaced_where(x.store(), wanted, f))
     }
 
     #[inline(always)]
