@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import percute as pc
@@ -15,7 +16,7 @@ from studies.bodies import BODIES, STEEL, graded, without
 from studies.page import Column, Section, Table, interval, short
 from studies.parallel import Resolution, Stop
 
-RUBBER = {"young": 5e6, "poisson": 0.4, "density": 1100.0}
+RUBBER: dict[str, Any] = {"young": 5e6, "poisson": 0.4, "density": 1100.0}
 PART = 0.4
 """The target over the first error."""
 COURANT = 0.9

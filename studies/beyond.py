@@ -17,7 +17,7 @@ import percute as pc
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-ALUMINIUM = {"young": 70e9, "density": 2700.0}
+ALUMINIUM: dict[str, Any] = {"young": 70e9, "density": 2700.0}
 LENGTH, ELEMENTS, STRESS = 0.1, 50, 1e8
 """Length of a bar (m), its elements, and the traction at its end (Pa)."""
 WIDTH, HEIGHT = 0.05, 0.04

@@ -9,7 +9,7 @@ from typing import Any
 import percute as pc
 from studies.parallel import Stop
 
-ALUMINIUM = {"young": 70e9, "poisson": 0.3, "density": 2700.0}
+ALUMINIUM: dict[str, Any] = {"young": 70e9, "poisson": 0.3, "density": 2700.0}
 """The material of §7.2.1."""
 SPEED = 400.0
 """Speed along and across the plane (m/s)."""

@@ -10,10 +10,10 @@ import percute as pc
 from numpy.typing import NDArray
 from studies.block import ALUMINIUM
 
-STEEL = {"young": 210e9, "poisson": 0.3, "density": 7800.0}
+STEEL: dict[str, Any] = {"young": 210e9, "poisson": 0.3, "density": 7800.0}
 NEARLY_INCOMPRESSIBLE = ALUMINIUM | {"poisson": 0.45}
 LAYERS = "steel under aluminium"
-MATERIALS = {"aluminium": ALUMINIUM, "steel": STEEL, "ν = 0.45": NEARLY_INCOMPRESSIBLE}
+MATERIALS: dict[str, dict[str, Any]] = {"aluminium": ALUMINIUM, "steel": STEEL, "ν = 0.45": NEARLY_INCOMPRESSIBLE}
 CROWN = 0.5
 """Radius of a crowned bottom (m)."""
 HOLE = ((0.01, 0.05), (0.01, 0.04))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, cast
+from typing import Any, Literal, cast
 
 import numpy as np
 import percute as pc
@@ -15,7 +15,7 @@ from studies.block import ALUMINIUM
 from studies.bodies import STEEL
 from studies.struck import FINER, indices, refined
 
-MATERIALS = {"aluminium": ALUMINIUM, "steel": STEEL, "plastic": {"young": 3e9, "poisson": 0.38, "density": 1200.0}}
+MATERIALS: dict[str, dict[str, Any]] = {"aluminium": ALUMINIUM, "steel": STEEL, "plastic": {"young": 3e9, "poisson": 0.38, "density": 1200.0}}
 SEED, COUNT = 1, 50
 """Seed of the cases, number of cases in the middle of a plate and beside its end."""
 SIZE = 32e-6

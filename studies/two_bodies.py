@@ -8,12 +8,13 @@ from __future__ import annotations
 import json
 import warnings
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import percute as pc
 from studies.block import ALUMINIUM
 
-MATERIALS = {"aluminium": ALUMINIUM, "plastic": {"young": 3e9, "poisson": 0.35, "density": 1200.0}}
+MATERIALS: dict[str, dict[str, Any]] = {"aluminium": ALUMINIUM, "plastic": {"young": 3e9, "poisson": 0.35, "density": 1200.0}}
 WIDTH, HEIGHT, GAP = 0.04, 0.025, 50e-6
 """Of each body (m), and the gap between them (m)."""
 SPEED, FRICTION, COURANT = 40.0, 0.2, 0.9

@@ -110,7 +110,9 @@ class Elastic:
         if self.law is not None and text("law", self.law) not in ("neo_hookean", "svk", "hencky"):
             raise wrong("law", self.law, "'neo_hookean', 'svk' or 'hencky'")
         if self.law is not None and self.kinematics != "finite":
-            raise InputError("`law` is one for kinematics=\"finite\": give this, or leave the law out")
+            raise InputError("`law` is one for kinematics='finite': give this, or leave the law out")
+        if self.law is None and self.kinematics == "finite":
+            object.__setattr__(self, "law", "neo_hookean")
 
 
 @dataclass(frozen=True, kw_only=True)

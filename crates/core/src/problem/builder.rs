@@ -5,8 +5,8 @@ use super::boundary::{self, Supports};
 use super::contacts::Stated;
 use super::may_touch::{AllContact, all_contact};
 use super::sides::Bodies;
-use super::{Cause, InputError, Model, Place, Problem, sides, start_of_contact, symmetry};
-use crate::contact::{ContactSurface, Interface, Obstacle};
+use super::{Cause, InputError, Model, Problem, sides, start_of_contact, symmetry};
+use crate::contact::{Interface, Obstacle};
 use crate::ids::{ElementId, FaceId};
 use crate::load::{BodyForce, Support, Table, Traction};
 use crate::material::{Elastic, Law};
@@ -207,6 +207,11 @@ impl<const D: usize> Builder<D> {
         let face_loads = boundary::tractions(mesh, &self.stated.tractions, &supported)?;
         let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.stated.body_forces, volume)?;
 
+        // Contact between bodies has the normals of the undeformed surfaces, and a face is a candidate of one plane.
+        let (finite, planes) = (materials.iter().any(Elastic::is_finite), self.obstacles.len());
+        if finite && planes > 1 {
+            return Err(Cause::FinitePlanes { planes }.at("obstacle", Some(1), ""));
+        }
         let law = |f: FaceId| &materials[usize::from(element_material[mesh.face(f).owner.index()])];
         let (body, held, velocity) = (Vec::new(), boundary::held(mesh, &self.stated), &initial_velocity[..]);
         let bodies = Bodies { mesh, body, held, fixed, supported: &supported, lines, velocity, mass: &mass, law: &law };
@@ -215,7 +220,9 @@ impl<const D: usize> Builder<D> {
         let contact = Stated { contacts: &self.contacts, automatic: self.automatic && mesh.parts() > 1 };
         let AllContact { surface, interfaces, places, groups } = all_contact(bodies, self.obstacles, contact, &start)?;
         self.stated.interfaces = interfaces;
-        check_finite(&materials, &surface, &places)?;
+        if let Some(&place) = places.first().filter(|_| finite) {
+            return Err(InputError { place, cause: Cause::FiniteContact });
+        }
         sides::check_touching(&surface, mesh).map_err(|cause| cause.at("contact", None, ""))?;
 
         let model = Model {
@@ -238,23 +245,6 @@ impl<const D: usize> Builder<D> {
         start_of_contact::check(&problem, self.planes_to_be_moved)?;
         Ok(problem)
     }
-}
-
-/// Bodies that may turn have contact with one plane: faces are candidates of one, and contact between bodies has the
-/// normals of the undeformed surfaces.
-fn check_finite<const D: usize>(
-    materials: &[Elastic],
-    surface: &ContactSurface<D>,
-    contacts: &[Place],
-) -> Result<(), InputError> {
-    if !materials.iter().any(Elastic::is_finite) {
-        return Ok(());
-    }
-    if let Some(&place) = contacts.first() {
-        return Err(InputError { place, cause: Cause::FiniteContact });
-    }
-    let planes = surface.obstacles().len();
-    if planes > 1 { Err(Cause::FinitePlanes { planes }.at("obstacle", Some(1), "")) } else { Ok(()) }
 }
 
 /// The mesh with the groups of faces that contact has added.

@@ -269,7 +269,8 @@ fn strained(linearity: &Linearity) -> Option<Symptom> {
          up to {}: the error measure does not contain what the linear theory neglects",
         percent(STRAIN[0])
     );
-    let remedy = "take a lower speed or load, a stiffer material, or a program for finite strains";
+    let remedy = "take a lower speed or load, or a stiffer material; `percute simulate` with kinematics = \"finite\" has \
+                  such strains, without an estimate";
     symptom("large_strain", format!("strains of up to {shown}: not small"), figure, remedy)
 }
 
@@ -288,7 +289,13 @@ fn turned(linearity: &Linearity) -> Option<Symptom> {
          contains this"
     );
     let brief = format!("{subject} turns by {shown} rad: too far for small rotations");
-    symptom("rotation", brief, figure, "take an earlier end, or a start closer to contact")
+    symptom(
+        "rotation",
+        brief,
+        figure,
+        "take an earlier end, or a start closer to contact; `percute simulate` with kinematics = \"finite\" has such \
+         rotations, without an estimate",
+    )
 }
 
 #[cfg(test)]
