@@ -1,34 +1,16 @@
-"""Bodies of finite kinematics: cases and Python, files, resumed runs, and the motion of a rigid body."""
+"""Bodies of finite kinematics: the page on them, files, resumed runs, and the motion of a rigid body."""
 
+import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import percute as pc
 import pytest
 
-CASE = """
-[mesh]
-rectangle = { width = 0.05, height = 0.04, nx = 8, ny = 6 }
-[material]
-young = 10e6
-poisson = 0.4
-density = 1100.0
-plane = "strain"
-kinematics = "finite"
-[initial]
-velocity = [3.0, -20.0]
-[[obstacle]]
-point = [0.0, -0.002]
-normal = [0.3, 1.0]
-friction = 0.2
-[time]
-end = 2e-3
-courant = 0.9
-"""
-
-
 def rubber(young: float = 10e6, speed: float = 20.0, friction: float = 0.2, law: str | None = None) -> pc.Problem:
-    """The block of the case."""
+    """The block of the page, on a coarser mesh."""
     material = pc.Elastic(young=young, poisson=0.4, density=1100.0, plane="strain", kinematics="finite", law=law)  # type: ignore[arg-type]
     plane = pc.Plane(point=(0, -0.002), normal=(0.3, 1), friction=friction)
     return pc.Problem(pc.Mesh.rectangle(0.05, 0.04, nx=8, ny=6), material=material, obstacles=[plane], initial_velocity=(3, -speed))
@@ -40,7 +22,21 @@ class Stopped(Exception):
 
 
 
-def test_the_history_of_a_case_is_that_of_python_and_of_its_file(tmp_path: Path) -> None:
+def test_the_case_of_the_page_runs(tmp_path: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "finite.md").read_text(encoding="utf-8")
+    [case] = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    (tmp_path / "rubber.toml").write_text(case)
+    command = [sys.executable, "-m", "percute", "simulate", "rubber.toml", "--quiet"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    history = pc.open(tmp_path / "rubber.vtkhdf")
+    assert isinstance(history, pc.History)
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=20, ny=16)
+    same = pc.simulate(pc.Problem(mesh, material=rubber().material, obstacles=rubber().obstacles, initial_velocity=(3, -20)), end=2e-3, courant=0.9)
+    assert np.array_equal(history.displacement, same.displacement)
+
+
+def test_a_history_is_that_of_its_file(tmp_path: Path) -> None:
     history = pc.simulate(rubber(), end=2e-3, courant=0.9)
     stored = pc.simulate(rubber(), end=2e-3, courant=0.9, store=tmp_path / "a.vtkhdf")
     again = pc.open(tmp_path / "a.vtkhdf")

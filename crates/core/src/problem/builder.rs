@@ -5,7 +5,7 @@ use super::boundary::{self, Supports};
 use super::contacts::Stated;
 use super::may_touch::{AllContact, all_contact};
 use super::sides::Bodies;
-use super::{Cause, InputError, Model, Problem, sides, start_of_contact, symmetry};
+use super::{Cause, InputError, Model, Place, Problem, sides, start_of_contact, symmetry};
 use crate::contact::{Interface, Obstacle};
 use crate::ids::{ElementId, FaceId};
 use crate::load::{BodyForce, Support, Table, Traction};
@@ -207,11 +207,7 @@ impl<const D: usize> Builder<D> {
         let face_loads = boundary::tractions(mesh, &self.stated.tractions, &supported)?;
         let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.stated.body_forces, volume)?;
 
-        // Contact between bodies has the normals of the undeformed surfaces, and a face is a candidate of one plane.
-        let (finite, planes) = (materials.iter().any(Elastic::is_finite), self.obstacles.len());
-        if finite && planes > 1 {
-            return Err(Cause::FinitePlanes { planes }.at("obstacle", Some(1), ""));
-        }
+        let finite = finite_on_one_plane(&materials, self.obstacles.len())?;
         let law = |f: FaceId| &materials[usize::from(element_material[mesh.face(f).owner.index()])];
         let (body, held, velocity) = (Vec::new(), boundary::held(mesh, &self.stated), &initial_velocity[..]);
         let bodies = Bodies { mesh, body, held, fixed, supported: &supported, lines, velocity, mass: &mass, law: &law };
@@ -220,9 +216,7 @@ impl<const D: usize> Builder<D> {
         let contact = Stated { contacts: &self.contacts, automatic: self.automatic && mesh.parts() > 1 };
         let AllContact { surface, interfaces, places, groups } = all_contact(bodies, self.obstacles, contact, &start)?;
         self.stated.interfaces = interfaces;
-        if let Some(&place) = places.first().filter(|_| finite) {
-            return Err(InputError { place, cause: Cause::FiniteContact });
-        }
+        refuse_contact(places.first().filter(|_| finite))?;
         sides::check_touching(&surface, mesh).map_err(|cause| cause.at("contact", None, ""))?;
 
         let model = Model {
@@ -245,6 +239,20 @@ impl<const D: usize> Builder<D> {
         start_of_contact::check(&problem, self.planes_to_be_moved)?;
         Ok(problem)
     }
+}
+
+/// Whether bodies may turn: a face is then a candidate of one plane.
+fn finite_on_one_plane(materials: &[Elastic], planes: usize) -> Result<bool, InputError> {
+    let finite = materials.iter().any(Elastic::is_finite);
+    match finite && planes > 1 {
+        true => Err(Cause::FinitePlanes { planes }.at("obstacle", Some(1), "")),
+        false => Ok(finite),
+    }
+}
+
+/// Refuses contact between bodies that may turn: it has the normals of the undeformed surfaces.
+fn refuse_contact(contact: Option<&Place>) -> Result<(), InputError> {
+    contact.map_or(Ok(()), |&place| Err(InputError { place, cause: Cause::FiniteContact }))
 }
 
 /// The mesh with the groups of faces that contact has added.
