@@ -1,4 +1,4 @@
-//! Internal forces of the elements: the trait [`Kernel`] and one file for each formulation.
+//! Internal forces of the elements: the trait `Kernel` and one file for each formulation.
 //!
 //! A kernel cuts the elements of a strip into chunks. The pass moves the nodes that a chunk needs, sweeps its elements,
 //! and sums up the nodes that no later chunk has.
