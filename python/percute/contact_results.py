@@ -72,7 +72,8 @@ class ContactResults:
     normals: NDArray[np.float64]
     """Outward unit normals of their planes, shape (contact nodes, dimension)."""
     area: NDArray[np.float64]
-    """Their shares ℓ_k of the candidate edges, with thickness or section (m²), shape (contact nodes,), eq. [45]."""
+    """Their shares ℓ_k of the candidate edges, with thickness or section (m²), shape (contact nodes,), eq. [45]. On a body that turns all
+    edges are candidates, and ``area_over_time`` has the shares that count."""
     force: NDArray[np.float64]
     """R_n (N), global axes, shape (instants, contact nodes, dimension)."""
     gap: NDArray[np.float64]
@@ -104,6 +105,7 @@ class ContactResults:
     """For each of ``obstacles`` None if it is a plane, or the group of edges of this side of an interface of bodies."""
     mesh: Mesh = field()
     """The mesh."""
+    _area_over_time: NDArray[np.float64] | None = None
     per_metre: bool = False
     """Whether forces and energies are per metre of thickness."""
 
@@ -111,7 +113,8 @@ class ContactResults:
     def _of(cls, arrays: dict[str, Any], mesh: Mesh, surfaces: Sequence[str | None], per_metre: bool) -> Self:
         resultants = Resultants(**arrays.pop("resultants"), per_metre=per_metre)
         obstacles = tuple(Resultants(**each, per_metre=per_metre) for each in arrays.pop("obstacles"))
-        return cls(**arrays, resultants=resultants, obstacles=obstacles, mesh=mesh, surfaces=tuple(surfaces), per_metre=per_metre)
+        areas = arrays.pop("area_over_time", None)
+        return cls(**arrays, _area_over_time=areas, resultants=resultants, obstacles=obstacles, mesh=mesh, surfaces=tuple(surfaces), per_metre=per_metre)
 
     @cached_property
     def _names(self) -> dict[int, str]:
@@ -121,10 +124,18 @@ class ContactResults:
         names = {k: contact_name(self.surfaces[k] or "", self.surfaces[k + 1] or "") for k in sides}
         return {k: f"plane {k}" for k in range(planes)} | names
 
+    @property
+    def area_over_time(self) -> NDArray[np.float64]:
+        """ℓ_k at t_n (m²), shape (instants, contact nodes): that of ``area``, but on a body that turns its undeformed edges times the cosines of
+        their angles to the plane."""
+        if self._area_over_time is None:
+            return np.broadcast_to(self.area, (len(self.time), len(self.area)))
+        return self._area_over_time
+
     @cached_property
     def density(self) -> NDArray[np.float64]:
         """R_n/ℓ_k (Pa), global axes, shape (instants, contact nodes, dimension), eq. [45]."""
-        return _read_only(self.force / self.area[:, None])
+        return _read_only(self.force / self.area_over_time[..., None])
 
     @cached_property
     def normal_force(self) -> NDArray[np.float64]:
@@ -139,7 +150,7 @@ class ContactResults:
     @cached_property
     def pressure(self) -> NDArray[np.float64]:
         """Normal component of the density (Pa), shape (instants, contact nodes)."""
-        return _read_only(self.normal_force / self.area)
+        return _read_only(self.normal_force / self.area_over_time)
 
     def __repr__(self) -> str:
         peak = self.resultants.normal_force.max(initial=0.0)

@@ -42,6 +42,9 @@ pub(crate) fn arrays<'py>(py: Python<'py>, results: &Arc<ContactResults>) -> PyR
         arrays.set_item("status", array(py, status, &shape)?)?;
         let friction = view::view(py, results, |r| of(r, |s| &s.friction_energy), &shape)?;
         arrays.set_item("friction_energy", friction)?;
+        if !steps.area.is_empty() {
+            arrays.set_item("area_over_time", view::view(py, results, |r| of(r, |s| &s.area), &shape)?)?;
+        }
     }
     arrays.set_item("resultants", resultants(py, &results.total, dimension)?)?;
     let obstacles = results.obstacles.iter().map(|over_time| resultants(py, over_time, dimension));

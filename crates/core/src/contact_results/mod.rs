@@ -6,6 +6,7 @@
 //! and position are those of u_n. At the last t_n before the first touch the node has both a force and a gap.
 
 mod averaged;
+mod facing;
 mod nearest;
 mod recorder;
 mod resultant;
@@ -68,14 +69,15 @@ pub struct ContactPoint {
     pub point: Vector,
     /// Unit normal there, from the obstacle to the body.
     pub normal: Vector,
-    /// ℓ_k: its share of the candidate faces, with thickness or section (m²), eq. \[45\].
+    /// ℓ_k: its share of the candidate faces, with thickness or section (m²), eq. \[45\]; on a body that turns that of
+    /// all of its faces.
     pub area: f64,
 }
 
 /// All contact nodes at all instants, node by node and instant after instant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactSteps {
-    /// R_n (N), global axes. Over [`ContactPoint::area`] it is the density (Pa), eq. \[45\].
+    /// R_n (N), global axes. Over ℓ_k it is the density (Pa), eq. \[45\].
     pub force: Vec<f64>,
     /// Gap at t_n (m), eq. \[3\]; infinite at a node that faces nothing.
     pub gap: Vec<f64>,
@@ -86,10 +88,13 @@ pub struct ContactSteps {
     pub status: Vec<Status>,
     /// Energy dissipated by friction up to t_n (J).
     pub friction_energy: Vec<f64>,
+    /// ℓ_k at t_n (m²) on a body that turns: of the undeformed faces, in proportion to how far they face the obstacle.
+    /// Empty where it is always [`ContactPoint::area`].
+    pub area: Vec<f64>,
 }
 
 impl ContactSteps {
-    /// Bytes of one node at one instant.
+    /// Bytes of one node at one instant, without its area.
     #[must_use]
     pub const fn bytes(dimension: usize) -> usize {
         (2 * dimension + 2) * size_of::<f64>() + size_of::<Status>()
@@ -106,6 +111,13 @@ impl ContactSteps {
 }
 
 impl ContactResults {
+    /// ℓ_k of a contact node at an instant (m²), by their numbers.
+    #[must_use]
+    pub fn area(&self, instant: usize, at: usize) -> f64 {
+        let of_step = self.steps.as_ref().and_then(|steps| steps.area.get(instant * self.nodes.len() + at));
+        of_step.copied().unwrap_or(self.nodes[at].area)
+    }
+
     /// The instant at which the sum of all normal forces is largest. None without any force.
     #[must_use]
     pub fn peak(&self) -> Option<usize> {

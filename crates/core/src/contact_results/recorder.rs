@@ -1,6 +1,7 @@
 //! Contact results of the steps of a run or a history.
 
 use super::averaged::Averages;
+use super::facing;
 use super::nearest::LastGaps;
 use super::resultant::{Share, Sum};
 use super::{ContactPoint, ContactResults, ContactSteps, NodeSummary};
@@ -100,6 +101,8 @@ struct Recorder<'p, const D: usize> {
     /// The shortest edge of each node that may touch another body (m); infinite at rigid obstacles, and on a bar.
     shortest: Vec<f64>,
     inclination: Inclination<'p, D>,
+    /// Area of each node (m²), on a body that turns at the instant that is recorded.
+    areas: Vec<f64>,
     gaps: LastGaps,
     averages: Averages,
     results: ContactResults,
@@ -137,7 +140,8 @@ impl<'p, const D: usize> Recorder<'p, D> {
         let configuration = problem.surface().configuration(problem.initial_displacement());
         let (shortest, gaps, averages) = (shortest_edges(problem), LastGaps::default(), Averages::new(problem));
         let inclination = Inclination::new(problem.surface(), problem.mesh(), problem.on_lines_of_symmetry());
-        Self { problem, times, laws, now, configuration, shortest, inclination, gaps, averages, results }
+        let areas = problem.surface().tributary_areas();
+        Self { problem, times, laws, now, configuration, shortest, inclination, areas, gaps, averages, results }
     }
 
     /// The normal force of each obstacle (N) up to which its nodes are free.
@@ -165,7 +169,7 @@ impl<'p, const D: usize> Recorder<'p, D> {
 
     /// Records one node, which is free up to this normal force (N); returns its share of the resultants.
     fn node(&mut self, at: usize, step: &Step<'_>, least: f64) -> Share {
-        let ContactPoint { node, area, point, .. } = self.results.nodes[at];
+        let (ContactPoint { node, point, .. }, area) = (self.results.nodes[at], self.areas[at]);
         let (displacement, force) = (step.displacement::<D>()[node.index()], step.reaction::<D>()[at]);
         let surface = self.problem.surface();
         let relative = self.configuration.relative(at, step.displacement());
@@ -206,6 +210,9 @@ impl<'p, const D: usize> Recorder<'p, D> {
             steps.sliding_velocity.extend(slides(status));
             steps.status.push(status);
             steps.friction_energy.push(friction_energy);
+            if self.problem.is_finite() {
+                steps.area.push(area);
+            }
         }
         let place = std::array::from_fn(|c| if c < D { point[c] + displacement[c] } else { 0.0 });
         Share { force: padded(&force), normal_force, area, status, friction_energy, place }
@@ -218,7 +225,9 @@ impl<const D: usize> Record for Recorder<'_, D> {
         let rows = nodes.saturating_mul(instants);
         let mut steps = ContactSteps::default();
         let bytes = rows.saturating_mul(ContactSteps::bytes(D));
-        steps.reserve(rows, D).map_err(|_| ContactMemoryError { bytes, nodes, instants })?;
+        let areas = if self.problem.is_finite() { rows } else { 0 };
+        let reserved = steps.reserve(rows, D).and_then(|()| steps.area.try_reserve_exact(areas));
+        reserved.map_err(|_| ContactMemoryError { bytes, nodes, instants })?;
         self.results.steps = Some(steps);
         Ok(())
     }
@@ -240,6 +249,9 @@ impl<const D: usize> Record for Recorder<'_, D> {
         self.configuration.update(step.displacement());
         self.gap_left(step);
         let least = self.least_forces(step);
+        if self.problem.is_finite() {
+            self.areas = facing::areas(self.problem, step.displacement());
+        }
         let length = self.times.velocity_step(step.index);
         let over = [self.times.instants()[step.index] + 0.5 * self.times.step(step.index), length];
         let mut averaged = 0.0;

@@ -43,8 +43,8 @@ impl NodeSummary {
         if normal_force > self.peak_normal_force {
             self.peak_normal_force = normal_force;
             self.time_of_peak = Some(time);
-            self.peak_pressure = normal_force / area;
         }
+        self.peak_pressure = self.peak_pressure.max(normal_force / area);
     }
 
     /// Adds a step of `dt` seconds with the forces and status at both ends. All integrals are trapezoids, like the

@@ -39,15 +39,14 @@ impl Surface {
         if nodes.len() < 2 || time[0] >= time[1] {
             return None;
         }
-        let force = |node: usize, forces: &[f64]| -> f64 {
-            let point = &results.nodes[node];
-            let force = row(forces, node, results.dimension);
-            (0..3).map(|c| force[c] * point.normal[c]).sum::<f64>() / point.area
+        let pressure = |node: usize, (instant, forces): &(usize, &[f64])| -> f64 {
+            let (normal, force) = (&results.nodes[node].normal, row(forces, node, results.dimension));
+            (0..3).map(|c| force[c] * normal[c]).sum::<f64>() / results.area(*instant, node)
         };
-        let rows: Vec<&[f64]> = steps.force.chunks_exact(results.dimension * count).collect();
+        let rows: Vec<(usize, &[f64])> = steps.force.chunks_exact(results.dimension * count).enumerate().collect();
         let pieces = rows.chunks(rows.len().div_ceil(INSTANTS).max(1));
         let largest =
-            |node: usize, piece: &[&[f64]]| piece.iter().map(|forces| force(node, forces)).fold(0.0, f64::max);
+            |node: usize, piece: &[(usize, &[f64])]| piece.iter().map(|row| pressure(node, row)).fold(0.0, f64::max);
         let history = |node: usize| pieces.clone().map(|piece| largest(node, piece)).collect();
         let points: Vec<_> = nodes.iter().map(|&node| results.nodes[node]).collect();
         let pressed = |k: usize| results.summary.get(nodes[k]).is_some_and(|s| s.peak_pressure > 0.0);

@@ -70,6 +70,9 @@ pub(super) fn write(
     let status: Vec<u8> = steps.status.iter().map(|s| *s as u8).collect();
     numbers(&contact, "status", &[instants, nodes], &status)?;
     write("friction_energy", "J", &[instants, nodes], &steps.friction_energy)?;
+    if !steps.area.is_empty() {
+        write("area_over_time", "m^2", &[instants, nodes], &steps.area)?;
+    }
     write_resultants(&group(&contact, "total")?, &results.total, (d, units))?;
     let obstacles = group(&contact, "obstacles")?;
     for (at, over_time) in results.obstacles.iter().enumerate() {

@@ -139,6 +139,10 @@ impl<'f> Reader<'_, 'f> {
             sliding_velocity: self.all("sliding_velocity", &[instants, nodes, self.dimension])?,
             status,
             friction_energy: self.all("friction_energy", &shape)?,
+            area: match self.part.optional("area_over_time")? {
+                Some(_) => self.all("area_over_time", &shape)?,
+                None => Vec::new(),
+            },
         })
     }
 
