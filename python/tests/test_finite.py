@@ -9,6 +9,7 @@ import numpy as np
 import percute as pc
 import pytest
 
+
 def rubber(young: float = 10e6, speed: float = 20.0, friction: float = 0.2, law: str | None = None) -> pc.Problem:
     """The block of the page, on a coarser mesh."""
     material = pc.Elastic(young=young, poisson=0.4, density=1100.0, plane="strain", kinematics="finite", law=law)  # type: ignore[arg-type]
@@ -20,15 +21,18 @@ class Stopped(Exception):
     """A run that was stopped."""
 
 
-
-
 def test_the_case_of_the_page_runs(tmp_path: Path) -> None:
     page = (Path(__file__).parents[2] / "docs" / "finite.md").read_text(encoding="utf-8")
     [case] = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
     (tmp_path / "rubber.toml").write_text(case)
-    command = [sys.executable, "-m", "percute", "simulate", "rubber.toml", "--quiet"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+
+    def percute(*arguments: str) -> str:
+        done = subprocess.run([sys.executable, "-m", "percute", *arguments], cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    assert "steps or more" in percute("info", "rubber.toml")
+    percute("simulate", "rubber.toml", "--quiet")
     history = pc.open(tmp_path / "rubber.vtkhdf")
     assert isinstance(history, pc.History)
     mesh = pc.Mesh.rectangle(0.05, 0.04, nx=20, ny=16)

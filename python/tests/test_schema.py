@@ -55,6 +55,8 @@ BEYOND = {
     "a neo-Hookean sheet with negative Poisson's ratio": "two keys together",
     "the error of finite kinematics": "the command",
     "finite kinematics on two planes": "two tables together",
+    "a group of a plane for a body that turns": "two tables together",
+    "two bodies that turn": "the number of bodies",
     "nodes counted from 1": "the number of nodes",
     "a node that no element uses": "nodes and elements together",
     "an element without area": "the geometry of the mesh",

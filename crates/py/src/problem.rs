@@ -4,7 +4,7 @@ use crate::mesh::MeshData;
 use crate::{bridge, errors, statement, view};
 use numpy::{PyArray1, PyArrayDyn, PyReadonlyArray2};
 use percute_core::contact::AnyObstacle;
-use percute_core::dynamics::critical_time_step;
+use percute_core::dynamics::{critical_time_step, first_stable_step};
 use percute_core::material::{Elastic, Hypothesis, Law};
 use percute_core::mesh::Mesh;
 use percute_core::problem::{AnyProblem, Statement};
@@ -39,6 +39,15 @@ impl ProblemData {
         let problem = self.problem.clone();
         let step = bridge::blocking(py, None, move |_| critical_time_step(&problem))?;
         Ok(*self.critical_step.get_or_init(|| step))
+    }
+
+    /// The step (s) that a Courant number, if it is given, refers to: Δt_c, or the stable step at the start of a body
+    /// that may turn.
+    pub(crate) fn stable_step(&self, py: Python<'_>, courant: Option<f64>) -> PyResult<f64> {
+        match courant.is_some() && self.problem.is_finite() {
+            true => Ok(first_stable_step(&self.problem)),
+            false => self.critical_step(py),
+        }
     }
 
     /// Refuses a body that starts on a plane and moves into it, for histories that are not simulated here.

@@ -65,7 +65,7 @@ pub(crate) fn simulate(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(HistoryData, Option<String>)> {
     let (end, courant, step, steps) = times;
-    let mut times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
+    let mut times = time::grid(py, end, courant, step, steps, problem.stable_step(py, courant)?)?;
     if let Some(courant) = courant.filter(|_| problem.problem.is_finite()) {
         let (problem, end) = (problem.problem.clone(), times.end());
         let work = move |mut watch: Watch| run::following(&problem, end, courant, &mut watch);
@@ -144,9 +144,9 @@ pub(crate) fn rebound_end(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(f64, Option<String>)> {
     let (courant, step) = pace;
-    let critical = problem.critical_step(py)?;
-    time::grid(py, Some(longest), courant, step, None, critical)?;
-    let step = step.or_else(|| courant.map(|courant| courant * critical)).unwrap_or(critical);
+    let stable = problem.stable_step(py, courant)?;
+    time::grid(py, Some(longest), courant, step, None, stable)?;
+    let step = step.or_else(|| courant.map(|courant| courant * stable)).unwrap_or(stable);
     if let Some(told) = no_rebound(&problem.problem) {
         return Err(errors::input(py, format!("`end`: {told}")));
     }
@@ -172,7 +172,7 @@ pub(crate) fn plausibility_warnings(
 ) -> PyResult<Vec<String>> {
     let (end, courant, step, steps) = times;
     let critical = problem.critical_step(py)?;
-    let times = time::grid(py, end, courant, step, steps, critical)?;
+    let times = time::grid(py, end, courant, step, steps, problem.stable_step(py, courant)?)?;
     let problem = &problem.problem;
     let history = if in_memory { memory::of_history(problem, &times) } else { 0 };
     let (needed, names) = (memory::of_run(problem, &times).saturating_add(history), groups(problem));
@@ -189,7 +189,7 @@ pub(crate) fn plausibility_warnings(
 #[pyfunction]
 pub(crate) fn check_run(py: Python<'_>, problem: &ProblemData, times: Times, long: bool) -> PyResult<()> {
     let (end, courant, step, steps) = times;
-    let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
+    let times = time::grid(py, end, courant, step, steps, problem.stable_step(py, courant)?)?;
     let problem = &problem.problem;
     if let Err(error @ SimulationError::StartsTooNear { obstacle, .. }) = check_start(problem, &times) {
         let (place, message) = refused_start(problem, &times, obstacle, &error);

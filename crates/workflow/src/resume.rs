@@ -72,7 +72,7 @@ impl Stored {
         }
         match self.file.case() {
             Some(_) => stated(),
-            None => Some("the case that it came from, with the end of its run, is not in it".to_string()),
+            None => Some("no case is in it: it was stored from Python, where `pc.resume` continues it".to_string()),
         }
     }
 

@@ -16,7 +16,7 @@ pub use crate::storing::{Outcome, Storage};
 use crate::until::{FoundEnd, Stop, Until};
 use percute_core::contact_results::{ContactMemoryError, ContactRecorder, ContactResults};
 use percute_core::dynamics::{
-    Balance, Balancing, Simulation, StableTimes, critical_time_step, replay, simulate_threaded, stable_times,
+    Balance, Balancing, Simulation, StableTimes, first_stable_step, replay, simulate_threaded, stable_times,
 };
 use percute_core::history::{Discard, SinkError, State, StateSink, Step, StepSource};
 use percute_core::observer::Observer;
@@ -102,19 +102,21 @@ pub fn rebound(problem: &AnyProblem, until: &Until, observer: &mut dyn Observer)
     let (ordered, times, seen) = (Ordered::new(problem), until.times().map_err(refused)?, AtomicBool::new(false));
     let mut leaving = Leaving::new(ordered.problem(), until.after, &seen);
     let mut stop = Stop { inner: observer, left: &seen, asked: false };
-    let done = if problem.is_finite() {
-        let bounds = [until.longest, until.step / critical_time_step(problem)];
-        stable_times(ordered.problem(), bounds, None, &mut leaving, &mut stop).map(drop)
+    let fails = if problem.is_finite() {
+        let bounds = [until.longest, until.step / first_stable_step(problem)];
+        stable_times(ordered.problem(), bounds, None, &mut leaving, &mut stop).map(|found| found.fails)
     } else {
-        simulate_threaded(ordered.problem(), &times, None, &mut leaving, &mut stop).map(drop)
+        simulate_threaded(ordered.problem(), &times, None, &mut leaving, &mut stop).map(|_| false)
     };
-    done.map_err(|error| ordered.failure(error.into()))?;
+    let fails = fails.map_err(|error| ordered.failure(error.into()))?;
     let (left, asked) = (leaving.left, stop.asked);
     if asked && left.is_none() {
         return Ok(None);
     }
     let going_on = leaving.going_on();
-    until.found(left.ok_or(&going_on)).map(Some).map_err(refused)
+    let found = until.found(left.ok_or(&going_on)).map_err(refused)?;
+    // The error of the run tells more than the warning.
+    Ok(Some(FoundEnd { warning: found.warning.filter(|_| !fails), ..found }))
 }
 
 /// The case with the instants of its run: the end with the rebound and the steps of finite laws are looked for. With a
@@ -148,7 +150,7 @@ pub fn following(
 ) -> Result<Option<TimeGrid>, Failure> {
     let ordered = Ordered::new(problem);
     let found = stable_times(ordered.problem(), [end, courant], None, &mut Discard, observer);
-    let StableTimes { times, steps } = found.map_err(|error| ordered.failure(error.into()))?;
+    let StableTimes { times, steps, .. } = found.map_err(|error| ordered.failure(error.into()))?;
     Ok(Some(times).filter(|times| steps == times.step_count()))
 }
 

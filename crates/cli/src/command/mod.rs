@@ -185,7 +185,8 @@ fn resolved(case: &Case, quiet: bool, console: &mut Console<'_>) -> Result<Optio
     let found = search(case, watch).map_err(|failure| located(case, failure))?;
     watch.clear();
     let Some(case) = found else {
-        console.say("interrupted while looking for the rebound");
+        let work = if case.until.is_some() { "looking for the rebound" } else { "finding stable steps" };
+        console.say(&format!("interrupted while {work}"));
         return Ok(None);
     };
     if !quiet {

@@ -44,7 +44,7 @@ pub struct ContactFace<const D: usize> {
 }
 
 /// All obstacles and all candidate faces, ordered along the boundary: in 2D a face joins two nodes that follow
-/// each other in [`ContactSurface::nodes`].
+/// each other in [`ContactSurface::nodes`], or the ends of a closed curve.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactSurface<const D: usize> {
     obstacles: Vec<Obstacle<D>>,

@@ -6,8 +6,8 @@ use super::contact::StepContact;
 use super::moving::MovingBody;
 use super::node_update::NodeMotion;
 use super::simulation::{Simulation, SimulationError, unstable};
-use super::stable_times::check_step;
 use super::start::{restart, start};
+use super::step_check::StabilityCheck;
 use crate::history::{Checkpoint, State, StateSink, Step};
 use crate::observer::{Observer, Progress};
 use crate::problem::Problem;
@@ -53,6 +53,7 @@ fn run<const D: usize>(
     let mut body = MovingBody::new(dynamics);
     let mut contact = StepContact::new(dynamics);
     let mut balance = BalanceKeeper::new(problem, times);
+    let mut steps = StabilityCheck::new(dynamics);
     let mut balance_over_time = Vec::with_capacity(times.step_count() + 1);
     let (mut done, mut interrupted) = (0, false);
     if let Some(checkpoint) = checkpoint {
@@ -85,12 +86,12 @@ fn run<const D: usize>(
         sink.accept(&state.with_sums(&balance.sums())).map_err(|cause| SimulationError::Sink { step: n, cause })?;
         balance_over_time.push(*balance.balance());
         done = n;
-        check_step(dynamics, n, &body.displacement)?;
         let progress = Progress { stage: "simulating", done, total: times.step_count() };
         if observer.observe(progress) == ControlFlow::Break(()) && n < times.step_count() {
             interrupted = true;
             break;
         }
+        steps.check(n, &body.displacement)?;
     }
     Ok(Simulation { balance: *balance.balance(), balance_over_time, steps: done, interrupted })
 }

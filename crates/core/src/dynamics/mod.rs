@@ -14,6 +14,7 @@ mod pass;
 mod simulation;
 mod stable_times;
 mod start;
+mod step_check;
 mod update;
 mod work_meter;
 
@@ -26,7 +27,7 @@ pub use entry::{
 pub use evaluation::Evaluation;
 use missed::MissedContact;
 pub use simulation::{Simulation, SimulationError};
-pub use stable_times::{StableTimes, stable_times};
+pub use stable_times::{StableTimes, first_stable_step, stable_times};
 pub use update::advance;
 
 use crate::kernel::{Kernel, ProblemKernel, on_kernel};

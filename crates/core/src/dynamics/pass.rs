@@ -25,8 +25,8 @@ pub(super) struct Pass<'a, K, const D: usize> {
     pub(super) parallel: bool,
 }
 
-/// Fields on consecutive nodes from `start` on, internal variables of consecutive elements from `internal_start` on, and
-/// the sums of consecutive strips of one parity.
+/// Fields on consecutive nodes from `start` on, internal variables of consecutive elements from `internal_start` on,
+/// and the sums of consecutive strips of one parity.
 pub(super) struct Fields<'a, const D: usize> {
     pub(super) start: usize,
     pub(super) displacement: &'a mut [[f64; D]],

@@ -6,6 +6,7 @@ use crate::element_state::displacement_gradient;
 use crate::history::SinkError;
 use crate::ids::ElementId;
 use crate::material::volume_ratio;
+use crate::problem::Problem;
 use crate::time::TimeError;
 use thiserror::Error;
 
@@ -45,9 +46,12 @@ pub enum SimulationError {
     Times(TimeError),
     /// An element of a finite law whose nodes have passed each other.
     #[error(
-        "element {element} is turned inside out at step {step}, t = {time:.6e} s: its volume is {ratio:.3} times that of \
-         the undeformed element; the steps before are kept. Take a finer mesh there, a slower impact, or a law that \
-         hardens in compression (\"neo_hookean\")"
+        "element {element} is turned inside out at step {step}, t = {time:.4e} s: its volume is {ratio:.2} times that \
+         of the undeformed element; {}",
+        if *.step == 0 { "check the initial displacement" } else {
+            "the steps before are stored. Take a slower impact, shorter steps or a finer mesh there; law = \"svk\" \
+             softens in compression, the others do not"
+        }
     )]
     InsideOut {
         /// The step.
@@ -61,8 +65,8 @@ pub enum SimulationError {
     },
     /// A step above the stable one of the present stiffness.
     #[error(
-        "the step from t = {time:.6e} s on, {step:.4e} s, is above the stable step of the deformed body, {stable:.4e} s: \
-         give courant = 0.9, with which steps follow the stiffness, or at most {stable:.4e} s from there on"
+        "the step from t = {time:.6e} s on, {step:.4e} s, is above the stable step of the deformed body, \
+         {stable:.4e} s: give courant = 0.9, with which steps follow the stiffness, or shorter steps from there on"
     )]
     StepTooLong {
         /// Its time (s).
@@ -148,7 +152,7 @@ pub(super) fn unstable<const D: usize>(
     [displacement, velocity]: [&[[f64; D]]; 2],
     balance: &Balance,
 ) -> SimulationError {
-    if let Some((element, ratio)) = inside_out(dynamics, displacement) {
+    if let Some((element, ratio)) = inside_out(dynamics.problem, displacement) {
         return SimulationError::InsideOut { step, time: dynamics.times.instants()[step], element, ratio };
     }
     let speed = |v: &[f64; D]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -170,8 +174,7 @@ pub(super) fn unstable<const D: usize>(
 }
 
 /// The element of a finite law with the least det F, if that is not positive.
-fn inside_out<const D: usize>(dynamics: &Dynamics<'_, D>, displacement: &[[f64; D]]) -> Option<(usize, f64)> {
-    let problem = dynamics.problem;
+pub(super) fn inside_out<const D: usize>(problem: &Problem<D>, displacement: &[[f64; D]]) -> Option<(usize, f64)> {
     let elements = (0..problem.mesh().element_count()).map(ElementId::new);
     let ratio = |e: ElementId| (e.index(), volume_ratio(&displacement_gradient(problem.mesh(), e, displacement)));
     let finite = elements.filter(|e| problem.material(*e).is_finite()).map(ratio);

@@ -1,9 +1,13 @@
 //! Steps that follow the stiffness of finite laws: a pass of the integrator finds them before the run.
 
-use super::{Dynamics, SimulationError, entry};
+use super::SimulationError;
+use super::central_difference::simulate;
+use super::critical_step::critical_time_step;
+use super::simulation::inside_out;
 use crate::border::vectors;
 use crate::history::{Checkpoint, SinkError, State, StateSink};
-use crate::kernel::{PointKernel, ProblemKernel};
+use crate::kernel::PointKernel;
+use crate::material::Elastic;
 use crate::observer::{Observer, Progress};
 use crate::on_problem;
 use crate::problem::{Problem, ProblemRef};
@@ -11,18 +15,12 @@ use crate::time::TimeGrid;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// A run looks at the stable step each so many steps: a look takes as long as two steps, and an unstable run needs some
-/// tens of steps to be seen by its energy.
-const RUN: usize = 20;
-/// The pass that finds the steps looks more often. In a step the stable one falls by 4 % at the most (rubber at
-/// 40 m/s) …
+/// The pass looks at the stable step each so many steps. In a step it falls by 4 % at the most (rubber at 40 m/s) …
 const EVERY: usize = 5;
 /// … and by less than this, where it is computed again at once.
 const FALLING: f64 = 0.005;
 /// A shorter step leaves room for the fall until the next look, and keeps the number of passes small.
 const ROOM: f64 = 0.98;
-/// The stable step of the elements is 0.87 to 0.92 times the critical one: a step up to this factor above it is stable.
-const SLACK: f64 = 1.08;
 
 /// Instants with stable steps.
 #[derive(Clone, Debug)]
@@ -31,6 +29,8 @@ pub struct StableTimes {
     pub times: TimeGrid,
     /// Steps done, all of them unless the observer stopped the pass.
     pub steps: usize,
+    /// Whether the run fails before its end.
+    pub fails: bool,
 }
 
 /// Finds instants from 0 to `end` (s) with steps of at most `courant` times the stable one of the deformed body, which
@@ -57,6 +57,25 @@ pub fn stable_times<'p>(
     of(problem.into(), [end, courant], threads, sink, observer)
 }
 
+/// The stable step (s) of the start, of which steps that follow the stiffness are the Courant number times; the
+/// critical step of small kinematics, and where an element is turned inside out.
+#[must_use]
+pub fn first_stable_step<'p>(problem: impl Into<ProblemRef<'p>>) -> f64 {
+    fn of(problem: ProblemRef<'_>) -> f64 {
+        on_problem!(problem, problem => {
+            let stable = problem.is_finite().then(|| of_start(problem, &PointKernel::new(problem)));
+            stable.filter(|step| step.is_finite()).unwrap_or_else(|| critical_time_step(problem))
+        })
+    }
+    of(problem.into())
+}
+
+/// That of the start. A body that is strained there may become stiffer where it is not.
+fn of_start<const D: usize>(problem: &Problem<D>, kernel: &PointKernel<Elastic, D>) -> f64 {
+    let start = problem.initial_displacement();
+    kernel.stable_step(problem, start).min(kernel.stable_step(problem, &vec![[0.0; D]; start.len()]))
+}
+
 fn find<const D: usize>(
     problem: &Problem<D>,
     [end, courant]: [f64; 2],
@@ -65,7 +84,11 @@ fn find<const D: usize>(
     observer: &mut dyn Observer,
 ) -> Result<StableTimes, SimulationError> {
     let kernel = PointKernel::new(problem);
-    let first = courant * kernel.stable_step(problem, problem.initial_displacement());
+    let start = problem.initial_displacement();
+    if let Some((element, ratio)) = inside_out(problem, start) {
+        return Err(SimulationError::InsideOut { step: 0, time: 0.0, element, ratio });
+    }
+    let first = courant * of_start(problem, &kernel);
     let mut times = TimeGrid::with_step(end, first).map_err(SimulationError::Times)?;
     let mut checkpoint: Option<Checkpoint> = None;
     loop {
@@ -76,6 +99,7 @@ fn find<const D: usize>(
             times: &times,
             courant,
             next: 0,
+            touching: 0,
             last: f64::INFINITY,
             inner: sink,
             shorter: None,
@@ -83,23 +107,25 @@ fn find<const D: usize>(
         };
         let mut stop = Stop { inner: observer, left: &left, asked: false };
         let done = match &checkpoint {
-            None => entry::simulate_threaded(problem, &times, threads, &mut watch, &mut stop),
-            Some(checkpoint) => entry::resume(problem, &times, threads, checkpoint, &mut watch, &mut stop),
+            None => simulate(problem, &times, threads, None, &mut watch, &mut stop),
+            Some(checkpoint) => simulate(problem, &times, threads, Some(checkpoint), &mut watch, &mut stop),
         };
         let done = match done {
             // The run itself fails there, with its steps stored.
             Err(SimulationError::InsideOut { .. } | SimulationError::Unstable { .. }) => {
                 let steps = times.step_count();
-                return Ok(StableTimes { times, steps });
+                return Ok(StableTimes { times, steps, fails: true });
             }
             done => done?,
         };
-        let Some((from, step)) = watch.shorter else { return Ok(StableTimes { times, steps: done.steps }) };
+        let Some((from, step)) = watch.shorter else {
+            return Ok(StableTimes { times, steps: done.steps, fails: false });
+        };
         let n = from.step;
         times = shortened(&times, n, ROOM * step).map_err(SimulationError::Times)?;
         checkpoint = Some(from);
         if stop.asked {
-            return Ok(StableTimes { times, steps: n });
+            return Ok(StableTimes { times, steps: n, fails: false });
         }
     }
 }
@@ -119,11 +145,13 @@ fn shortened(times: &TimeGrid, n: usize, step: f64) -> Result<TimeGrid, crate::t
 /// A sink that looks at the stable step.
 struct Watch<'a, const D: usize> {
     problem: &'a Problem<D>,
-    kernel: &'a PointKernel<crate::material::Elastic, D>,
+    kernel: &'a PointKernel<Elastic, D>,
     times: &'a TimeGrid,
     courant: f64,
     /// The step at which it looks again.
     next: usize,
+    /// Nodes that touched at the last step.
+    touching: usize,
     /// The stable step it saw last (s).
     last: f64,
     inner: &'a mut dyn StateSink,
@@ -135,8 +163,11 @@ struct Watch<'a, const D: usize> {
 impl<const D: usize> StateSink for Watch<'_, D> {
     fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         self.inner.accept(state)?;
-        let n = state.step().index;
-        if n < self.next || n >= self.times.step_count() {
+        let (n, touching) = (state.step().index, state.step().touching.iter().filter(|t| **t).count());
+        // Contact changes the stiffness fastest.
+        let due = n >= self.next || touching != self.touching;
+        self.touching = touching;
+        if !due || n >= self.times.step_count() {
             return Ok(());
         }
         let stable = self.kernel.stable_step(self.problem, vectors(state.step().displacement));
@@ -164,21 +195,4 @@ impl Observer for Stop<'_> {
         self.asked |= asked == ControlFlow::Break(());
         if self.left.load(Relaxed) { ControlFlow::Break(()) } else { asked }
     }
-}
-
-/// Refuses a step that is not stable at the displacements of its start.
-pub(super) fn check_step<const D: usize>(
-    dynamics: &Dynamics<'_, D>,
-    n: usize,
-    displacement: &[[f64; D]],
-) -> Result<(), SimulationError> {
-    let ProblemKernel::Points(kernel) = &dynamics.kernel else { return Ok(()) };
-    if !n.is_multiple_of(RUN) || n >= dynamics.times.step_count() {
-        return Ok(());
-    }
-    let (step, stable) = (dynamics.times.step(n), kernel.stable_step(dynamics.problem, displacement));
-    if step <= SLACK * stable {
-        return Ok(());
-    }
-    Err(SimulationError::StepTooLong { time: dynamics.times.instants()[n], step, stable })
 }

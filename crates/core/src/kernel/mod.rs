@@ -47,8 +47,8 @@ pub(crate) trait Kernel<const D: usize>: Sync {
         energy: &mut Eight,
     );
 
-    /// Subtracts the internal forces of all elements from `force` (N), takes the internal variables to this instant, and
-    /// returns the strain energy (J).
+    /// Subtracts the internal forces of all elements from `force` (N), takes the internal variables to this instant,
+    /// and returns the strain energy (J).
     fn subtract(&self, displacement: &[[f64; D]], internal: &mut [f64], force: &mut [[f64; D]]) -> f64
     where
         Self: Sized,

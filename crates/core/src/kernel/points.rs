@@ -371,7 +371,8 @@ mod tests {
         assert!(moment.abs() < 1e-14 * scale, "{moment}, scale {scale}");
     }
 
-    /// The step at rest is that of the linear code, but for the power of the trace: its root is at most 2.2 % too large.
+    /// The step at rest is that of the linear code, but for the power of the trace: its root is at most 2.2 % too
+    /// large.
     #[test]
     fn the_bound_at_rest_is_that_of_linear_laws() {
         let problem =

@@ -200,7 +200,10 @@ impl Law for Elastic {
         let Kinematics::Finite(law) = self.kinematics else {
             return hooke(self.lambda, self.shear, gradient).0;
         };
-        present_stress(&law.respond(&self.finite(law), gradient).0, gradient)
+        let moduli = self.finite(law);
+        let sheet = self.hypothesis == Hypothesis::PlaneStress;
+        let thickness = if sheet { law.thickness(&moduli, gradient) } else { 1.0 };
+        present_stress(&law.respond(&moduli, gradient).0, gradient, thickness)
     }
 
     /// Where nothing moves across: λ tr ε in plane strain, λ ln J/J or, of Saint Venant–Kirchhoff, λ tr E/J.

@@ -44,6 +44,21 @@ impl HyperelasticLaw {
             Self::Hencky => hencky(moduli, h),
         }
     }
+
+    /// The thickness over that of the undeformed body, in plane stress.
+    pub(super) fn thickness<const D: usize>(self, moduli: &Moduli, h: &Tensor<D>) -> f64 {
+        let log = dilatation(h).ln_1p();
+        // λ/(λ + 2G) of the moduli in space, from the reduced λ.
+        let share = moduli.lambda / (2.0 * moduli.shear);
+        match self {
+            Self::NeoHookean => (1.0 + across(moduli, log)).sqrt(),
+            Self::SaintVenantKirchhoff => {
+                let strain = green_strain(h);
+                (1.0 - 2.0 * share * (0..D).map(|a| strain[a][a]).sum::<f64>()).sqrt()
+            }
+            Self::Hencky => (-share * log).exp(),
+        }
+    }
 }
 
 /// J − 1.
@@ -61,9 +76,9 @@ pub fn volume_ratio<const D: usize>(h: &Tensor<D>) -> f64 {
     1.0 + dilatation(h)
 }
 
-/// σ = P Fᵀ/J.
-pub(super) fn present_stress<const D: usize>(first: &Tensor<D>, h: &Tensor<D>) -> Tensor<D> {
-    let volume = volume_ratio(h);
+/// σ = P Fᵀ/J, with the thickness over that of the undeformed body.
+pub(super) fn present_stress<const D: usize>(first: &Tensor<D>, h: &Tensor<D>, thickness: f64) -> Tensor<D> {
+    let volume = thickness * volume_ratio(h);
     let entry = |a: usize, b: usize| first[a][b] + (0..D).map(|c| first[a][c] * h[b][c]).sum::<f64>();
     std::array::from_fn(|a| std::array::from_fn(|b| entry(a, b) / volume))
 }
@@ -293,7 +308,8 @@ mod tests {
         /// At strains of 1e-10 all are Hooke's law to 1e-8; differences of numbers near 1 would leave 1e-6.
         #[test]
         fn small_strains_obey_hookes_law(entries in proptest::array::uniform4(-1.0..1.0)) {
-            let h: Tensor<2> = [[entries[0], entries[1]], [entries[2], entries[3]]].map(|row| row.map(|x: f64| 1e-10 * x));
+            let [a, b, c, d] = entries.map(|x: f64| 1e-10 * x);
+            let h: Tensor<2> = [[a, b], [c, d]];
             let scale = h.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
             for law in plane_laws() {
                 let ((stress, energy), small) = (respond(&law, &h), law.with_kinematics(Kinematics::Small).unwrap());
@@ -314,7 +330,8 @@ mod tests {
                 let h = [[lanes(0, 0), lanes(0, 1)], [lanes(1, 0), lanes(1, 1)]];
                 let (stress, energy) = law.respond(&h, &mut []);
                 for lane in 0..8 {
-                    let one = [[entries[4 * lane], entries[4 * lane + 1]], [entries[4 * lane + 2], entries[4 * lane + 3]]];
+                    let own = &entries[4 * lane..];
+                    let one = [[own[0], own[1]], [own[2], own[3]]];
                     let (expected, density) = respond(&law, &one);
                     proptest::prop_assert_eq!(energy.0[lane].to_bits(), density.to_bits());
                     for i in 0..4 {
@@ -359,6 +376,38 @@ mod tests {
                 let law = bar.with_kinematics(Kinematics::Finite(law)).unwrap();
                 let ([[found]], _) = respond(&law, &[[stretch - 1.0]]);
                 assert!((found - expected).abs() < 1e-15, "{law:?} at {stretch}: {found} against {expected}");
+            }
+        }
+    }
+
+    /// A sheet of ν = 0.4 with principal stretches 1.3 and 0.9: σ_a = P_a λ_a/J with a thickness without stress
+    /// across, found by bisection of the law in space.
+    #[test]
+    fn stress_is_per_present_area_in_plane_stress() {
+        let (lambda, shear) = (0.4 / (1.4 * 0.2), 1.0 / 2.8);
+        let stretches = |across: f64| [1.3, 0.9, across];
+        for law in LAWS {
+            // Kirchhoff stress on the principal axes in space.
+            let kirchhoff = |across: f64| -> [f64; 3] {
+                let volume: f64 = stretches(across).iter().product();
+                let green: f64 = stretches(across).iter().map(|s| 0.5 * (s * s - 1.0)).sum();
+                stretches(across).map(|s| match law {
+                    HyperelasticLaw::NeoHookean => shear * (s * s - 1.0) + lambda * volume.ln(),
+                    HyperelasticLaw::SaintVenantKirchhoff => s * s * (lambda * green + shear * (s * s - 1.0)),
+                    HyperelasticLaw::Hencky => 2.0 * shear * s.ln() + lambda * volume.ln(),
+                })
+            };
+            let [mut low, mut high] = [0.5, 1.2];
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                if kirchhoff(middle)[2] < 0.0 { low = middle } else { high = middle }
+            }
+            let volume = 1.3 * 0.9 * low;
+            let sheet = Elastic::plane_stress(1.0, 0.4, 1.0, 1.0).unwrap();
+            let found = sheet.with_kinematics(Kinematics::Finite(law)).unwrap().stress(&[[0.3, 0.0], [0.0, -0.1]]);
+            for a in 0..2 {
+                let expected = kirchhoff(low)[a] / volume;
+                assert!((found[a][a] - expected).abs() < 1e-13, "{law:?}: {} against {expected}", found[a][a]);
             }
         }
     }

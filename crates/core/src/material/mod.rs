@@ -31,8 +31,8 @@ pub struct MaterialError {
 /// A tensor of second order in `D` dimensions.
 pub type Tensor<const D: usize> = [[f64; D]; D];
 
-/// A law between the displacement gradient H = ∂u_a/∂X_b and the stress (Pa), with the density and the extent of the body
-/// across the mesh.
+/// A law between the displacement gradient H = ∂u_a/∂X_b and the stress (Pa), with the density and the extent of the
+/// body across the mesh.
 pub trait Law {
     /// Density ρ (kg/m³).
     fn density(&self) -> f64;
@@ -67,12 +67,12 @@ pub trait PointLaw: Copy + Send + Sync {
     /// Internal variables of a point, at most [`MOST_VARIABLES`].
     const VARIABLES: usize;
 
-    /// First Piola–Kirchhoff stress P (Pa) of H = ∂u_a/∂X_b, with the work of P in dH, and the strain energy per reference
-    /// volume (J/m³). Takes the internal variables from the last instant to this one.
+    /// First Piola–Kirchhoff stress P (Pa) of H = ∂u_a/∂X_b, with the work of P in dH, and the strain energy per
+    /// reference volume (J/m³). Takes the internal variables from the last instant to this one.
     fn respond<V: Value, const D: usize>(&self, gradient: &[[V; D]; D], internal: &mut [V]) -> Response<V, D>;
 
-    /// A bound on the largest eigenvalue of (1⊗R) ∂P/∂F (1⊗R) for a symmetric R (1/m): that of K_T of an element over its
-    /// volume (Pa/m²), if R² = Σ ∇φ_i⊗∇φ_i.
+    /// A bound on the largest eigenvalue of (1⊗R) ∂P/∂F (1⊗R) for a symmetric R (1/m): that of K_T of an element over
+    /// its volume (Pa/m²), if R² = Σ ∇φ_i⊗∇φ_i.
     fn stiffness_bound<V: Value, const D: usize>(&self, gradient: &[[V; D]; D], root: &[[V; D]; D]) -> V;
 }
 

@@ -166,11 +166,13 @@ mod tests {
     }
 
     proptest::proptest! {
-        /// At least the eigenvalue without its sign, and at most 4^(1/32) = 1.044 times it. The differences are right to
-        /// 1e-9.
+        /// At least the eigenvalue without its sign, and at most 4^(1/32) = 1.044 times it. The differences are right
+        /// to 1e-9.
         #[test]
         fn the_bound_is_close_to_the_eigenvalue(
-            entries in proptest::array::uniform4(-0.3..0.3), root in proptest::array::uniform3(0.1..1.0), nu in 0.0..0.45,
+            entries in proptest::array::uniform4(-0.3..0.3),
+            root in proptest::array::uniform3(0.1..1.0),
+            nu in 0.0..0.45,
         ) {
             let h = [[entries[0], entries[1]], [entries[2], entries[3]]];
             let root = [[root[0], 0.3 * root[1]], [0.3 * root[1], root[2]]];

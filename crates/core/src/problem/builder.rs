@@ -5,7 +5,7 @@ use super::boundary::{self, Supports};
 use super::contacts::Stated;
 use super::may_touch::{AllContact, all_contact};
 use super::sides::Bodies;
-use super::{Cause, InputError, Model, Place, Problem, sides, start_of_contact, symmetry};
+use super::{Cause, InputError, Model, Problem, sides, start_of_contact, symmetry};
 use crate::contact::{Interface, Obstacle};
 use crate::ids::{ElementId, FaceId};
 use crate::load::{BodyForce, Support, Table, Traction};
@@ -207,7 +207,7 @@ impl<const D: usize> Builder<D> {
         let face_loads = boundary::tractions(mesh, &self.stated.tractions, &supported)?;
         let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.stated.body_forces, volume)?;
 
-        let finite = finite_on_one_plane(&materials, self.obstacles.len())?;
+        check_finite(&materials, &self.obstacles, mesh.parts())?;
         let law = |f: FaceId| &materials[usize::from(element_material[mesh.face(f).owner.index()])];
         let (body, held, velocity) = (Vec::new(), boundary::held(mesh, &self.stated), &initial_velocity[..]);
         let bodies = Bodies { mesh, body, held, fixed, supported: &supported, lines, velocity, mass: &mass, law: &law };
@@ -216,7 +216,6 @@ impl<const D: usize> Builder<D> {
         let contact = Stated { contacts: &self.contacts, automatic: self.automatic && mesh.parts() > 1 };
         let AllContact { surface, interfaces, places, groups } = all_contact(bodies, self.obstacles, contact, &start)?;
         self.stated.interfaces = interfaces;
-        refuse_contact(places.first().filter(|_| finite))?;
         sides::check_touching(&surface, mesh).map_err(|cause| cause.at("contact", None, ""))?;
 
         let model = Model {
@@ -241,18 +240,26 @@ impl<const D: usize> Builder<D> {
     }
 }
 
-/// Whether bodies may turn: a face is then a candidate of one plane.
-fn finite_on_one_plane(materials: &[Elastic], planes: usize) -> Result<bool, InputError> {
-    let finite = materials.iter().any(Elastic::is_finite);
-    match finite && planes > 1 {
-        true => Err(Cause::FinitePlanes { planes }.at("obstacle", Some(1), "")),
-        false => Ok(finite),
+/// Refuses what a body that may turn cannot have: any face of it may touch the one plane.
+fn check_finite<const D: usize>(
+    materials: &[Elastic],
+    obstacles: &[Obstacle<D>],
+    bodies: usize,
+) -> Result<(), InputError> {
+    let Some(first) = materials.iter().position(Elastic::is_finite) else { return Ok(()) };
+    if bodies > 1 {
+        return Err(Cause::FiniteBodies { bodies }.at("material", Some(first), "kinematics"));
     }
-}
-
-/// Refuses contact between bodies that may turn: it has the normals of the undeformed surfaces.
-fn refuse_contact(contact: Option<&Place>) -> Result<(), InputError> {
-    contact.map_or(Ok(()), |&place| Err(InputError { place, cause: Cause::FiniteContact }))
+    if let Some(small) = materials.iter().position(|material| !material.is_finite()) {
+        return Err(Cause::MixedKinematics { first: first + 1 }.at("material", Some(small), "kinematics"));
+    }
+    if obstacles.len() > 1 {
+        return Err(Cause::FinitePlanes { planes: obstacles.len() }.at("obstacle", Some(1), ""));
+    }
+    match obstacles.iter().any(|obstacle| obstacle.group().is_some()) {
+        true => Err(Cause::FiniteGroup.at("obstacle", Some(0), "group")),
+        false => Ok(()),
+    }
 }
 
 /// The mesh with the groups of faces that contact has added.

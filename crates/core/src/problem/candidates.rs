@@ -4,7 +4,7 @@ use super::{Cause, HeldBy, InputError};
 use crate::contact::{ContactFace, ContactNode, ContactSurface, Obstacle, Plane, dot};
 use crate::ids::{FaceId, NodeId};
 use crate::mesh::Mesh;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// A face faces an obstacle if its outward unit normal · n is below this.
 const FACES: f64 = -1e-9;
@@ -84,8 +84,8 @@ fn corner<const D: usize>(
     Ok(())
 }
 
-/// Free faces that face an obstacle, of its group if it names one; all of a body that may turn. The error has the key of
-/// the statement.
+/// Free faces that face an obstacle, of its group if it names one; all of a body that may turn. The error has the key
+/// of the statement.
 fn facing<const D: usize>(
     mesh: &Mesh,
     obstacle: &Obstacle<D>,
@@ -114,56 +114,7 @@ fn facing<const D: usize>(
             return Err((Cause::AllHeld { nodes: nodes(face), by }, ""));
         }
     }
-    if turning {
-        open_loops(mesh, &mut found, inclination);
-    }
     Ok(found)
-}
-
-/// Leaves out of each closed curve of faces the one that faces away most, so that it has ends. Its nodes stay candidates
-/// with their other faces.
-fn open_loops(mesh: &Mesh, faces: &mut Vec<FaceId>, inclination: impl Fn(FaceId) -> f64) {
-    let mut pieces = Pieces::default();
-    faces.iter().for_each(|&face| pieces.join(mesh.face(face).nodes));
-    let mut ends: BTreeMap<NodeId, usize> = BTreeMap::new();
-    faces.iter().flat_map(|&face| mesh.face(face).nodes).for_each(|&node| *ends.entry(node).or_default() += 1);
-    let open: BTreeSet<NodeId> =
-        ends.iter().filter(|(_, count)| **count == 1).map(|(node, _)| pieces.of(*node)).collect();
-    let mut away: BTreeMap<NodeId, FaceId> = BTreeMap::new();
-    for &face in faces.iter() {
-        let most = away.entry(pieces.of(mesh.face(face).nodes[0])).or_insert(face);
-        if inclination(face) > inclination(*most) {
-            *most = face;
-        }
-    }
-    faces.retain(|face| {
-        let piece = pieces.of(mesh.face(*face).nodes[0]);
-        open.contains(&piece) || away[&piece] != *face
-    });
-}
-
-/// Nodes in connected pieces, each with the name of its lowest node.
-#[derive(Default)]
-struct Pieces(BTreeMap<NodeId, NodeId>);
-
-impl Pieces {
-    fn of(&self, node: NodeId) -> NodeId {
-        let mut of = node;
-        while let Some(&lower) = self.0.get(&of).filter(|lower| **lower != of) {
-            of = lower;
-        }
-        of
-    }
-
-    fn join(&mut self, nodes: &[NodeId]) {
-        let lowest = nodes.iter().map(|node| self.of(*node)).min();
-        for node in nodes {
-            let of = self.of(*node);
-            lowest.into_iter().for_each(|lowest| {
-                self.0.insert(of, lowest);
-            });
-        }
-    }
 }
 
 /// The normal of a group that does not face the obstacle, and the groups that do face it.
@@ -192,8 +143,8 @@ fn normal_at<const D: usize>(mesh: &Mesh, obstacle: &Obstacle<D>, face: FaceId) 
     *obstacle.frame_at(&centroid).normal()
 }
 
-/// Nodes of the faces, piece by piece. In 2D a piece is a chain from one end to the other: not all faces of a closed
-/// curve face the same obstacle.
+/// Nodes of the faces, piece by piece. In 2D a piece is a chain from one end to the other; a closed curve begins at its
+/// lowest node.
 pub(super) fn along_the_boundary(mesh: &Mesh, faces: &[FaceId]) -> Vec<NodeId> {
     let mut neighbours: BTreeMap<NodeId, Vec<NodeId>> = BTreeMap::new();
     for face in faces {

@@ -75,12 +75,23 @@ pub enum Cause {
         short(*.density), short(*.young), short(*.speed)
     )]
     FasterThanLight { density: f64, young: f64, speed: f64 },
-    /// Contact between bodies that may turn.
+    /// Several bodies that may turn.
     #[error(
-        "cannot be given with kinematics = \"finite\": contact between bodies has the normals of the undeformed surfaces; \
-         give kinematics = \"small\", or planes alone"
+        "cannot be \"finite\" for {bodies} bodies: contact between bodies has the normals of the undeformed surfaces; \
+         give \"small\", or one body"
     )]
-    FiniteContact,
+    FiniteBodies { bodies: usize },
+    /// A plane for some edges of a body that may turn.
+    #[error(
+        "cannot be given with kinematics = \"finite\": a body that turns may touch the plane with any edge; leave it \
+         out"
+    )]
+    FiniteGroup,
+    /// Materials of both kinematics.
+    #[error(
+        "is \"small\", and that of material {first} is \"finite\": a body turns as a whole; give all materials the same"
+    )]
+    MixedKinematics { first: usize },
     /// Several planes for bodies that may turn.
     #[error(
         "is one of {planes} planes; with kinematics = \"finite\" one is possible: the nodes of a body that turns would \

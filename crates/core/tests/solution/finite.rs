@@ -176,8 +176,8 @@ fn a_step_above_the_stable_one_is_refused() {
     assert!(stable < step && stable > 0.5 * step, "{stable} of {step}");
 }
 
-/// A corner of Saint Venant–Kirchhoff rubber, which softens in compression: 25 m/s are too fast for it. The steps before
-/// are with the sink.
+/// A corner of Saint Venant–Kirchhoff rubber, which softens in compression: 40 m/s are too fast for it. The steps
+/// before are with the sink.
 #[test]
 fn an_element_that_is_turned_inside_out_ends_the_run() {
     let problem = thrown(rubber(HyperelasticLaw::SaintVenantKirchhoff), [10, 8], [5.0, -40.0], 0.0, 1e-3);

@@ -107,6 +107,9 @@ struct Instant<const D: usize> {
 impl<'p, const D: usize> Compare<'p> for Finer<'p, D> {
     fn add(&mut self, run: ProblemRef<'p>, motion: &'p Motion, nested: bool) -> Result<(), ReferenceError> {
         let Some(problem) = run.typed::<D>() else { return Err(ReferenceError::Dimension) };
+        if problem.is_finite() || self.problem.is_finite() {
+            return Err(ReferenceError::Finite);
+        }
         let mesh = (problem.mesh(), self.problem.mesh());
         let transfer = if nested { Transfer::nested(mesh.0, mesh.1)? } else { Transfer::located(mesh.0, mesh.1)? };
         let needed = D * problem.mesh().node_count();

@@ -46,8 +46,9 @@ fn kinematics(table: &Table<'_>) -> Result<Kinematics, CaseError> {
     let kinematics = named("kinematics", "\"small\" or \"finite\"")?;
     let law = named("law", "\"neo_hookean\", \"svk\" or \"hencky\"")?;
     Kinematics::from_names(kinematics, law).map_err(|(key, told)| {
-        let hint = match key {
-            "law" => crate::message::hint(law.unwrap_or_default(), Kinematics::law_names()),
+        let hint = match (key, law.unwrap_or_default()) {
+            ("law", law) if Kinematics::law_names().contains(&law) => String::new(),
+            ("law", law) => crate::message::hint(law, Kinematics::law_names()),
             _ => crate::message::hint(kinematics.unwrap_or_default(), Kinematics::NAMES),
         };
         let told = format!("{told}{hint}");

@@ -69,7 +69,7 @@ use crate::report::{Subject, Warning};
 use crate::until::Until;
 use body::Bodies;
 use mesh::Coarsest;
-use percute_core::dynamics::{SimulationError, check_start};
+use percute_core::dynamics::{SimulationError, check_start, critical_time_step, first_stable_step};
 use percute_core::material::Elastic;
 use percute_core::memory::can_be_had;
 use percute_core::mesh::Mesh;
@@ -181,9 +181,10 @@ fn read(
     let output = output::read(root)?;
     let wanted = time::read(root)?;
     let problem = problem()?;
-    let critical_step = percute_core::dynamics::critical_time_step(&problem);
-    let problem = problem.with_planes_moved(wanted.first_step(critical_step)).unwrap_or(problem);
-    let (times, until) = (wanted.grid(critical_step)?, wanted.until(&problem, critical_step)?);
+    let critical_step = critical_time_step(&problem);
+    let stable = if wanted.courant().is_some() { first_stable_step(&problem) } else { critical_step };
+    let problem = problem.with_planes_moved(wanted.first_step(stable)).unwrap_or(problem);
+    let (times, until) = (wanted.grid(stable)?, wanted.until(&problem, stable)?);
     output::check(root, &output, times.end())?;
     let (source, unended, courant) = (source.clone(), None, wanted.courant());
     let mesh_scale = root.single("mesh")?.map_or(1.0, |mesh| mesh::scale(&mesh));
@@ -269,9 +270,9 @@ impl Case {
         self.error_at(place, message)
     }
 
-    /// Refuses an estimate that is not available, a start that the simulation would refuse, a run for which there is no memory, and one that takes long
-    /// unless `long` says so, before warnings and before any work; `estimated` if the error is estimated beside the
-    /// run.
+    /// Refuses an estimate that is not available, a start that the simulation would refuse, a run for which there is no
+    /// memory, and one that takes long unless `long` says so, before warnings and before any work; `estimated` if the
+    /// error is estimated beside the run.
     ///
     /// # Errors
     /// The place in the file.

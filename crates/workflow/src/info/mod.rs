@@ -109,6 +109,9 @@ pub struct TimeInfo {
     pub end: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after_contact: Option<f64>,
+    /// Whether the run has more steps, which follow the stiffness of finite laws.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub follows_stiffness: bool,
 }
 
 impl TimeInfo {
@@ -119,11 +122,15 @@ impl TimeInfo {
             steps_planned: times.step_count(),
             end: times.end(),
             after_contact: None,
+            follows_stiffness: false,
         }
     }
 
     fn lines(&self) -> [(&'static str, String); 2] {
-        let (end, steps) = (trimmed(self.end, 5), counted(self.steps_planned, "step"));
+        let (end, mut steps) = (trimmed(self.end, 5), counted(self.steps_planned, "step"));
+        if self.follows_stiffness {
+            steps += " or more, as the body stiffens";
+        }
         let time = match self.after_contact {
             None => format!("{end} s in {steps};"),
             Some(after) => format!("to {} s after the rebound, at most {end} s in {steps};", trimmed(after, 3)),
@@ -155,6 +162,7 @@ pub fn of_case(case: &Case) -> Result<Info, NotRepresentable> {
         planes: setting::planes(&case.problem),
         time: TimeInfo {
             after_contact: case.until.map(|until| until.after),
+            follows_stiffness: case.following.is_some(),
             ..TimeInfo::new(&case.times, case.critical_step)
         },
         history_bytes: plan(&case.problem, &case.times, &case.options, Some(&case.source), &case.output.keep)?.bytes(),

@@ -269,8 +269,8 @@ fn strained(linearity: &Linearity) -> Option<Symptom> {
          up to {}: the error measure does not contain what the linear theory neglects",
         percent(STRAIN[0])
     );
-    let remedy = "take a lower speed or load, or a stiffer material; `percute simulate` with kinematics = \"finite\" has \
-                  such strains, without an estimate";
+    let remedy = "take a lower speed or load, or a stiffer material; `percute simulate` with kinematics = \"finite\" \
+                  has such strains, without an estimate";
     symptom("large_strain", format!("strains of up to {shown}: not small"), figure, remedy)
 }
 

@@ -14,6 +14,9 @@ pub(super) fn plausibility_warnings<const D: usize>(
     problem: &Problem<D>,
     times: &TimeGrid,
 ) -> Option<PlausibilityWarning> {
+    if problem.is_finite() {
+        return None;
+    }
     let (mesh, spins) =
         (problem.mesh(), RigidMotion::new(problem).rotations(problem.initial_velocity().as_flattened()));
     let of_node = mesh.part_numbers();
