@@ -162,6 +162,26 @@ impl Elastic {
         Moduli { lambda: if free_thickness { in_space } else { self.lambda }, shear: self.shear, free_thickness }
     }
 
+    /// σ = P Fᵀ/J of a first Piola–Kirchhoff stress, with the thickness that the law gives a sheet.
+    fn present<const D: usize>(&self, first: &Tensor<D>, gradient: &Tensor<D>) -> Tensor<D> {
+        let thickness = match (self.hypothesis, self.kinematics) {
+            (Hypothesis::PlaneStress, Kinematics::Finite(law)) => law.thickness(&self.finite(law), gradient),
+            _ => 1.0,
+        };
+        present_stress(first, gradient, thickness)
+    }
+
+    /// Force per present area (Pa) of a stress in the undeformed body: σ itself with small kinematics, else
+    /// σ = F S Fᵀ/J of the second Piola–Kirchhoff stress S.
+    #[must_use]
+    pub fn per_present_area<const D: usize>(&self, stress: &Tensor<D>, gradient: &Tensor<D>) -> Tensor<D> {
+        if !self.is_finite() {
+            return *stress;
+        }
+        let row = |a: usize, b: usize| stress[a][b] + (0..D).map(|c| gradient[a][c] * stress[c][b]).sum::<f64>();
+        self.present(&std::array::from_fn(|a| std::array::from_fn(|b| row(a, b))), gradient)
+    }
+
     /// The yield stress (Pa), if one is known.
     #[must_use]
     pub fn yield_stress(&self) -> Option<f64> {
@@ -200,10 +220,7 @@ impl Law for Elastic {
         let Kinematics::Finite(law) = self.kinematics else {
             return hooke(self.lambda, self.shear, gradient).0;
         };
-        let moduli = self.finite(law);
-        let sheet = self.hypothesis == Hypothesis::PlaneStress;
-        let thickness = if sheet { law.thickness(&moduli, gradient) } else { 1.0 };
-        present_stress(&law.respond(&moduli, gradient).0, gradient, thickness)
+        self.present(&law.respond(&self.finite(law), gradient).0, gradient)
     }
 
     /// Where nothing moves across: λ tr ε in plane strain, λ ln J/J or, of Saint Venant–Kirchhoff, λ tr E/J.

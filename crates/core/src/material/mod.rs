@@ -5,11 +5,13 @@
 mod elastic;
 mod hyperelastic;
 mod kinematics;
+mod metric;
 mod stability;
 
 pub use elastic::{Elastic, Hypothesis};
 pub use hyperelastic::{HyperelasticLaw, Response, volume_ratio};
 pub use kinematics::Kinematics;
+pub use metric::StressMetric;
 
 use crate::simd::lanes::Value;
 use thiserror::Error;
