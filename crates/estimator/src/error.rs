@@ -33,8 +33,8 @@ pub enum EstimateError {
     NotMatching { groups: [String; 2] },
     /// A law for large displacements.
     #[error(
-        "the error of bodies with finite kinematics is not estimated; simulate them without an estimate (`percute \
-         simulate`, `pc.simulate`), or give kinematics = \"small\""
+        "the error of bodies with finite kinematics is estimated by reconstruction = \"corrected\" with the \
+         acceleration \"split\" or \"weak\" alone: give these, or leave both out"
     )]
     Finite,
     /// No threads to work with.

@@ -12,6 +12,9 @@ use percute_core::simd::lanes::Value;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inertia<const D: usize, const N: usize> {
     choice: Acceleration,
+    /// Whether the work on all linear fields is kept, and not on rigid motions alone: those of the present places of a
+    /// body that turns are among them at any time.
+    linear: bool,
     /// The first D(D − 1)/2 of them are the rotations of the element.
     rotations: [Rotation<D, N>; D],
 }
@@ -73,7 +76,13 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
                 at += 1;
             }
         }
-        Self { choice, rotations }
+        Self { choice, linear: false, rotations }
+    }
+
+    /// The same for a body that turns: the map remains constant in time.
+    #[inline(always)]
+    pub(crate) fn turning(self) -> Self {
+        Self { linear: true, ..self }
     }
 
     /// Γ_DA/ρ at the nodes (m/s²), or its time integral, from ã, or a_c and o with `split`, or from
@@ -86,18 +95,16 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
             // Add the other D + 1.
             Acceleration::Closest => self.turned(*acceleration, (D + 1) as f64, acceleration),
             Acceleration::Rigid => self.turned([mean; N], (D + 2) as f64, acceleration),
-            // M_consistent Γ/ρ = M_lumped ã.
-            Acceleration::Weak => {
-                let mut field = *acceleration;
-                for value in &mut field {
-                    for c in 0..D {
-                        value[c] = value[c] * (D + 2) as f64 - mean[c] * N as f64;
-                    }
-                }
-                field
-            }
+            Acceleration::Weak => weak(acceleration),
             Acceleration::Split => {
                 let Some(difference) = skew else { return *acceleration };
+                if self.linear {
+                    let (mut field, shift) = (*acceleration, weak(difference));
+                    for (value, shift) in field.iter_mut().zip(&shift) {
+                        (0..D).for_each(|c| value[c] += shift[c]);
+                    }
+                    return field;
+                }
                 let mean = self::mean(difference);
                 let mut shifted = *acceleration;
                 for value in &mut shifted {
@@ -123,6 +130,18 @@ impl<const D: usize, const N: usize> Inertia<D, N> {
         }
         field
     }
+}
+
+/// The field of which the consistent mass does the work of the lumped mass on this one: M_c g = M o.
+#[inline(always)]
+fn weak<T: Value, const D: usize, const N: usize>(nodal: &[[T; D]; N]) -> [[T; D]; N] {
+    let (mean, mut field) = (mean(nodal), *nodal);
+    for value in &mut field {
+        for c in 0..D {
+            value[c] = value[c] * (D + 2) as f64 - mean[c] * N as f64;
+        }
+    }
+    field
 }
 
 /// The mean over the nodes.
@@ -181,6 +200,23 @@ pub(crate) fn add_lumping_stress<T: Value, const D: usize, const N: usize>(
             }
         }
     }
+}
+
+/// All of this stress: the symmetric part of a body that turns is that about its present places.
+#[inline(always)]
+pub(crate) fn lumping_stress<T: Value, const D: usize, const N: usize>(
+    density: f64,
+    arms: &[[f64; D]; N],
+    w: &[[T; D]; N],
+) -> [[T; D]; D] {
+    let (factor, mut stress) = (density / (D + 2) as f64, [[w[0][0].zero(); D]; D]);
+    for i in 1..N {
+        for a in 0..D {
+            let change = (w[i][a] - w[0][a]) * factor;
+            (0..D).for_each(|b| stress[a][b] += change * arms[i][b]);
+        }
+    }
+    stress
 }
 
 /// ∫ρ a·b over an element of this mass (kg) for two linear fields.

@@ -13,6 +13,7 @@ mod acceleration;
 mod blocks;
 mod concentrated;
 mod contact_density;
+mod deformation;
 mod difference;
 mod direction;
 mod element;

@@ -138,6 +138,16 @@ impl Options {
         self.acceleration.unwrap_or(Acceleration::default_of(self.reconstruction, dimension))
     }
 
+    /// Whether the fields balance in the present places of a body of this dimension that turns.
+    #[must_use]
+    pub fn balances_turning(&self, dimension: usize) -> bool {
+        let balances = match self.acceleration(dimension) {
+            Acceleration::Split | Acceleration::Weak => true,
+            Acceleration::Closest | Acceleration::Rigid => dimension == 1,
+        };
+        balances && self.reconstruction == Reconstruction::Corrected
+    }
+
     /// Steps from one sample to the next, where nothing asks for more.
     pub(crate) fn spacing<const D: usize>(&self, problem: &Problem<D>, times: &TimeGrid) -> usize {
         self.every.spacing(problem.mesh().element_count(), times.step_count())

@@ -8,6 +8,7 @@ mod block_on_two;
 mod common;
 mod corner;
 mod effectivity;
+mod finite;
 mod graded;
 mod properties;
 mod sliding_blocks;

@@ -20,6 +20,8 @@ pub(crate) struct NarrowHat<const D: usize> {
     pub(crate) halvings: usize,
     /// Its resultant (N).
     pub(crate) resultant: [f64; D],
+    /// The same pulled back to the undeformed star, by the mean F of its elements: F̄⁻¹ of it.
+    pub(crate) pulled: [f64; D],
 }
 
 impl<const D: usize> NarrowHat<D> {
@@ -28,17 +30,19 @@ impl<const D: usize> NarrowHat<D> {
         let counts = [self.node, self.star, self.face, self.end, self.edge, self.halvings];
         numbers.extend(counts.map(|count| count as f64));
         numbers.extend_from_slice(&self.resultant);
+        numbers.extend_from_slice(&self.pulled);
     }
 
     /// A hat that was appended.
     pub(crate) fn read(numbers: &mut Reader<'_>) -> Self {
         let [node, star, face, end, edge, halvings] = [(); 6].map(|()| numbers.count());
-        Self { node, star, face, end, edge, halvings, resultant: numbers.take() }
+        Self { node, star, face, end, edge, halvings, resultant: numbers.take(), pulled: numbers.take() }
     }
 
     /// Half of each of two tractions: both shapes, superposed. Sorted by stars, if they are.
     pub(crate) fn mean(start: &[Self], end: &[Self]) -> Vec<Self> {
-        let half = |hat: &Self| Self { resultant: hat.resultant.map(|f| 0.5 * f), ..*hat };
+        let half = |f: f64| 0.5 * f;
+        let half = |hat: &Self| Self { resultant: hat.resultant.map(half), pulled: hat.pulled.map(half), ..*hat };
         let mut both: Vec<Self> = start.iter().chain(end).map(half).collect();
         both.sort_by_key(|hat| hat.star);
         both
@@ -113,7 +117,16 @@ mod tests {
 
     #[test]
     fn the_equivalent_has_resultant_and_moment() {
-        let hat = NarrowHat { node: 0, star: 0, face: 0, end: 1, edge: 0, halvings: 3, resultant: [2.0, -1.0] };
+        let hat = NarrowHat {
+            node: 0,
+            star: 0,
+            face: 0,
+            end: 1,
+            edge: 0,
+            halvings: 3,
+            resultant: [2.0, -1.0],
+            pulled: [2.0, -1.0],
+        };
         let [near, far] = hat.equivalent();
         for c in 0..2 {
             assert!((0.5 * (near[c] + far[c]) - hat.resultant[c]).abs() < 1e-15);

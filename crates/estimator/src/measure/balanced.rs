@@ -14,9 +14,12 @@ pub(crate) struct NodalBalance<const D: usize, const N: usize, T = f64> {
     pub(crate) skew: Option<[[T; D]; N]>,
     /// f_d (N/m³).
     pub(crate) body_force: [T; D],
+    /// The displacements that are equilibrated (m), of a body that turns.
+    pub(crate) displacement: Option<[[T; D]; N]>,
 }
 
-/// The dynamically admissible fields of an element at one sample.
+/// The dynamically admissible fields of an element at one sample; with finite kinematics F⁻¹ of them, which
+/// S_DA = F⁻¹P_DA balances.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Balanced<const D: usize, const N: usize, T = f64> {
     /// Tractions and Γ_DA − f_d.

@@ -30,6 +30,8 @@ pub(crate) struct BalanceFields<const D: usize> {
     /// each other.
     moments: Vec<[[Lanes; D]; 2]>,
     split: bool,
+    /// Whether the body may turn.
+    turning: bool,
     has_body_force: bool,
 }
 
@@ -46,6 +48,7 @@ impl<const D: usize> BalanceFields<D> {
         let forces = levels.forces();
         self.split = forces.iter().any(|f| f.level.split.is_some());
         self.has_body_force = forces.iter().any(|f| !f.level.body_force.is_empty());
+        self.turning = problem.is_finite();
         let (zero, none) = ([0.0; D], [Lanes::ZERO; D]);
         let rest = BalanceNode { point: zero, start: zero, displacement: none, acceleration: none, skew: none };
         self.nodes.resize(nodes.len(), rest);
@@ -70,6 +73,9 @@ impl<const D: usize> BalanceFields<D> {
                 #[inline(always)]
                 |node| &mut node.skew,
             );
+        }
+        if self.turning {
+            self.gather_displacement(like, nodes, levels);
         }
     }
 
@@ -153,6 +159,10 @@ impl<const D: usize> BalanceFields<D> {
             acceleration,
             skew: self.split.then_some(skew),
             body_force: if self.has_body_force { load(like, &levels.body_force(id)) } else { [like.zero(); D] },
+            displacement: self.turning.then(
+                #[inline(always)]
+                || BalanceNode::displacements(like, nodes),
+            ),
         }
     }
 }

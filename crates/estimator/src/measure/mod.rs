@@ -7,11 +7,12 @@ mod element_error;
 mod equilibrium;
 
 use crate::concentrated::HatStress;
+use crate::deformation::Deformation;
 use crate::element::Element;
 use crate::inertia::{Inertia, arms, mass_product};
 use crate::kinematic::ElementMotion;
 use crate::options::Acceleration;
-use crate::stress::{FluctuationForm, LOADS, Loading, StressMap, face_node, hooke};
+use crate::stress::{FluctuationForm, LOADS, Loading, StressMap, face_node};
 use crate::time_level::{Side, Velocities};
 use crate::traction::{EquilibratedLevel, Equilibration};
 pub(crate) use admissible_stress::AdmissibleStress;
@@ -21,7 +22,7 @@ pub(crate) use block_fields::{BalanceFields, BalanceNode, at_places};
 pub(crate) use element_error::ElementError;
 use percute_core::cell::cell;
 use percute_core::ids::ElementId;
-use percute_core::material::{Elastic, Law, LinearLaw};
+use percute_core::material::{Elastic, Law, LinearLaw, PointLaw};
 use percute_core::problem::Problem;
 use percute_core::simd::lanes::Value;
 
@@ -85,7 +86,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         points: &[[f64; D]; N],
         start: [[f64; D]; N],
     ) -> Self {
-        let arms = arms(points);
+        let (arms, law) = (arms(points), problem.material(id));
         let mut reach: f64 = 0.0;
         for arm in arms.as_flattened() {
             reach = Value::max(reach, arm.abs());
@@ -94,10 +95,10 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
             problem,
             element,
             id,
-            law: problem.material(id),
+            law,
             arms,
             inverse_reach: 1.0 / reach,
-            inertia: Inertia::new(choice, &arms),
+            inertia: if law.is_finite() { Inertia::new(choice, &arms).turning() } else { Inertia::new(choice, &arms) },
             start,
         }
     }
@@ -123,6 +124,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
             acceleration: self.acceleration(level, contact, side),
             skew: forces.level.skew().map(|field| self.element.gather(field)),
             body_force: forces.level.body_force.get(self.id.index()).copied().unwrap_or([0.0; D]),
+            displacement: self.law.is_finite().then(|| self.element.gather(&forces.level.displacement)),
         }
     }
 
@@ -146,7 +148,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     /// Tractions and Γ_DA − f_d.
     #[inline(always)]
     pub(crate) fn balanced<T: Value>(&self, fields: &NodalBalance<D, N, T>) -> Balanced<D, N, T> {
-        let NodalBalance { moments, acceleration, skew, body_force } = fields;
+        let NodalBalance { moments, acceleration, skew, body_force, displacement } = fields;
         let density = self.law.density();
         let mut terms = acceleration[0][0].zero();
         for a in acceleration.as_flattened() {
@@ -161,7 +163,12 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
                 value[c] = value[c] * density - body_force[c];
             }
         }
-        let loading = Loading { traction: self.tractions(moments), volume };
+        let mut loading = Loading { traction: self.tractions(moments), volume };
+        if let Some(displacement) = displacement {
+            let deformation = Deformation::new(&self.element.gradient(displacement));
+            loading.traction.iter_mut().flatten().for_each(|vector| deformation.pull_back(vector));
+            loading.volume.iter_mut().for_each(|vector| deformation.pull_back(vector));
+        }
         Balanced { forces: self.nodal_forces(&loading), terms, loading }
     }
 
@@ -243,19 +250,36 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
 
         // σ_CA is constant.
         let gradient = self.element.gradient(motion.displacement());
-        let mut mean = hooke(self.law, &gradient);
-        let mut work = beside.zero();
+        let [stress, strain] = self.stress_and_strain(&gradient);
+        let (mut mean, mut work) = (stress, beside.zero());
         for a in 0..D {
             for b in 0..D {
-                work += admissible[a][b] * gradient[a][b];
-                mean[a][b] = admissible[a][b] - mean[a][b];
+                work += admissible[a][b] * strain[a][b];
+                mean[a][b] = admissible[a][b] - stress[a][b];
             }
         }
-        let elastic = product(&mean, &self.strain(&mean)) * (0.5 * self.element.volume)
-            + (fluctuation + beside) * self.law.extent();
+        let (mut misfit, mut rest) = (self.strain(&mean), fluctuation + beside);
+        if self.law.is_finite() {
+            let metric = self.law.stress_metric(&gradient);
+            misfit = metric.strain(&mean);
+            rest = rest * metric.mean();
+            work = product(admissible, &metric.strain(&stress));
+        }
+        let elastic = product(&mean, &misfit) * (0.5 * self.element.volume) + rest * self.law.extent();
         // |a + b|² = |a − b|² + 4 a·b.
         let products = mass_product(mass, &dynamic, motion.velocity()) + work * self.element.volume;
         ElementError { kinetic, elastic, reference: (kinetic + elastic) * 2.0 + products * 4.0 }
+    }
+
+    /// The stress at a displacement gradient that an admissible one is compared with, σ or S, and K⁻¹ of it with small
+    /// kinematics, for which ∂u/∂x does as well.
+    #[inline(always)]
+    pub(crate) fn stress_and_strain<T: Value>(&self, gradient: &[[T; D]; D]) -> [[[T; D]; D]; 2] {
+        let (stress, _) = self.law.respond(gradient, &mut []);
+        if !self.law.is_finite() {
+            return [stress, *gradient];
+        }
+        [Deformation::new(gradient).second_stress(&stress), *gradient]
     }
 
     /// K⁻¹ of a symmetric stress.
@@ -284,7 +308,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     /// The loading of the stress beside which other stresses stand: that of σ_DA less the tractions of the constant
     /// σ_CA.
     pub(crate) fn difference(&self, loading: &Loading<D, N>, motion: &ElementMotion<D, N>) -> Loading<D, N> {
-        let stress = hooke(self.law, &self.element.gradient(motion.displacement()));
+        let [stress, _] = self.stress_and_strain(&self.element.gradient(motion.displacement()));
         let mut difference = *loading;
         self.subtract_tractions(&stress, &mut difference);
         difference
@@ -304,7 +328,13 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
                 strain[a][b] = -work(&loading, &hats.products()) * self.law.extent() / self.element.volume;
             }
         }
-        self.law.stress(&strain)
+        let ((lambda, shear), mut stress) = (self.law.moduli(), strain);
+        let trace = (0..D).map(|a| strain[a][a]).sum::<f64>();
+        for a in 0..D {
+            (0..D).for_each(|b| stress[a][b] = shear * (strain[a][b] + strain[b][a]));
+            stress[a][a] += lambda * trace;
+        }
+        stress
     }
 
     /// |e|F̂ at the nodes of each face, from its outward moments there.
@@ -340,6 +370,11 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         }
     }
 
+    /// The gradient of a nodal field.
+    pub(crate) fn gradient(&self, field: &[[f64; D]]) -> [[f64; D]; D] {
+        self.element.gradient(&self.element.gather(field))
+    }
+
     /// Means of σ_DA and of Γ_DA/ρ over the element, on the side `After`.
     pub(crate) fn means(
         &self,
@@ -349,7 +384,9 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         let fields = self.nodal_balance(equilibration, level, &[None; N], Side::After);
         let inertia = self.inertia.apply(&fields.acceleration, fields.skew.as_ref());
         let acceleration = std::array::from_fn(|c| inertia.iter().map(|a| a[c]).sum::<f64>() / N as f64);
-        (self.stress_map().mean(&self.balanced(&fields).loading), acceleration)
+        let stress = self.stress_map().mean(&self.balanced(&fields).loading);
+        let gradient = self.gradient(&level.forces().level.displacement);
+        (self.law.per_present_area(&stress, &gradient), acceleration)
     }
 
     /// Work of the tractions, and of Γ_DA − f_d, on the shape function of each node.

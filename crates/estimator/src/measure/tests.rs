@@ -14,6 +14,7 @@ fn random_balance(measure: &ElementMeasure<'_, 2, 3>, random: &mut Random) -> Ba
         acceleration: [(); 3].map(|()| vector()),
         skew: None,
         body_force: vector(),
+        displacement: None,
     };
     let ([xx, xy], [_, yy]) = (vector(), vector());
     let (unbalanced, extent) = (measure.balanced(&fields), measure.law.extent());
@@ -49,7 +50,7 @@ fn errors_are_energies_of_differences_and_sums() {
         // Tractions of σ_CA come off for η and on for d.
         let other = TriangleStress::new(&points, problem.material(id));
         let energy = |sign: f64| {
-            let sigma = hooke(problem.material(id), &element.gradient(motion.displacement()));
+            let [sigma, _] = measure.stress_and_strain(&element.gradient(motion.displacement()));
             let mut loading = balanced.loading;
             measure.subtract_tractions(&sigma.map(|row| row.map(|x| sign * x)), &mut loading);
             let v: [[f64; 2]; 3] =

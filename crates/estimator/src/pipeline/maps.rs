@@ -163,7 +163,8 @@ fn fields<const D: usize, const N: usize>(
     if let Some(concentration) = concentration {
         concentration.each_element(problem, level.forces().density.hats(), |element, hats| {
             let measure = ElementMeasure::new(problem, &elements[element.index()], element, choice);
-            let mean = measure.mean_of_hats(hats);
+            let gradient = measure.gradient(&level.forces().level.displacement);
+            let mean = problem.material(element).per_present_area(&measure.mean_of_hats(hats), &gradient);
             let to = stress[element.index()].iter_mut().flatten().zip(mean.into_iter().flatten());
             to.for_each(|(to, mean)| *to += mean);
         });

@@ -95,10 +95,10 @@ impl<'p, const D: usize, const N: usize> Pipeline<'p, D, N> {
         if let Some(threads) = options.threads.filter(|&threads| threads > MOST_THREADS) {
             return Err(EstimateError::TooManyThreads { threads });
         }
-        if problem.is_finite() {
+        options.acceleration(D).check(options.reconstruction)?;
+        if problem.is_finite() && !options.balances_turning(D) {
             return Err(EstimateError::Finite);
         }
-        options.acceleration(D).check(options.reconstruction)?;
         let non_matching = problem.conditions().interfaces.iter().find(|interface| !interface.is_matching());
         if let Some(interface) = non_matching.filter(|_| options.reconstruction != Reconstruction::Corrected) {
             return Err(EstimateError::NotMatching { groups: interface.groups().map(str::to_string) });

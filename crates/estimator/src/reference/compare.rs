@@ -3,12 +3,13 @@
 use super::locate::Transfer;
 use super::motion::Motion;
 use super::{ReferenceError, TrueError, TrueErrorSample};
+use crate::deformation::Deformation;
 use crate::inertia::mass_product;
 use percute_core::border::vectors;
 use percute_core::element_state::displacement_gradient;
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::ids::ElementId;
-use percute_core::material::{Law, Tensor};
+use percute_core::material::{Law, PointLaw, Tensor};
 use percute_core::mesh::Mesh;
 use percute_core::on_problem;
 use percute_core::problem::{Problem, ProblemRef};
@@ -107,8 +108,8 @@ struct Instant<const D: usize> {
 impl<'p, const D: usize> Compare<'p> for Finer<'p, D> {
     fn add(&mut self, run: ProblemRef<'p>, motion: &'p Motion, nested: bool) -> Result<(), ReferenceError> {
         let Some(problem) = run.typed::<D>() else { return Err(ReferenceError::Dimension) };
-        if problem.is_finite() || self.problem.is_finite() {
-            return Err(ReferenceError::Finite);
+        if problem.is_finite() != self.problem.is_finite() {
+            return Err(ReferenceError::Kinematics);
         }
         let mesh = (problem.mesh(), self.problem.mesh());
         let transfer = if nested { Transfer::nested(mesh.0, mesh.1)? } else { Transfer::located(mesh.0, mesh.1)? };
@@ -176,12 +177,21 @@ impl<const D: usize> Coarse<'_, D> {
             let (id, law) = (ElementId::new(e), fine.material(ElementId::new(e)));
             let mut gradient = displacement_gradient(fine.mesh(), id, &reference);
             let own = &own[coarse.index()];
-            (0..D).for_each(|a| (0..D).for_each(|b| gradient[a][b] -= own[a][b]));
+            let energy = if law.is_finite() {
+                let stress = [&gradient, own].map(|h| Deformation::new(h).second_stress(&law.respond(h, &mut []).0));
+                let entry = |a: usize, b: usize| stress[0][a][b] - stress[1][a][b];
+                let misfit: Tensor<D> = std::array::from_fn(|a| std::array::from_fn(|b| entry(a, b)));
+                let strain = law.stress_metric(own).strain(&misfit);
+                0.5 * misfit.iter().flatten().zip(strain.iter().flatten()).map(|(s, e)| s * e).sum::<f64>()
+            } else {
+                (0..D).for_each(|a| (0..D).for_each(|b| gradient[a][b] -= own[a][b]));
+                law.strain_energy(&gradient)
+            };
             nodal.clear();
             nodal.extend(fine.mesh().cell(id).iter().map(|node| velocity[node.index()]));
             let volume = fine.volume(id);
             sample.kinetic += 0.5 * mass_product(law.density() * volume, &nodal, &nodal);
-            sample.elastic += volume * law.strain_energy(&gradient);
+            sample.elastic += volume * energy;
         }
         sample
     }

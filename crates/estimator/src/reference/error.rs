@@ -37,9 +37,9 @@ pub enum ReferenceError {
     /// A bar and a plane body.
     #[error("the reference has another dimension than the simulation that is compared")]
     Dimension,
-    /// Laws of which the energy of a difference of displacements depends on the rotation.
-    #[error("the difference of two simulations is measured for kinematics = \"small\" alone")]
-    Finite,
+    /// Small and finite kinematics.
+    #[error("the reference has other kinematics than the simulation that is compared; give both the same")]
+    Kinematics,
     /// A reference that stops too early.
     #[error("the reference ends at {reference:.6e} s, before the end of the simulation at {end:.6e} s")]
     EndsEarly { reference: f64, end: f64 },

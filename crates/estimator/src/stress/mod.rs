@@ -15,7 +15,6 @@ pub(crate) use energy_form::{ElementForm, EnergyForm, EnergyForms, FluctuationFo
 pub(crate) use fluctuation::Fluctuation;
 use percute_core::cell::{Cell, CellKind};
 use percute_core::material::LinearLaw;
-use percute_core::simd::lanes::Value;
 pub(crate) use piecewise::MONOMIALS;
 pub(crate) use reference::LOADS;
 pub(crate) use traction_forms::{BasisForm, EDGES, TractionForms};
@@ -35,25 +34,6 @@ pub(crate) struct Loading<const D: usize, const N: usize, T = f64> {
 #[inline]
 pub(crate) const fn face_node<const N: usize>(k: usize, p: usize) -> usize {
     (k + 1 + p) % N
-}
-
-/// σ = λ tr ε 1 + 2G ε of a displacement gradient (Pa), at some levels.
-#[inline(always)]
-pub(crate) fn hooke<T: Value, const D: usize>(law: &impl LinearLaw, gradient: &[[T; D]; D]) -> [[T; D]; D] {
-    let (lambda, shear) = law.moduli();
-    let zero = gradient[0][0].zero();
-    let mut trace = zero;
-    for a in 0..D {
-        trace += gradient[a][a];
-    }
-    let mut stress = [[zero; D]; D];
-    for a in 0..D {
-        for b in 0..D {
-            stress[a][b] = (gradient[a][b] + gradient[b][a]) * shear;
-        }
-        stress[a][a] += trace * lambda;
-    }
-    stress
 }
 
 /// Largest relative violations of the equations of one element's stress.

@@ -3,15 +3,15 @@
 use super::star_solver::{Compatibility, StarSolver};
 use super::{EXPLAINED, EquilibratedLevel, EquilibratedLevels, Equilibration, MassTerm};
 use crate::blocks::{BLOCK, MeshPart, StarBlock};
+use crate::deformation::Deformation;
 use crate::element::Element;
 use crate::field_lanes::FieldLanes;
-use crate::inertia::{add_lumping_stress, arms};
+use crate::inertia::{add_lumping_stress, arms, lumping_stress};
 use crate::residual::worse;
 use crate::smoothing::{SmoothedStrains, Smoothing, Strained};
-use crate::stress::hooke;
 use crate::time_level::{ForcesKnown, Side};
 use percute_core::ids::{ElementId, FaceId, NodeId};
-use percute_core::material::Law;
+use percute_core::material::{Law, PointLaw};
 use percute_core::simd::Wide;
 use percute_core::simd::lanes::{Lanes, Value, load};
 use percute_core::simd::{Registers, Task, run_task};
@@ -139,7 +139,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         let mut largest = like.zero();
         for (e, local) in range.zip(block.local) {
             let (element, law) = (&self.elements[e], self.problem.material(ElementId::new(e)));
-            let stress = hooke(law, &element.gradient(&fields.displacement.of(like, local)));
+            let (stress, _) = law.respond(&element.gradient(&fields.displacement.of(like, local)), &mut []);
             largest = largest.max(largest_force(element, &stress, &fields.acceleration.of(like, local)));
         }
         largest
@@ -253,7 +253,8 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
     /// σ_h of one element (Pa).
     pub(crate) fn stress_of(&self, forces: &ForcesKnown<D>, element: ElementId) -> [[f64; D]; D] {
         let data = &self.elements[element.index()];
-        hooke(self.problem.material(element), &data.gradient(&data.gather(&forces.level.displacement)))
+        let gradient = data.gradient(&data.gather(&forces.level.displacement));
+        self.problem.material(element).respond(&gradient, &mut []).0
     }
 
     /// The moments by which the star of local node `i` enters and leaves an element.
@@ -343,10 +344,17 @@ impl<const D: usize> StarFields<D> {
                 Some((strains, smoothing)) => strains.of(like, all.strained(smoothing), id),
                 None => element.gradient(&self.displacement.of(like, local)),
             };
-            let mut stress = hooke(law, &gradient);
+            let (mut stress, _) = law.respond(&gradient, &mut []);
             if split {
                 let arms = arms(&all.problem.mesh().corners::<D, N>(id));
-                add_lumping_stress(law.density(), &arms, &self.lumped.of(like, local), &mut stress);
+                let lumped = self.lumped.of(like, local);
+                if law.is_finite() {
+                    let lumping = lumping_stress(law.density(), &arms, &lumped);
+                    let symmetric = Deformation::new(&gradient).symmetric_part(&lumping, &gradient);
+                    (0..D).for_each(|a| (0..D).for_each(|b| stress[a][b] += symmetric[a][b]));
+                } else {
+                    add_lumping_stress(law.density(), &arms, &lumped, &mut stress);
+                }
             }
             let mut stored = [[Lanes::ZERO; D]; D];
             for (to, from) in stored.as_flattened_mut().iter_mut().zip(stress.as_flattened()) {

@@ -146,10 +146,14 @@ fn nodal_balance<R: Registers, const D: usize, const N: usize>(
     let lane = |k: usize| &forces[k.min(forces.len() - 1)];
     let accelerations: [&[[f64; D]]; LANES] = from_fn(|k| &lane(k).acceleration[..]);
     let skews: [Option<&[[f64; D]]>; LANES] = from_fn(|k| lane(k).level.skew());
-    let (mut acceleration, mut skew) = ([[like; D]; N], [[like; D]; N]);
+    let (mut acceleration, mut skew, mut displacement) = ([[like; D]; N], [[like; D]; N], [[like; D]; N]);
+    let turning = sampler.problem().is_finite();
     for i in 0..N {
         let node = element.nodes[i].index();
         for c in 0..D {
+            if turning {
+                displacement[i][c] = like.load(&Lanes::at_levels(|k| lane(k).level.displacement[node][c]));
+            }
             acceleration[i][c] = like.load(&Lanes::at_levels(|k| accelerations[k][node][c]));
             skew[i][c] = like.load(&Lanes::at_levels(|k| skews[k].map_or(0.0, |skew| skew[node][c])));
         }
@@ -165,5 +169,6 @@ fn nodal_balance<R: Registers, const D: usize, const N: usize>(
         acceleration,
         skew: skews[0].is_some().then_some(skew),
         body_force: load(like, &levels.body_force(sampler.id)),
+        displacement: turning.then_some(displacement),
     }
 }

@@ -3,10 +3,12 @@
 
 mod auxiliary;
 mod concentration;
+mod finite_auxiliary;
 mod impulse_smoothing;
 mod moment_correction;
 mod non_matching;
 mod non_matching_motion;
+mod present_stars;
 mod split;
 mod traction_minimisation;
 
@@ -28,6 +30,7 @@ use crate::traction::{EquilibratedLevels, Equilibration, Then};
 use auxiliary::{AuxiliaryLevel, AuxiliarySolutions, Shares, SimulatedLevel, SplitLevel};
 pub(crate) use concentration::Concentration;
 use concentration::{AuxiliaryForces, Faced, Known};
+use finite_auxiliary::{FiniteAuxiliary, FiniteLevel};
 use impulse_smoothing::{ImpulseSmoothing, Stopped};
 use moment_correction::MomentCorrection;
 use non_matching::NonMatchingForces;
@@ -38,6 +41,7 @@ use percute_core::dynamics::Dynamics;
 use percute_core::history::{State, Step};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
+use present_stars::PresentStars;
 use split::skew_acceleration;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -56,6 +60,8 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     impulse_smoothing: Option<ImpulseSmoothing<D>>,
     non_matching: NonMatchingForces<'p, D>,
     auxiliary: Option<AuxiliarySolutions<'p, D, N>>,
+    /// The auxiliary solution of a body that turns.
+    finite: Option<FiniteAuxiliary<D>>,
     /// ΣF²k and ΣF² over the nodes at the last level (N²).
     halvings: [f64; 2],
     smoothing: Arc<Smoothing>,
@@ -83,6 +89,8 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         let shares = if keeps(Ablation::Correction) { Shares::ALL } else { Shares::NONE };
         let smoothing = Arc::new(Smoothing::new(problem));
         let auxiliary = || AuxiliarySolutions::new(problem, times, Arc::clone(&smoothing), shares);
+        let splits = options.acceleration(D) == Acceleration::Split;
+        let has_auxiliary = keeps(Ablation::AuxiliarySolution);
         Self {
             problem,
             times,
@@ -92,11 +100,12 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             moment_correction: keeps(Ablation::Moment).then(|| MomentCorrection::new(problem)),
             impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
             non_matching: NonMatchingForces::new(problem),
-            auxiliary: keeps(Ablation::AuxiliarySolution).then(auxiliary),
+            auxiliary: (has_auxiliary && !problem.is_finite()).then(auxiliary),
+            finite: (has_auxiliary && problem.is_finite()).then(|| FiniteAuxiliary::new(problem, splits)),
             smoothing,
             strains: Pool::new(),
             halvings: [0.0; 2],
-            splits: options.acceleration(D) == Acceleration::Split,
+            splits,
             minimises: keeps(Ablation::LeastEnergy),
             minimisation: None,
             normal_work: match options.ablation {
@@ -122,7 +131,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         &mut self,
         (n, auxiliary): (usize, &mut AuxiliarySolutions<'p, D, N>),
         stopped: &[Option<Stopped>],
-        around: &SurfaceInstant<'_>,
+        around: &SurfaceInstant<'_, D>,
         [contact, arresting]: [&mut [[f64; D]]; 2],
     ) {
         let (problem, surface, length) = (self.problem, self.problem.surface(), self.times.step(n));
@@ -158,7 +167,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         dynamics: &Dynamics<'_, D>,
         state: &State<'_>,
         [contact, sudden]: [Vec<[f64; D]>; 2],
-        around: &SurfaceInstant<'_>,
+        around: &SurfaceInstant<'_, D>,
         pool: &FieldPool<D>,
     ) -> BalancedFields<D> {
         let (problem, step, inverse_mass) = (self.problem, state.step(), dynamics.inverse_mass());
@@ -170,24 +179,24 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         accelerate(problem, inverse_mass, &mut acceleration, &pull);
         let split = self.splits.then(|| SplitFields {
             lumped: pool.copy(&acceleration),
-            skew: pool.copy(&skew_acceleration::<D, N>(problem, inverse_mass, &acceleration)),
+            skew: pool.copy(&skew_acceleration::<D, N>(problem, inverse_mass, &acceleration, &displacement)),
         });
         let (inertia, densities) = (KnownInertia::Acceleration(acceleration), Some(densities));
         BalancedFields { displacement, inertia, contact, densities, split, smoothed: false }
     }
 
-    fn around<'a>(&self, gap: &'a [f64], couplings: &'a [Arc<Coupling>]) -> SurfaceInstant<'a> {
+    fn around<'a>(&self, gap: &'a [f64], couplings: &'a [Arc<Coupling>]) -> SurfaceInstant<'a, D> {
         let surface = self.problem.surface();
         let stands = |at: usize| surface.non_matching_of(at).is_none().then_some(Faced::WHOLE);
         let mut faced: Vec<_> = (0..surface.nodes().len()).map(stands).collect();
         if let Some(concentration) = &self.concentration {
             self.non_matching.add_faced(concentration, couplings, &mut faced);
         }
-        SurfaceInstant { gap, couplings, faced, own: Vec::new() }
+        SurfaceInstant { gap, couplings, faced, own: Vec::new(), present: None }
     }
 
     /// The densities of an instant: of the forces of F_DA, and of the reactions of which the normal work is measured.
-    fn level(&self, [acting, sudden]: [&[[f64; D]]; 2], around: &SurfaceInstant<'_>) -> LevelDensities<D> {
+    fn level(&self, [acting, sudden]: [&[[f64; D]]; 2], around: &SurfaceInstant<'_, D>) -> LevelDensities<D> {
         LevelDensities { acting: self.at(acting, around), sudden: self.at(sudden, around) }
     }
 
@@ -201,15 +210,14 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     /// Densities at one instant: R_k/ℓ_k at the nodes, whether they touch or are about to, linear along each
     /// face, corrected so that they have the moment of the reactions too. Their resultant is that of the reactions,
     /// and where those are in the cone, so is every mean of two of them.
-    fn at(&self, reaction: &[[f64; D]], around: &SurfaceInstant<'_>) -> Densities<D> {
+    fn at(&self, reaction: &[[f64; D]], around: &SurfaceInstant<'_, D>) -> Densities<D> {
         let (problem, surface) = (self.problem, self.problem.surface());
         // Reactions of the integrator are in the cone; those of a foreign history need not be.
         let held = |(contact, force): (&ContactNode, &[f64; D])| {
             problem.obstacles()[contact.obstacle].project_into_cone(force)
         };
-        let nodes = problem.surface().nodes();
+        let (nodes, concentration) = (problem.surface().nodes(), self.concentration.as_ref());
         let mut reaction: Vec<[f64; D]> = nodes.iter().zip(reaction).map(held).collect();
-        let concentration = self.concentration.as_ref();
         let mut shapes: Vec<Option<TractionShape>> = Vec::with_capacity(nodes.len());
         for (at, force) in reaction.iter().enumerate() {
             // The traction on the other one of two nodes that touch is the same, reversed.
@@ -218,15 +226,19 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
                 Some(first) => Some(concentration.facing(problem, [first, at], shapes[first].as_ref()?)),
                 None => {
                     let own = around.own.get(at).copied().flatten();
-                    concentration.shape(problem, at, around.faced[at].as_ref()?, force, around.gap, own)
+                    let forces = [force, &around.pulled(at, force)];
+                    concentration.shape(problem, at, around.faced[at].as_ref()?, forces, around.gap, own)
                 }
             }));
         }
         let shaped = |at: usize| concentration.zip(shapes[at].as_ref());
         if let Some(correction) = &self.moment_correction {
-            let centroid =
-                |at: usize| shaped(at).map(|(concentration, shape)| concentration.centroid(problem, at, shape));
-            correction.apply(&mut reaction, &centroid);
+            let moved = around.displacement();
+            let centroid = |at: usize| {
+                let concentration = concentration.filter(|_| shapes[at].is_some() || !moved.is_empty())?;
+                Some(concentration.centroid(problem, at, shapes[at].as_ref(), moved))
+            };
+            correction.apply(&mut reaction, moved, &centroid);
             self.non_matching.correct_moments(around.couplings, &centroid, &mut reaction);
             for (at, contact) in nodes.iter().enumerate() {
                 if let Some(first) = contact.partner.filter(|&first| first < at) {
@@ -242,7 +254,8 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         let (mut hats, mut shares) = (Vec::new(), 0.0);
         for (k, force) in reaction.iter().enumerate() {
             if let Some((concentration, shape)) = shaped(k) {
-                let own: Vec<_> = concentration.hats(k, shape, force).collect();
+                let pulled = around.pulled(k, force);
+                let own: Vec<_> = concentration.hats(k, shape, [force, &pulled]).collect();
                 shares = worse(shares, concentration.share_residual(k, shape, force, &own));
                 hats.extend(own);
             }
@@ -254,7 +267,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
 }
 
 /// The nodes of the contact surface at an instant.
-struct SurfaceInstant<'a> {
+struct SurfaceInstant<'a, const D: usize> {
     /// Gaps of the simulation (m).
     gap: &'a [f64],
     /// Those of non-matching interfaces.
@@ -263,6 +276,20 @@ struct SurfaceInstant<'a> {
     faced: Vec<Option<Faced>>,
     /// The shapes of the tractions of auxiliary contact forces, where they are known.
     own: Vec<Option<TractionShape>>,
+    /// The deformation of a body that turns.
+    present: Option<PresentStars<'a, D>>,
+}
+
+impl<const D: usize> SurfaceInstant<'_, D> {
+    /// A force on a node, pulled back to its star in the undeformed body.
+    fn pulled(&self, at: usize, force: &[f64; D]) -> [f64; D] {
+        self.present.as_ref().map_or(*force, |present| present.pull_back(at, force))
+    }
+
+    /// Displacements of the simulation (m), of a body that turns.
+    fn displacement(&self) -> &[[f64; D]] {
+        self.present.as_ref().map_or(&[], |present| present.displacement)
+    }
 }
 
 impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_, D, N> {
@@ -276,14 +303,12 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     }
 
     fn check(&self, step: &Step<'_>) -> Result<(), EstimateError> {
-        match &self.auxiliary {
-            Some(auxiliary) if auxiliary.is_unstable() => Err(EstimateError::AuxiliarySolution {
-                step: step.index,
-                time: step.time,
-                longest_step: self.times.longest_step(),
-            }),
-            _ => Ok(()),
+        let small = self.auxiliary.as_ref().is_some_and(AuxiliarySolutions::is_unstable);
+        if !small && !self.finite.as_ref().is_some_and(FiniteAuxiliary::is_unstable) {
+            return Ok(());
         }
+        let longest_step = self.times.longest_step();
+        Err(EstimateError::AuxiliarySolution { step: step.index, time: step.time, longest_step })
     }
 
     /// The balance is that of the auxiliary solution, which then goes on to the next step.
@@ -310,6 +335,19 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         [&mut arresting, &mut contact].into_iter().for_each(|forces| self.non_matching.gather(&couplings, forces));
         let gap = surface.gaps(step.displacement());
         let mut around = self.around(&gap, &couplings);
+        if problem.is_finite() {
+            let balanced = self.finite.as_ref().map_or(step.displacement(), FiniteAuxiliary::displacement);
+            around.present = Some(PresentStars::new(problem, step.displacement(), balanced));
+        }
+        if let Some(mut finite) = self.finite.take() {
+            let densities = self.level([&contact, &arresting], &around);
+            let pull = driving_forces(problem, &densities.acting);
+            let level = finite.advance::<N>(dynamics, self.times, state, &pull, pool);
+            self.finite = Some(finite);
+            let FiniteLevel { displacement, acceleration, split } = level;
+            let (inertia, densities) = (KnownInertia::Acceleration(acceleration), Some(densities));
+            return BalancedFields { displacement, inertia, contact, densities, split, smoothed: false };
+        }
         let Some(mut auxiliary) = self.auxiliary.take() else {
             return self.balance_simulation(dynamics, state, [contact, arresting], &around, pool);
         };

@@ -34,6 +34,8 @@ pub(super) struct Group<const D: usize> {
 pub(super) struct CorrectedNode {
     /// Position in the contact surface.
     pub(super) at: usize,
+    /// Its number in the mesh.
+    pub(super) node: usize,
     /// Centroid of its shape function along the plane (m).
     pub(super) centroid: f64,
     /// From there to the place of its reaction, along the plane and away from it (m).
@@ -71,6 +73,7 @@ impl<const D: usize> MomentCorrection<D> {
             let arm: [f64; D] = std::array::from_fn(|c| point[c] - centroid[c]);
             group.nodes.push(CorrectedNode {
                 at,
+                node: contact.node.index(),
                 centroid: along(centroid, &group.tangent),
                 lever: [along(&arm, &group.tangent), along(&arm, &group.normal)],
             });
@@ -82,8 +85,14 @@ impl<const D: usize> MomentCorrection<D> {
 
     /// Forces of the same resultants as these reactions, which are in the cone, and in it as well; their densities have
     /// the moment of the reactions, or come as near as compressive forces can.
-    pub(super) fn apply(&self, reaction: &mut [[f64; D]], centroid: &dyn Fn(usize) -> Option<[f64; D]>) {
-        self.groups.iter().for_each(|group| group.apply(reaction, centroid));
+    /// Of a body that turns with its displacements (m) of all nodes.
+    pub(super) fn apply(
+        &self,
+        reaction: &mut [[f64; D]],
+        displacement: &[[f64; D]],
+        centroid: &dyn Fn(usize) -> Option<[f64; D]>,
+    ) {
+        self.groups.iter().for_each(|group| group.apply(reaction, displacement, centroid));
     }
 }
 
@@ -93,8 +102,18 @@ impl<const D: usize> Group<D> {
     }
 
     /// The same for one group.
-    pub(super) fn apply(&self, reaction: &mut [[f64; D]], centroid: &dyn Fn(usize) -> Option<[f64; D]>) {
-        let nodes: Vec<CorrectedNode> = self.nodes.iter().map(|node| self.moved(node, centroid(node.at))).collect();
+    pub(super) fn apply(
+        &self,
+        reaction: &mut [[f64; D]],
+        displacement: &[[f64; D]],
+        centroid: &dyn Fn(usize) -> Option<[f64; D]>,
+    ) {
+        let moved = |node: &CorrectedNode| {
+            let mut moved = self.moved(node, centroid(node.at));
+            moved.centroid += displacement.get(node.node).map_or(0.0, |u| along(u, &self.tangent));
+            moved
+        };
+        let nodes: Vec<CorrectedNode> = self.nodes.iter().map(moved).collect();
         let normal: Vec<f64> = self.nodes.iter().map(|node| along(&reaction[node.at], &self.normal)).collect();
         if normal.iter().filter(|n| **n > 0.0).count() < 2 {
             return;

@@ -156,7 +156,7 @@ impl<'p, const D: usize> NonMatchingForces<'p, D> {
         forces: &mut [[f64; D]],
     ) {
         for (non_matching, coupling) in self.problem.surface().non_matching().iter().zip(couplings) {
-            self.groups(non_matching, coupling).iter().for_each(|group| group.apply(forces, centroid));
+            self.groups(non_matching, coupling).iter().for_each(|group| group.apply(forces, &[], centroid));
         }
     }
 
@@ -206,7 +206,9 @@ impl<'p, const D: usize> NonMatchingForces<'p, D> {
         }
         let node = |(k, moments): (usize, &[f64; 3])| {
             let [centroid, along, across] = moments.map(|moment| moment / coupling.weight(k));
-            CorrectedNode { at: slave.position(k), centroid, lever: [along, across] }
+            let at = slave.position(k);
+            let node = self.problem.surface().nodes()[at].node.index();
+            CorrectedNode { at, node, centroid, lever: [along, across] }
         };
         let crosses = |side: &Side, nodes: Range<usize>| nodes.into_iter().any(|k| self.on_line[side.position(k)]);
         let master = non_matching.master();

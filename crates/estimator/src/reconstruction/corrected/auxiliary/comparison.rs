@@ -156,7 +156,7 @@ impl<const D: usize> Plain<D> {
             (0..inverse.len()).map(|i| std::array::from_fn(|c| of(mass(i)[0], plain[i][c], once[i][c]))).collect()
         };
         let lumped = split(&|first, plain, once| (1.0 - first) * plain + first * once);
-        let skew = skew_acceleration::<D, N>(problem, inverse, &lumped);
+        let skew = skew_acceleration::<D, N>(problem, inverse, &lumped, &displacement);
         let split = match D {
             1 => [plain, vec![[0.0; D]; inverse.len()], once],
             _ => [split(&|first, plain, once| plain + first * once), lumped, skew],

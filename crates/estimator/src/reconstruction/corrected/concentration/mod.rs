@@ -52,15 +52,15 @@ impl<const D: usize> Concentration<D> {
         stars.into_iter().map(|at| memory(&self.nodes[at])).sum()
     }
 
-    /// The shape of the traction of one node under a force (N). None where its tributary density is best: where no edge
-    /// leaves the plane, where a hat as wide as a part that is faced is best, or where rounding spoils the stress of
-    /// hats. An auxiliary contact force has its own shape.
+    /// The shape of the traction of one node under a force (N), which is given as it is and pulled back. None where its
+    /// tributary density is best: where no edge leaves the plane, where a hat as wide as a part that is faced is best,
+    /// or where rounding spoils the stress of hats. An auxiliary contact force has its own shape.
     pub(super) fn shape(
         &self,
         problem: &Problem<D>,
         at: usize,
         faced: &Faced,
-        force: &[f64; D],
+        [force, pulled]: [&[f64; D]; 2],
         gap: &[f64],
         own: Option<TractionShape>,
     ) -> Option<TractionShape> {
@@ -72,7 +72,7 @@ impl<const D: usize> Concentration<D> {
         let gaps = self.gaps(at, faced, gap)?;
         let shape = match own {
             Some(own) => own,
-            None => self.costs(problem, at, faced, &force.map(|f| f / normal), &gaps)?.shape(normal),
+            None => self.costs(problem, at, faced, &pulled.map(|f| f / normal), &gaps)?.shape(normal),
         };
         // The density over a part is as good as a hat that is as wide: flat surfaces keep it.
         let widest = faced.reach.map(|reach| reach.halvings());
@@ -163,7 +163,7 @@ impl<const D: usize> Concentration<D> {
         &'a self,
         at: usize,
         shape: &'a TractionShape,
-        force: &'a [f64; D],
+        [force, pulled]: [&'a [f64; D]; 2],
     ) -> impl Iterator<Item = NarrowHat<D>> + 'a {
         let star = &self.nodes[at];
         let edges = star.edges.iter().zip(&star.places).zip(shape.iter());
@@ -175,6 +175,7 @@ impl<const D: usize> Concentration<D> {
             edge,
             halvings: hat.halvings,
             resultant: force.map(|f| hat.share * f),
+            pulled: pulled.map(|f| hat.share * f),
         })
     }
 
@@ -220,13 +221,26 @@ impl<const D: usize> Concentration<D> {
         worse(residual, (rest.iter().map(|f| f * f).sum::<f64>() / square).sqrt())
     }
 
-    /// From the node to the centroid of its traction (m).
-    pub(super) fn centroid(&self, problem: &Problem<D>, at: usize, shape: &TractionShape) -> [f64; D] {
+    /// From the node to the centroid of its traction (m), of this shape or tributary; with the displacements of all
+    /// nodes of a body that turns.
+    pub(super) fn centroid(
+        &self,
+        problem: &Problem<D>,
+        at: usize,
+        shape: Option<&TractionShape>,
+        displacement: &[[f64; D]],
+    ) -> [f64; D] {
         let surface = problem.surface();
-        let mut centroid = [0.0; D];
-        for (edge, hat) in self.nodes[at].edges.iter().zip(shape.iter()) {
-            let (near, far) = (surface.point(at), surface.point(edge.far));
-            (0..D).for_each(|c| centroid[c] += hat.share * hat.far() * (far[c] - near[c]));
+        let place = |at: usize| {
+            let moved = displacement.get(surface.nodes()[at].node.index());
+            std::array::from_fn(|c| surface.point(at)[c] + moved.map_or(0.0, |moved| moved[c]))
+        };
+        let (star, mut centroid) = (&self.nodes[at], [0.0; D]);
+        for (k, edge) in star.edges.iter().enumerate() {
+            let wide = || star.tributary[k] / (D + 1) as f64;
+            let share = shape.and_then(|shape| shape.get(k)).map_or_else(wide, |hat| hat.share * hat.far());
+            let (near, far): ([f64; D], [f64; D]) = (place(at), place(edge.far));
+            (0..D).for_each(|c| centroid[c] += share * (far[c] - near[c]));
         }
         centroid
     }
@@ -257,7 +271,7 @@ impl<const D: usize> Concentration<D> {
         let position = star.elements.iter().position(|&other| other == element)?;
         let one = |hat: &NarrowHat<D>| {
             let (edge, halvings) = (hat.edge, hat.halvings);
-            let resultant = star.frame.own([hat.resultant[0], hat.resultant[D - 1]]);
+            let resultant = star.frame.own([hat.pulled[0], hat.pulled[D - 1]]);
             resultant.into_iter().enumerate().map(move |(c, f)| (place(edge, halvings, c), f / extent))
         };
         Some(HatStress {

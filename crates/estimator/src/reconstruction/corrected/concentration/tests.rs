@@ -64,8 +64,8 @@ fn tractions_have_the_force_and_its_centroid() {
     let (at, force) = corner(&problem);
     for scale in [1e-3, 1.0, 1e3] {
         let force = force.map(|f| scale * f);
-        let shape = concentration.shape(&problem, at, &Faced::WHOLE, &force, &gaps(&problem), None).unwrap();
-        let hats: Vec<_> = concentration.hats(at, &shape, &force).collect();
+        let shape = concentration.shape(&problem, at, &Faced::WHOLE, [&force; 2], &gaps(&problem), None).unwrap();
+        let hats: Vec<_> = concentration.hats(at, &shape, [&force; 2]).collect();
         let values = |f: usize, k: usize| if k == at { concentration.wide(k, f, &shape, &force) } else { [0.0; 2] };
         let densities = Densities::with_hats(&problem, |f, face| face.nodes.map(|k| values(f, k)), hats);
         let (mut sum, mut moment) = ([0.0; 2], 0.0);
@@ -75,7 +75,7 @@ fn tractions_have_the_force_and_its_centroid() {
             (0..2).for_each(|c| sum[c] += f[c]);
             moment += arm[0] * f[1] - arm[1] * f[0];
         }
-        let centroid = concentration.centroid(&problem, at, &shape);
+        let centroid = concentration.centroid(&problem, at, Some(&shape), &[]);
         let expected = centroid[0] * force[1] - centroid[1] * force[0];
         // Rounding of some ten terms of the size of the force, on edges of 0.25 m.
         assert!((0..2).all(|c| (sum[c] - force[c]).abs() < 1e-13 * force[1]), "{sum:?}");
@@ -92,7 +92,8 @@ fn congruent_stars_share_their_stress() {
     assert!(alike.len() <= 5 && concentration.nodes.len() == 13, "{} of {}", alike.len(), concentration.nodes.len());
     let flat = vec![0.0; concentration.nodes.len()];
     assert!(
-        (0..flat.len()).all(|at| concentration.shape(&problem, at, &Faced::WHOLE, &[0.0, 1e6], &flat, None).is_none())
+        (0..flat.len())
+            .all(|at| concentration.shape(&problem, at, &Faced::WHOLE, [&[0.0, 1e6]; 2], &flat, None).is_none())
     );
     assert!(concentration.stresses.iter().all(|stress| stress.get().is_none()));
 }
@@ -126,7 +127,10 @@ fn turned_stars_share_their_stress() {
         let NodeStar { edges, elements, corners, frame, .. } = &concentration.nodes[at];
         let hats = [0, 1].map(|edge| {
             let CandidateEdge { face, end, .. } = edges[edge];
-            NarrowHat { node: at, star: at, face, end, edge, halvings: 3 + edge, resultant: frame.global([1e5, 3e4]) }
+            {
+                let resultant = frame.global([1e5, 3e4]);
+                NarrowHat { node: at, star: at, face, end, edge, halvings: 3 + edge, resultant, pulled: resultant }
+            }
         });
         let stress = concentration.in_element(&problem, &hats, elements[0]).unwrap();
         let products = stress.products();
@@ -220,7 +224,7 @@ fn own_forces_close_the_gap() {
     let large = force.map(|f| 1e5 * f);
     assert!(
         concentration
-            .shape(&problem, at, &Faced::WHOLE, &large, &gap, None)
+            .shape(&problem, at, &Faced::WHOLE, [&large; 2], &gap, None)
             .unwrap()
             .iter()
             .any(|hat| hat.halvings == 0)
@@ -325,10 +329,10 @@ fn a_hat_outside_the_cone_shows() {
     let problem = tilted();
     let concentration = Concentration::new(&problem);
     let (at, force) = corner(&problem);
-    let shape = concentration.shape(&problem, at, &Faced::WHOLE, &force, &gaps(&problem), None).unwrap();
+    let shape = concentration.shape(&problem, at, &Faced::WHOLE, [&force; 2], &gaps(&problem), None).unwrap();
     let step = free_step(&problem);
     let cone = |force: [f64; 2]| {
-        let hats: Vec<_> = concentration.hats(at, &shape, &force).collect();
+        let hats: Vec<_> = concentration.hats(at, &shape, [&force; 2]).collect();
         assert!(!hats.is_empty());
         let densities = Densities::with_hats(&problem, |_, _| [[0.0; 2]; 2], hats);
         let mut residuals = Residuals::default();
@@ -347,7 +351,7 @@ fn the_residuals_of_stars_are_reported() {
     let problem = tilted();
     let concentration = Concentration::new(&problem);
     let (at, force) = corner(&problem);
-    concentration.shape(&problem, at, &Faced::WHOLE, &force, &gaps(&problem), None).unwrap();
+    concentration.shape(&problem, at, &Faced::WHOLE, [&force; 2], &gaps(&problem), None).unwrap();
     let mut residuals = Residuals::default();
     concentration.add_residuals(&mut residuals);
     let made = [residuals.hat_resultants, residuals.hat_stress];
@@ -361,8 +365,8 @@ fn shares_that_are_none_show() {
     let concentration = Concentration::new(&problem);
     let (at, force) = corner(&problem);
     let gap = gaps(&problem);
-    let shape = concentration.shape(&problem, at, &Faced::WHOLE, &force, &gap, None).unwrap();
-    let hats: Vec<_> = concentration.hats(at, &shape, &force).collect();
+    let shape = concentration.shape(&problem, at, &Faced::WHOLE, [&force; 2], &gap, None).unwrap();
+    let hats: Vec<_> = concentration.hats(at, &shape, [&force; 2]).collect();
     let residual = |hats: &[NarrowHat<2>]| concentration.share_residual(at, &shape, &force, hats);
     assert!(hats.len() == 2 && residual(&hats) < 1e-15, "{hats:?}");
     let lost = hats[1..].to_vec();
@@ -371,7 +375,7 @@ fn shares_that_are_none_show() {
     let mut negative = hats.clone();
     (0..2).for_each(|c| negative[0].resultant[c] += 1.5 * force[c]);
     (0..2).for_each(|c| negative[1].resultant[c] -= 1.5 * force[c]);
-    let turned = vec![NarrowHat { resultant: [force[1], force[0]], ..hats[0] }, hats[1]];
+    let turned = vec![NarrowHat { resultant: [force[1], force[0]], pulled: [force[1], force[0]], ..hats[0] }, hats[1]];
     for broken in [lost, twice, negative, turned] {
         assert!(residual(&broken) > 0.05, "{} {broken:?}", residual(&broken));
     }

@@ -88,7 +88,7 @@ fn resultant_and_moment_are_those_of_the_reactions() {
             (0..10).filter(|&at| !first(at)).for_each(|at| reaction[at] = [0.0; 2]);
         }
         let mut corrected = reaction.clone();
-        MomentCorrection::new(&problem).apply(&mut corrected, &|_| None);
+        MomentCorrection::new(&problem).apply(&mut corrected, &[], &|_| None);
         assert!(admissible(&problem, &corrected), "{seed}: {corrected:?}");
         let (given, found) = (balance(&problem, &reaction), balance(&problem, &made(&problem, &reaction)));
         for (given, found) in given.iter().zip(&found) {
@@ -113,7 +113,7 @@ fn no_frame_is_special() {
                 in_frame(&problem, n, t)
             })
             .collect();
-        MomentCorrection::new(&problem).apply(&mut forces, &|_| None);
+        MomentCorrection::new(&problem).apply(&mut forces, &[], &|_| None);
         let normal = *problem.obstacles()[0].flat_frame().normal();
         let own = |f: &[f64; 2]| [f[0] * normal[0] + f[1] * normal[1], f[0] * normal[1] - f[1] * normal[0]];
         let mut all: Vec<(usize, [f64; 2])> =
@@ -140,7 +140,7 @@ fn what_cannot_be_had_is_had_in_part() {
     let at = |node: usize| problem.surface().nodes().iter().position(|c| c.node.index() == node).unwrap();
     (reaction[at(0)], reaction[at(2)]) = ([0.3, 1.0], [0.0, 0.1]);
     let mut corrected = reaction.clone();
-    MomentCorrection::new(&problem).apply(&mut corrected, &|_| None);
+    MomentCorrection::new(&problem).apply(&mut corrected, &[], &|_| None);
     assert!(admissible(&problem, &corrected));
     // All on the first node, friction too.
     assert!((0..2).all(|c| (corrected[at(0)][c] - [0.3, 1.1][c]).abs() < 1e-15), "{corrected:?}");
@@ -161,7 +161,7 @@ fn a_node_alone_is_left_as_it_is() {
         let mut reaction = vec![[0.0; 2]; 10];
         reaction[k] = in_frame(&problem, 2.0, 0.3);
         let mut corrected = reaction.clone();
-        MomentCorrection::new(&problem).apply(&mut corrected, &|_| None);
+        MomentCorrection::new(&problem).apply(&mut corrected, &[], &|_| None);
         assert_eq!(corrected, reaction);
     }
 }

@@ -14,21 +14,23 @@ mod energy;
 mod mode_forms;
 mod modes;
 mod operator;
+mod present;
 mod spectrum;
 mod wavefront;
 
 use super::concentration::Concentration;
 use crate::blocks::BLOCK;
+use crate::deformation::Deformation;
 use crate::element::Element;
 use crate::measure::{BalanceFields, BalanceNode, ElementMeasure};
 use crate::options::Acceleration;
 use crate::pool::Pool;
-use crate::stress::{EnergyForms, hooke};
+use crate::stress::EnergyForms;
 use crate::time_level::ForcesKnown;
 use crate::traction::{EquilibratedLevels, Equilibration, Smoothed, Then};
 use chebyshev::{Arrays, ChebyshevSteps};
 use energy::{moment_slope, product_slope};
-use modes::{Modes, ModesPart, Numbers};
+use modes::{MOMENTS, Modes, ModesPart, Numbers};
 use operator::Operator;
 use percute_core::cell::CellKind;
 use percute_core::ids::{ElementId, NodeId};
@@ -36,8 +38,9 @@ use percute_core::mesh::{Mesh, Strips};
 use percute_core::observer::StopFlag;
 use percute_core::problem::Problem;
 use percute_core::simd::Wide;
-use percute_core::simd::lanes::{LANES, Lanes};
+use percute_core::simd::lanes::{LANES, Lanes, Value};
 use percute_core::simd::{Registers, Task, run_task};
+use present::PresentPlaces;
 use rayon::prelude::*;
 use std::ops::Range;
 use wavefront::{Wavefront, Work};
@@ -137,12 +140,15 @@ impl TractionMinimisation {
         then: Then<'_, D>,
     ) -> f64 {
         let new = || Workspace::new(&self.numbers);
+        let places = || PresentPlaces::new(problem, &equilibration.elements, &forces.0);
+        let present = problem.is_finite().then(places);
+        let present = present.as_ref();
         self.spaces.lend(new, |space| {
-            let miss = self.add_slopes(of, forces, levels, concentration, &mut space.slopes);
+            let miss = self.add_slopes(of, forces, levels, (concentration, present), &mut space.slopes);
             self.minimise(space, &equilibration.stop);
             for part in equilibration.parts() {
                 let (nodes, moments) = equilibration.moments_mut(part, levels);
-                self.add(problem.mesh(), nodes, &space.change, moments);
+                self.add(problem.mesh(), nodes, (&space.change, present), moments);
                 then(levels, part);
             }
             miss
@@ -155,13 +161,13 @@ impl TractionMinimisation {
         (problem, equilibration, choice): (&Problem<D>, &Equilibration<'_, D, N>, Acceleration),
         (forces, strains): (Vec<ForcesKnown<D>>, Option<Smoothed<'_>>),
         levels: &mut EquilibratedLevels<D>,
-        concentration: Option<&Concentration<D>>,
+        (concentration, present): (Option<&Concentration<D>>, Option<&PresentPlaces>),
         all: &mut Modes,
     ) -> f64 {
         all.clear();
         let room = Pool::new();
         let miss = equilibration.solve(forces, levels, strains, |levels, part| {
-            let slopes = Slopes { problem, equilibration, choice, levels, numbers: &self.numbers };
+            let slopes = Slopes { problem, equilibration, choice, levels, numbers: &self.numbers, present };
             for parity in 0..2 {
                 let strips = part.strips.clone().filter(|strip| strip % 2 == parity);
                 self.strips(&equilibration.strips, strips, all.part())
@@ -172,9 +178,14 @@ impl TractionMinimisation {
         if let Some(concentration) = concentration {
             for (lane, forces) in levels.forces().iter().enumerate() {
                 concentration.each_element(problem, forces.density.hats(), |element, stress| {
-                    let slope = product_slope::<D, N>(&stress.products());
+                    let mut slope = product_slope::<D, N>(&stress.products());
+                    if present.is_some() {
+                        let data = &equilibration.elements[element.index()];
+                        turn::<_, D>(&mut slope, &data.gradient(&data.gather(&forces.level.displacement)));
+                    }
                     let slope = slope.map(|slope| Lanes::at_levels(|l| if l == lane { slope } else { 0.0 }));
-                    self.numbers.add_slope::<_, D, N>(problem.mesh(), element.index(), &slope, &mut all.part());
+                    let slope = (element.index(), &slope);
+                    self.numbers.add_slope::<_, D, N>(problem.mesh(), slope, present, &mut all.part());
                 });
             }
         }
@@ -200,7 +211,13 @@ impl TractionMinimisation {
     }
 
     /// Adds the change to the moments on the links of the stars of some nodes.
-    fn add<const D: usize>(&self, mesh: &Mesh, nodes: Range<usize>, change: &Modes, moments: &mut [[Lanes; D]]) {
+    fn add<const D: usize>(
+        &self,
+        mesh: &Mesh,
+        nodes: Range<usize>,
+        change: (&Modes, Option<&PresentPlaces>),
+        moments: &mut [[Lanes; D]],
+    ) {
         let first = |node: usize| mesh.stars().link_range(NodeId::new(node)).start;
         if nodes.len() > 2 * BLOCK {
             let middle = nodes.start.midpoint(nodes.end);
@@ -220,7 +237,7 @@ struct AddChange<'a, const D: usize> {
     numbers: &'a Numbers,
     mesh: &'a Mesh,
     nodes: Range<usize>,
-    change: &'a Modes,
+    change: (&'a Modes, Option<&'a PresentPlaces>),
     moments: &'a mut [[Lanes; D]],
 }
 
@@ -239,6 +256,18 @@ impl<const D: usize> Task for AddChange<'_, D> {
     }
 }
 
+/// Slopes in the moments of the present body, from those in moments that are pulled back.
+#[inline(always)]
+fn turn<T: Value, const D: usize>(slope: &mut [T; MOMENTS], gradient: &[[T; D]; D]) {
+    let deformation = Deformation::new(gradient);
+    for moment in slope.as_chunks_mut::<2>().0 {
+        let mut vector = [moment[0]; D];
+        (0..D).for_each(|c| vector[c] = moment[c]);
+        let vector = deformation.slope(&vector);
+        (0..D).for_each(|c| moment[c] = vector[c]);
+    }
+}
+
 /// The slopes of the energy of some levels in the modes.
 #[derive(Clone, Copy, Debug)]
 struct Slopes<'a, const D: usize, const N: usize> {
@@ -247,6 +276,7 @@ struct Slopes<'a, const D: usize, const N: usize> {
     choice: Acceleration,
     levels: &'a EquilibratedLevels<D>,
     numbers: &'a Numbers,
+    present: Option<&'a PresentPlaces>,
 }
 
 impl<const D: usize, const N: usize> Slopes<'_, D, N> {
@@ -286,9 +316,13 @@ impl<const D: usize, const N: usize> Slopes<'_, D, N> {
                 let form = forms.of(problem, id, &BalanceNode::points(&nodes), lane);
                 let measure = ElementMeasure::of_nodes((problem, element, id), self.choice, &nodes);
                 let balance = fields.nodal_balance(like, e - start, levels, id, &nodes);
-                let stress = hooke(problem.material(id), &element.gradient(&BalanceNode::displacements(like, &nodes)));
-                let slope = moment_slope(&measure, &form, &balance, &stress);
-                self.numbers.add_slope::<_, D, N>(problem.mesh(), e, &slope, to);
+                let gradient = element.gradient(&BalanceNode::displacements(like, &nodes));
+                let [stress, _] = measure.stress_and_strain(&gradient);
+                let mut slope = moment_slope(&measure, &form, &balance, &stress);
+                if self.present.is_some() {
+                    turn::<_, D>(&mut slope, &gradient);
+                }
+                self.numbers.add_slope::<_, D, N>(problem.mesh(), (e, &slope), self.present, to);
             }
         }
     }

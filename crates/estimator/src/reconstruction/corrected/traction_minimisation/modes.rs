@@ -9,6 +9,7 @@
 //! Each edge and each node has coefficients, whether it has modes or not; without modes they stay 0. Edges are numbered
 //! by their lower ends, so that those of consecutive nodes follow each other.
 
+use super::present::PresentPlaces;
 use percute_core::ids::{FaceId, NodeId};
 use percute_core::mesh::{Face, Mesh};
 use percute_core::simd::lanes::{Lanes, Value, load};
@@ -125,18 +126,18 @@ impl Numbers {
     /// Adds the slopes of an energy in the moments on the edges of element `e`, outward from it. Moment 4k + 2p + c is
     /// component c at the p-th node of edge k.
     #[inline(always)]
-    pub(in crate::reconstruction) fn add_slope<T: Value<Stored = Lanes>, const D: usize, const N: usize>(
+    pub(super) fn add_slope<T: Value<Stored = Lanes>, const D: usize, const N: usize>(
         &self,
         mesh: &Mesh,
-        e: usize,
-        slope: &[T; MOMENTS],
+        (e, slope): (usize, &[T; MOMENTS]),
+        present: Option<&PresentPlaces>,
         to: &mut ModesPart<'_>,
     ) {
-        let (cell, faces) = (&mesh.nodes_of::<N>()[e], &mesh.faces_of::<N>()[e]);
-        let mut nodes = [[slope[0].zero(); 3]; N];
+        let (cell, faces, like) = (&mesh.nodes_of::<N>()[e], &mesh.faces_of::<N>()[e], slope[0]);
+        let mut nodes = [[like.zero(); 3]; N];
         for k in 0..N {
             let (a, b) = ((k + 1) % N, (k + 2) % N);
-            let edge = Edge::new::<D>(mesh, cell[a], cell[b]);
+            let edge = Edge::new::<D>(like, mesh, [cell[a], cell[b]], present);
             let (ax, ay, bx, by) = (slope[4 * k], slope[4 * k + 1], slope[4 * k + 2], slope[4 * k + 3]);
             let (x, y) = (bx - ax, by - ay);
             let sum = &mut to.edges[self.of(faces[k]) - to.first_edge];
@@ -146,6 +147,7 @@ impl Numbers {
             nodes[b] = [nodes[b][0] + bx, nodes[b][1] + by, nodes[b][2] + couple];
         }
         for (node, own) in cell.iter().zip(&nodes) {
+            let own = present.map_or(*own, |present| present.slopes(*node, *own));
             let to = &mut to.nodes[node.index() - to.first_node];
             for i in 0..3 {
                 to[i] = (own[i].load(&to[i]) + own[i]).store();
@@ -155,23 +157,27 @@ impl Numbers {
 
     /// Adds the moments that modes make on the links of the star of one node; the sums have the form of a number.
     #[inline(always)]
-    pub(in crate::reconstruction) fn add_change<T: Value<Stored = Lanes>, const D: usize>(
+    pub(super) fn add_change<T: Value<Stored = Lanes>, const D: usize>(
         &self,
         like: T,
         mesh: &Mesh,
         node: NodeId,
-        change: &Modes,
+        (change, present): (&Modes, Option<&PresentPlaces>),
         moments: &mut [[Lanes; D]],
     ) {
-        let [x, y, turn] = load(like, &change.nodes[node.index()]);
+        let forces = |node: NodeId| {
+            let forces = load(like, &change.nodes[node.index()]);
+            present.map_or(forces, |present| present.forces(node, forces))
+        };
+        let [x, y, turn] = forces(node);
         for (moment, face) in moments.iter_mut().zip(mesh.stars().star(node).links) {
             let Some(face) = *face else { continue };
             let ends = &mesh.face_nodes::<D>(face);
             let other = if ends[0] == node { ends[D - 1] } else { ends[0] };
             // The star leaves the element before the link by it: the node is the second one there.
-            let edge = Edge::new::<D>(mesh, other, node);
+            let edge = Edge::new::<D>(like, mesh, [other, node], present);
             let s = like.load(&change.edges[self.of(face)]);
-            let couple = turn - like.load(&change.nodes[other.index()][2]);
+            let couple = turn - forces(other)[2];
             let [a, b] = [like.load(&moment[0]), like.load(&moment[1])];
             moment[0] = (a + (x + (couple * edge.lever[0] + s * edge.along[0]))).store();
             moment[1] = (b + (y + (couple * edge.lever[1] + s * edge.along[1]))).store();
@@ -181,21 +187,32 @@ impl Numbers {
 
 /// An edge of an element, from its first node to its second, counterclockwise.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
+pub(super) struct Edge<T> {
     /// Unit vector along it, from the end of higher number to the lower one: the force of the mode of the edge on the
     /// element at the second node; at the first node there is the opposite one.
-    pub(super) along: [f64; 2],
+    pub(super) along: [T; 2],
     /// d⊥/|d|² with d from the first node to the second (1/m): the force at the second node of a unit couple about it.
-    pub(super) lever: [f64; 2],
+    pub(super) lever: [T; 2],
 }
 
-impl Edge {
+impl<T: Value<Stored = Lanes>> Edge<T> {
+    /// Of a body at rest, or in its present places.
     #[inline(always)]
-    fn new<const D: usize>(mesh: &Mesh, first: NodeId, second: NodeId) -> Self {
+    fn new<const D: usize>(
+        like: T,
+        mesh: &Mesh,
+        [first, second]: [NodeId; 2],
+        present: Option<&PresentPlaces>,
+    ) -> Self {
         let (a, b) = (&mesh.points_in::<D>()[first.index()], &mesh.points_in::<D>()[second.index()]);
         let d = [b[0] - a[0], b[1] - a[1]];
         let inverse_square = 1.0 / (d[0] * d[0] + d[1] * d[1]);
         let inverse = if first < second { -inverse_square.sqrt() } else { inverse_square.sqrt() };
-        Self { along: [inverse * d[0], inverse * d[1]], lever: [-inverse_square * d[1], inverse_square * d[0]] }
+        let (along, lever) = ([inverse * d[0], inverse * d[1]], [-inverse_square * d[1], inverse_square * d[0]]);
+        if let Some(present) = present {
+            let [along, lever] = present.edge::<_, D>(like, mesh, [first, second], [along, lever]);
+            return Self { along, lever };
+        }
+        Self { along: along.map(|x| like.fill(x)), lever: lever.map(|x| like.fill(x)) }
     }
 }

@@ -126,7 +126,7 @@ fn start<const D: usize, const N: usize>(mesh: &Mesh, numbers: &Numbers, slopes:
                 }
             }
         }
-        numbers.add_slope::<_, D, N>(mesh, e, &slope, &mut part);
+        numbers.add_slope::<_, D, N>(mesh, (e, &slope), None, &mut part);
     }
 }
 

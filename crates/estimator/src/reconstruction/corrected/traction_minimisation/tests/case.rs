@@ -87,7 +87,7 @@ impl Case {
         let mut moments = vec![[Lanes::ZERO; 2]; stars.link_count()];
         for node in (0..self.problem.mesh().node_count()).map(NodeId::new) {
             let own = &mut moments[stars.link_range(node)];
-            self.all.numbers.add_change(Lanes::ZERO, self.problem.mesh(), node, modes, own);
+            self.all.numbers.add_change(Lanes::ZERO, self.problem.mesh(), node, (modes, None), own);
         }
         moments
     }
@@ -118,7 +118,7 @@ impl Case {
     pub(super) fn in_modes(&self, slopes: &[[Lanes; MOMENTS]]) -> Modes {
         let mut modes = Modes::new(&self.all.numbers);
         for (e, slope) in slopes.iter().enumerate() {
-            self.all.numbers.add_slope::<_, 2, 3>(self.problem.mesh(), e, slope, &mut modes.part());
+            self.all.numbers.add_slope::<_, 2, 3>(self.problem.mesh(), (e, slope), None, &mut modes.part());
         }
         modes
     }

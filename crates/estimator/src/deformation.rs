@@ -1,0 +1,92 @@
+//! The deformation gradient F = 1 + H of an element, and fields of the present body pulled back by it.
+//!
+//! With finite kinematics tractions, inertia and the first Piola–Kirchhoff stress P balance as vectors of the present
+//! body over the undeformed one. F is constant in an element, so F⁻¹ of its loads balances S = F⁻¹P, and the moments
+//! about the present places balance where S is symmetric: the maps for small strains serve unchanged.
+
+use percute_core::simd::lanes::Value;
+
+/// F⁻¹ of an element.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Deformation<const D: usize, T> {
+    inverse: [[T; D]; D],
+}
+
+impl<const D: usize, T: Value> Deformation<D, T> {
+    /// Of H = ∂u_a/∂X_b.
+    #[inline(always)]
+    pub(crate) fn new(gradient: &[[T; D]; D]) -> Self {
+        let one = gradient[0][0].fill(1.0);
+        let mut inverse = *gradient;
+        if D == 1 {
+            inverse[0][0] = one / (one + gradient[0][0]);
+        } else {
+            let [f, g] = [one + gradient[0][0], one + gradient[1][1]];
+            let factor = one / (f * g - gradient[0][1] * gradient[1][0]);
+            (inverse[0][0], inverse[1][1]) = (g * factor, f * factor);
+            (inverse[0][1], inverse[1][0]) = (-gradient[0][1] * factor, -gradient[1][0] * factor);
+        }
+        Self { inverse }
+    }
+
+    /// F⁻¹ v.
+    #[inline(always)]
+    pub(crate) fn pull_back(&self, vector: &mut [T; D]) {
+        let v = *vector;
+        for a in 0..D {
+            vector[a] = self.inverse[a][0] * v[0];
+            (1..D).for_each(|b| vector[a] += self.inverse[a][b] * v[b]);
+        }
+    }
+
+    /// F⁻ᵀ g: the slope of an energy in a vector, from that in the vector pulled back.
+    #[inline(always)]
+    pub(crate) fn slope(&self, slope: &[T; D]) -> [T; D] {
+        let mut found = *slope;
+        for a in 0..D {
+            found[a] = self.inverse[0][a] * slope[0];
+            (1..D).for_each(|b| found[a] += self.inverse[b][a] * slope[b]);
+        }
+        found
+    }
+
+    /// S = F⁻¹P, of which the skew part is rounding.
+    #[inline(always)]
+    pub(crate) fn second_stress(&self, first: &[[T; D]; D]) -> [[T; D]; D] {
+        let mut second = *first;
+        for b in 0..D {
+            let mut column = [first[0][b]; D];
+            (0..D).for_each(|a| column[a] = first[a][b]);
+            self.pull_back(&mut column);
+            (0..D).for_each(|a| second[a][b] = column[a]);
+        }
+        for a in 0..D {
+            for b in 0..a {
+                let mean = (second[a][b] + second[b][a]) * 0.5;
+                (second[a][b], second[b][a]) = (mean, mean);
+            }
+        }
+        second
+    }
+
+    /// The symmetric stress of the present body in a first Piola–Kirchhoff stress P: ½(T + Tᵀ)F⁻ᵀ of T = PFᵀ.
+    #[inline(always)]
+    pub(crate) fn symmetric_part(&self, first: &[[T; D]; D], gradient: &[[T; D]; D]) -> [[T; D]; D] {
+        let mut spatial = *first;
+        for a in 0..D {
+            for b in 0..D {
+                (0..D).for_each(|c| spatial[a][b] += first[a][c] * gradient[b][c]);
+            }
+        }
+        let mut symmetric = *first;
+        for a in 0..D {
+            let mut row = [spatial[a][0]; D];
+            (0..D).for_each(|b| row[b] = (spatial[a][b] + spatial[b][a]) * 0.5);
+            for b in 0..D {
+                symmetric[a][b] = row[0] * self.inverse[b][0];
+                (1..D).for_each(|c| symmetric[a][b] += row[c] * self.inverse[b][c]);
+            }
+        }
+        symmetric
+    }
+}
