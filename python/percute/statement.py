@@ -82,7 +82,7 @@ class Elastic:
     yield_stress : float, optional
         Yield stress (Pa). The simulation does not use it; the verdict says where the von Mises stress is above it.
     kinematics : {"small", "finite"}, default: "small"
-        Small strains and rotations, or any. The error of finite ones is not estimated.
+        Small strains and rotations, or any.
     law : {"neo_hookean", "svk", "hencky"}, optional
         With ``kinematics="finite"``: the hyperelastic law, by default neo-Hookean. "svk" is that of Saint Venant and Kirchhoff,
         which softens in compression. A bar has the law for ν = 0.

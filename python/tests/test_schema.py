@@ -53,7 +53,7 @@ BEYOND = {
     "waves faster than light": "the ratio of two numbers",
     "a law for large strains with small kinematics": "two keys together",
     "a neo-Hookean sheet with negative Poisson's ratio": "two keys together",
-    "the error of finite kinematics": "the command",
+    "a reconstruction that does not balance where bodies turn": "two tables together",
     "finite kinematics on two planes": "two tables together",
     "a group of a plane for a body that turns": "two tables together",
     "two bodies that turn": "the number of bodies",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -15,8 +15,8 @@ from studies.random_bodies.meshes import Integers, NoMesh, Sizes
 from studies.random_bodies.shapes import SHAPES, Floats, Shape
 from studies.random_bodies.velocities import Velocity, smooth
 
-KINDS = ("impact", "vibration", "graded")
-"""Impacts of any kind; free bodies that vibrate; impacts on meshes that are graded towards the contact."""
+KINDS = ("impact", "vibration", "graded", "turning")
+"""Impacts of any kind; free bodies that vibrate; impacts on meshes that are graded towards the contact; bodies that spin and strike, with finite kinematics."""
 MATERIALS: dict[str, tuple[float, float, float]] = {
     "steel": (210e9, 0.3, 7800.0),
     "aluminium": (70e9, 0.33, 2700.0),
@@ -39,6 +39,10 @@ FASTEST = 0.1
 """Largest speed over that of waves in a bar of the material: a little more than in any evidence."""
 WORK = 1e6
 """Most elements times critical steps of the run: simulation, estimate and reference take 10 to 20 s."""
+FINITE_LAWS: list[Literal["neo_hookean", "svk", "hencky"]] = ["neo_hookean", "neo_hookean", "hencky", "svk"]
+"""The default twice."""
+FINITE = 4.0
+"""What a step of a finite law takes over one of small strains."""
 SHORTEST = 0.3
 """Fewest wave passages; a body that takes more work for them is drawn again."""
 
@@ -71,6 +75,8 @@ class RandomBody:
     """m"""
     velocity: Velocity | None = None
     """That of a body that vibrates, over places (m)."""
+    spin: float = 0.0
+    """Initial angular velocity (rad/s)."""
 
     def problem(self) -> pc.Problem:
         """Give the problem."""
@@ -86,9 +92,13 @@ class RandomBody:
         """Give the problem on the first of these meshes that is not too much work, or on the last one."""
         for each in times[:-1]:
             problem = self._on(mesh(each))
-            if len(problem.mesh.cells) * self.end < REFERENCE_WORK * more * problem.critical_time_step:
+            if self._cost * len(problem.mesh.cells) * self.end < REFERENCE_WORK * more * problem.critical_time_step:
                 return problem
         return self._on(mesh(times[-1]))
+
+    @property
+    def _cost(self) -> float:
+        return FINITE if self.law.kinematics == "finite" else 1.0
 
     @property
     def _lowest(self) -> Integers:
@@ -108,7 +118,11 @@ class RandomBody:
         if self.velocity is not None:
             return pc.Problem(mesh, material=self.law, initial_velocity=self.velocity(mesh.points))
         plane = pc.Plane(point=(0.0, float(self.mesh.points[:, 1].min()) - self.gap), normal=(0.0, 1.0), friction=self.friction)
-        return pc.Problem(mesh, material=self.law, obstacles=[plane], initial_velocity=(self.along * self.speed, -self.speed))
+        velocity = np.broadcast_to((self.along * self.speed, -self.speed), mesh.points.shape)
+        if self.spin:
+            arm = mesh.points - self.mesh.points.mean(axis=0)
+            velocity = velocity + self.spin * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+        return pc.Problem(mesh, material=self.law, obstacles=[plane], initial_velocity=velocity)
 
     @property
     def grading(self) -> float:
@@ -181,6 +195,8 @@ def _striking(draws: Draws, seed: int, kind: str) -> RandomBody:
     cells = graded and draws.chance(0.5)
     shape = _shape(draws, OF_CELLS if cells else list(SHAPES))
     name, law, wave = _law(draws)
+    if kind == "turning":
+        law = replace(law, kinematics="finite", law=draws.one(FINITE_LAWS))
     tilt = draws.one([45.0, draws.uniform(1.0, 20.0), draws.uniform(-180.0, 180.0)]) if graded else _tilt(draws)
     place = shape.lowest(math.radians(tilt))
     if draws.chance(0.5):
@@ -194,6 +210,8 @@ def _striking(draws: Draws, seed: int, kind: str) -> RandomBody:
     mesh = _turned(_mesh(draws, shape, mesh_kind, place, grading), tilt)
     free = pc.Problem(mesh, material=law)
     speed = min(draws.log_uniform(0.3, 200.0), FASTEST * wave)
+    # Half of the speed of the fall at the rim, at most.
+    spin = draws.uniform(-1.0, 1.0) * speed / mesh.size if kind == "turning" else 0.0
     along = 0.0 if draws.chance(0.6) else draws.uniform(-1.0, 1.0)
     friction = 0.0 if draws.chance(0.4) else draws.uniform(0.0, 0.5)
     courant = draws.uniform(0.3, 0.95)
@@ -201,11 +219,12 @@ def _striking(draws: Draws, seed: int, kind: str) -> RandomBody:
     gap = draws.log_uniform(1.2, 20.0) * step * speed
     passage = mesh.size / free.wave_speed
     passages = draws.log_uniform(SHORTEST, 3.0 if graded else 30.0)
-    passages = min(passages, (WORK / len(mesh.cells) * free.critical_time_step - gap / speed) / passage)
+    work = WORK / FINITE if kind == "turning" else WORK
+    passages = min(passages, (work / len(mesh.cells) * free.critical_time_step - gap / speed) / passage)
     if passages < SHORTEST:
         raise NoMesh("too much work")
     end = gap / speed + passages * passage
-    return RandomBody(kind, seed, shape.name, mesh_kind, mesh, name, law, courant, end, passages, tilt, speed, along, friction, gap)
+    return RandomBody(kind, seed, shape.name, mesh_kind, mesh, name, law, courant, end, passages, tilt, speed, along, friction, gap, spin=spin)
 
 
 def _vibrating(draws: Draws, seed: int) -> RandomBody:

@@ -3,8 +3,8 @@
 use crate::history::HistoryData;
 use crate::problem::ProblemData;
 use crate::run::Run;
-use crate::simulate::Times;
-use crate::{bridge, errors, time, view};
+use crate::simulate::{Times, instants};
+use crate::{bridge, errors, view};
 use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::{ReferenceError, TrueError, TrueErrorSample};
@@ -43,8 +43,7 @@ pub(crate) fn errors_against_simulation<'py>(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Vec<TrueErrorColumns<'py>>, Option<String>)> {
     let meshes = if nested { Meshes::Nested } else { Meshes::Any };
-    let (end, courant, step, steps) = times;
-    let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
+    let times = instants(py, problem, times, progress)?;
     compared(py, &histories, (problem.problem.clone(), times), None, meshes, progress)
 }
 

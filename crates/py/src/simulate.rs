@@ -52,6 +52,21 @@ fn keep_of(py: Python<'_>, (every, wanted, fields): StorageOptions, times: &Time
     Ok(Keep { steps, fields })
 }
 
+/// The instants of a run; with a Courant number, those of a body that may turn are looked for.
+pub(crate) fn instants(
+    py: Python<'_>,
+    problem: &ProblemData,
+    (end, courant, step, steps): Times,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<TimeGrid> {
+    let times = time::grid(py, end, courant, step, steps, problem.stable_step(py, courant)?)?;
+    let Some(courant) = courant.filter(|_| problem.problem.is_finite()) else { return Ok(times) };
+    let (problem, end) = (problem.problem.clone(), times.end());
+    let work = move |mut watch: Watch| run::following(&problem, end, courant, &mut watch);
+    let found = bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))?;
+    found.ok_or_else(|| errors::percute_error(py, "the search for stable steps was stopped"))
+}
+
 /// Simulates; with a warning if energy appears or is lost. What is raised on the way has what was done as its
 /// `history`: the data, or the file.
 #[pyfunction]
@@ -64,14 +79,7 @@ pub(crate) fn simulate(
     overwrite: bool,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(HistoryData, Option<String>)> {
-    let (end, courant, step, steps) = times;
-    let mut times = time::grid(py, end, courant, step, steps, problem.stable_step(py, courant)?)?;
-    if let Some(courant) = courant.filter(|_| problem.problem.is_finite()) {
-        let (problem, end) = (problem.problem.clone(), times.end());
-        let work = move |mut watch: Watch| run::following(&problem, end, courant, &mut watch);
-        let found = bridge::blocking(py, progress, work)?.map_err(|error| errors::run(py, &error))?;
-        times = found.ok_or_else(|| errors::percute_error(py, "the search for stable steps was stopped"))?;
-    }
+    let times = instants(py, problem, times, progress)?;
     let keep = keep_of(py, keep, &times)?;
     let store = store.map(|path| Store::new(path, overwrite, keep));
     let problem = &problem.problem;

@@ -9,7 +9,7 @@ use percute_core::history::{SinkError, StepSource};
 use percute_core::observer::Observer;
 use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
-use percute_estimator::{EstimateError, Request, RunError};
+use percute_estimator::{Request, RunError};
 
 /// The results for a history.
 #[derive(Clone, Debug)]
@@ -34,9 +34,6 @@ pub fn estimate(
     analysis: &Analysis,
     observer: &mut dyn Observer,
 ) -> Result<Graded, Failure> {
-    if problem.is_finite() {
-        return Err(RunError::Estimate(EstimateError::Finite).into());
-    }
     let critical = critical_time_step(problem);
     let refuse = |refusal| refused(refusal, origin);
     let unfit = first_look(problem, source, critical, origin).map_err(refuse)?;

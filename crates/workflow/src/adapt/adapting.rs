@@ -13,6 +13,7 @@ use crate::plan::{Basis, Branch, Plan, sizes};
 use crate::report::{Report, Subject};
 use crate::restated::Restated;
 use crate::run::{Results, whole};
+use crate::verify::FINITE;
 use percute_core::dynamics::critical_time_step;
 use percute_core::observer::Observer;
 use percute_core::problem::AnyProblem;
@@ -65,6 +66,9 @@ impl Adapting {
         (wish, mesher): (Wish, Mesher),
     ) -> Result<Self, Failure> {
         wish.check()?;
+        if problem.is_finite() {
+            return Err(Failure::Argument(format!("runs on adapted meshes {FINITE}")));
+        }
         if options.reconstruction != Reconstruction::Corrected {
             return Err(Failure::Argument(format!(
                 "the reconstruction \"{}\" has no sources of the error to plan from; take \"corrected\"",

@@ -70,7 +70,6 @@ use crate::until::Until;
 use body::Bodies;
 use mesh::Coarsest;
 use percute_core::dynamics::{SimulationError, check_start, critical_time_step, first_stable_step};
-use percute_core::material::Elastic;
 use percute_core::memory::can_be_had;
 use percute_core::mesh::Mesh;
 use percute_core::problem::{AnyProblem, Place, RefusedStart, cause_of_refused_start};
@@ -277,10 +276,9 @@ impl Case {
     /// # Errors
     /// The place in the file.
     pub fn check_run(&self, estimated: bool, long: Long) -> Result<(), CaseError> {
-        if let (true, Some(index)) = (estimated, self.problem.materials().iter().position(Elastic::is_finite)) {
-            let place = Place { table: "material", index: Some(index), key: "kinematics" };
-            let told = EstimateError::Finite.to_string();
-            self.error_at(place, told).map_or(Ok(()), Err)?;
+        if estimated && self.problem.is_finite() && !self.options.balances_turning(self.problem.dimension()) {
+            let place = Place { table: "estimate", index: None, key: "reconstruction" };
+            self.error_at(place, EstimateError::Finite.to_string()).map_or(Ok(()), Err)?;
         }
         let start = check_start(&self.problem, &self.times).err();
         let refused = start.and_then(|error| self.refused_start(&error)).or_else(|| {

@@ -156,7 +156,7 @@ fn warnings(
         slip: contact.slip,
         penetration: contact.penetration,
         inclination: contact.inclination.to_degrees(),
-        linearity: &Linearity::new(deformation),
+        linearity: &Linearity::new(deformation, subject.problem.is_finite()),
         residual: &largest_residual(estimate),
         flat: flat.as_ref(),
         critical_step,

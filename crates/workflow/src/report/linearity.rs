@@ -31,6 +31,8 @@ pub(super) struct Linearity {
     pub(super) turned: Option<Turned>,
     /// The stress that is beyond the linear law, in a sentence.
     pub(super) stress: Option<String>,
+    /// Whether the kinematics are finite: any strain and rotation is within the theory.
+    pub(super) finite: bool,
 }
 
 /// A strain or a rotation that is not small: it limits trust.
@@ -58,7 +60,7 @@ pub(super) struct Turned {
 }
 
 impl Linearity {
-    pub(super) fn new(deformation: &Deformation) -> Self {
+    pub(super) fn new(deformation: &Deformation, finite: bool) -> Self {
         let several = deformation.bodies.len() > 1;
         let turned = |body: &BodyDeformation| {
             let (angle, strain) = (body.rotation.abs(), body.strain.value.abs());
@@ -66,8 +68,9 @@ impl Linearity {
             let too_far = angle > ROTATION[0] || (angle > LEAST && growth(angle) > OF_STRAIN * strain);
             too_far.then_some(Turned { subject, angle, time: body.time_of_rotation, strain })
         };
-        let turned = deformation.bodies.iter().filter_map(turned).max_by(|a, b| a.angle.total_cmp(&b.angle));
-        Self { strain: deformation.strain(), turned, stress: stress(&deformation.materials) }
+        let bodies = deformation.bodies.iter().filter(|_| !finite);
+        let turned = bodies.filter_map(turned).max_by(|a, b| a.angle.total_cmp(&b.angle));
+        Self { strain: deformation.strain(), turned, stress: stress(&deformation.materials, finite), finite }
     }
 
     /// The strains and the rotation that are not small.
@@ -87,7 +90,7 @@ impl Linearity {
 
     /// Whether the largest strain is above a limit: that of limited trust, 0, or that of low trust, 1.
     pub(super) fn is_strained(&self, limit: usize) -> bool {
-        self.strain.value.abs() > STRAIN[limit]
+        !self.finite && self.strain.value.abs() > STRAIN[limit]
     }
 
     fn shown_strain(&self) -> String {
@@ -101,7 +104,8 @@ pub(super) fn growth(angle: f64) -> f64 {
 }
 
 /// The stress that is farthest beyond the linear law, in a sentence.
-fn stress(materials: &[MaterialStress]) -> Option<String> {
+fn stress(materials: &[MaterialStress], finite: bool) -> Option<String> {
+    let law = if finite { "elastic" } else { "linear" };
     let yields = materials.iter().filter_map(|material| {
         let yielding = material.yielding.filter(|yielding| yielding.share > 0.0)?;
         Some((yielding.share, yielding, material))
@@ -113,7 +117,7 @@ fn stress(materials: &[MaterialStress]) -> Option<String> {
         |of: &Extreme| format!("{} Pa in element {} at {} s", short(of.value, 3), of.element, trimmed(of.time, 4));
     if let Some((share, yielding, material)) = yields.max_by(|a, b| a.0.total_cmp(&b.0)) {
         return Some(format!(
-            "The law is linear, but the von Mises stress is above the yield stress of {} Pa in {} of {}, first at {} \
+            "The law is {law}, but the von Mises stress is above the yield stress of {} Pa in {} of {}, first at {} \
              s; it is at most {}.",
             short(yielding.yield_stress, 3),
             percent(share),
@@ -127,7 +131,7 @@ fn stress(materials: &[MaterialStress]) -> Option<String> {
     let unstated = materials.iter().filter(is_stiff).filter(|material| ratio(material) > OF_YOUNG);
     let worst = unstated.max_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
     Some(format!(
-        "The law is linear, but a von Mises stress of {} is {} of Young's modulus, and metals yield below 1 %.",
+        "The law is {law}, but a von Mises stress of {} is {} of Young's modulus, and metals yield below 1 %.",
         largest(&worst.von_mises),
         percent(ratio(worst))
     ))

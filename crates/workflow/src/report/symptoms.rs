@@ -269,8 +269,7 @@ fn strained(linearity: &Linearity) -> Option<Symptom> {
          up to {}: the error measure does not contain what the linear theory neglects",
         percent(STRAIN[0])
     );
-    let remedy = "take a lower speed or load, or a stiffer material; `percute simulate` with kinematics = \"finite\" \
-                  has such strains, without an estimate";
+    let remedy = "take kinematics = \"finite\", a lower speed or load, or a stiffer material";
     symptom("large_strain", format!("strains of up to {shown}: not small"), figure, remedy)
 }
 
@@ -289,13 +288,7 @@ fn turned(linearity: &Linearity) -> Option<Symptom> {
          contains this"
     );
     let brief = format!("{subject} turns by {shown} rad: too far for small rotations");
-    symptom(
-        "rotation",
-        brief,
-        figure,
-        "take an earlier end, or a start closer to contact; `percute simulate` with kinematics = \"finite\" has such \
-         rotations, without an estimate",
-    )
+    symptom("rotation", brief, figure, "take kinematics = \"finite\", an earlier end, or a start closer to contact")
 }
 
 #[cfg(test)]

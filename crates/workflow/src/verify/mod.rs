@@ -50,6 +50,9 @@ pub fn prepare(
     options: &Options,
     (levels, long): (usize, Long),
 ) -> Result<Vec<Prepared>, Failure> {
+    if problem.is_finite() {
+        return Err(Failure::Argument(format!("refined runs {FINITE}")));
+    }
     if !(1..=MOST_LEVELS).contains(&levels) {
         return Err(Failure::Argument(format!("`levels` is {levels}; give 1 to {MOST_LEVELS} refinements")));
     }
@@ -78,6 +81,10 @@ pub fn prepare(
     }
     Ok(all)
 }
+
+/// Why a body that turns is not refined.
+pub(crate) const FINITE: &str =
+    "need kinematics = \"small\"; compare simulations on two meshes, in Python by `history.error`";
 
 /// The work before it starts.
 #[must_use]

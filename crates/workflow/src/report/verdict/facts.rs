@@ -149,7 +149,7 @@ impl Facts {
             poor: if flat || uneven.longest > 1.0 { poor_elements(problem.mesh(), by_element) } else { Vec::new() },
             flat,
             uneven,
-            linearity: Linearity::new(beside.deformation),
+            linearity: Linearity::new(beside.deformation, problem.is_finite()),
             nearest: results.nearest.zip(results.instants.last().copied()),
             onset: Onset::new(problem, results, beside.rebound, speed),
             largest_friction: problem.obstacles().map(|o| o.law().friction()).fold(0.0, f64::max),
