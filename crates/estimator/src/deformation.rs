@@ -4,6 +4,7 @@
 //! body over the undeformed one. F is constant in an element, so F⁻¹ of its loads balances S = F⁻¹P, and the moments
 //! about the present places balance where S is symmetric: the maps for small strains serve unchanged.
 
+use percute_core::material::{Elastic, PointLaw};
 use percute_core::simd::lanes::Value;
 
 /// F⁻¹ of an element.
@@ -89,4 +90,22 @@ impl<const D: usize, T: Value> Deformation<D, T> {
         }
         symmetric
     }
+}
+
+/// S = F⁻¹P of a law at H (Pa).
+#[inline(always)]
+pub(crate) fn second_stress<T: Value, const D: usize>(law: &Elastic, gradient: &[[T; D]; D]) -> [[T; D]; D] {
+    Deformation::new(gradient).second_stress(&law.respond(gradient, &mut []).0)
+}
+
+/// P = F S (Pa).
+#[inline(always)]
+pub(crate) fn first_stress<T: Value, const D: usize>(gradient: &[[T; D]; D], second: &[[T; D]; D]) -> [[T; D]; D] {
+    let mut first = *second;
+    for a in 0..D {
+        for b in 0..D {
+            (0..D).for_each(|c| first[a][b] += gradient[a][c] * second[c][b]);
+        }
+    }
+    first
 }

@@ -3,12 +3,12 @@
 use super::star_solver::{Compatibility, StarSolver};
 use super::{EXPLAINED, EquilibratedLevel, EquilibratedLevels, Equilibration, MassTerm};
 use crate::blocks::{BLOCK, MeshPart, StarBlock};
-use crate::deformation::Deformation;
+use crate::deformation::{Deformation, first_stress};
 use crate::element::Element;
 use crate::field_lanes::FieldLanes;
 use crate::inertia::{add_lumping_stress, arms, lumping_stress};
 use crate::residual::worse;
-use crate::smoothing::{SmoothedStrains, Smoothing, Strained};
+use crate::smoothing::{Displacements, Smoothed, SmoothedStrains, Smoothing};
 use crate::time_level::{ForcesKnown, Side};
 use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::material::{Law, PointLaw};
@@ -32,12 +32,22 @@ pub(super) struct StarFields<const D: usize> {
 }
 
 /// The strains of which the stress of some levels is made.
-pub(crate) type Smoothed<'a> = (&'a SmoothedStrains, &'a Smoothing);
+pub(crate) type Strains<'a> = (&'a SmoothedStrains, &'a Smoothing);
 
 impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
-    /// The elements with what their strains are smoothed with.
-    pub(crate) fn strained<'a>(&'a self, smoothing: &'a Smoothing) -> Strained<'a, D, N> {
-        Strained { problem: self.problem, smoothing, elements: &self.elements, blocks: &self.blocks }
+    /// Takes in the displacements of some levels (m), of which those whose strains are smoothed.
+    pub(crate) fn fill_strains(
+        &self,
+        smoothing: &Smoothing,
+        displacements: &Displacements<'_, D>,
+        strains: &mut SmoothedStrains,
+    ) {
+        strains.fill(self.smoothed(smoothing), &self.blocks, displacements);
+    }
+
+    /// The elements with the data of their smoothing.
+    fn smoothed<'a>(&'a self, smoothing: &'a Smoothing) -> Smoothed<'a, D, N> {
+        Smoothed { problem: self.problem, smoothing, elements: &self.elements }
     }
 
     /// Solves the star problems of at most [`LANES`](percute_core::simd::lanes::LANES) levels, part by part, and gives
@@ -48,7 +58,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         &self,
         forces: Vec<ForcesKnown<D>>,
         levels: &mut EquilibratedLevels<D>,
-        strains: Option<Smoothed<'_>>,
+        strains: Option<Strains<'_>>,
         mut then: impl FnMut(&EquilibratedLevels<D>, &MeshPart),
     ) -> f64 {
         levels.force_scale = self.force_scale(&forces);
@@ -69,7 +79,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
     }
 
     /// Solves the stars of a part.
-    fn solve_part(&self, part: &MeshPart, levels: &mut EquilibratedLevels<D>, strains: Option<Smoothed<'_>>) -> f64 {
+    fn solve_part(&self, part: &MeshPart, levels: &mut EquilibratedLevels<D>, strains: Option<Strains<'_>>) -> f64 {
         let EquilibratedLevels { forces, force_scale, moments, .. } = levels;
         let mut blocks = Vec::with_capacity(part.stars.len());
         let mut rest = &mut moments[self.links(&self.nodes(part))];
@@ -150,7 +160,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
     fn solve_block<R: Registers>(
         &self,
         like: Wide<R>,
-        (forces, strains): (&[ForcesKnown<D>], Option<Smoothed<'_>>),
+        (forces, strains): (&[ForcesKnown<D>], Option<Strains<'_>>),
         force_scale: &Lanes,
         block: usize,
         fields: &mut StarFields<D>,
@@ -283,7 +293,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
 struct SolveBlock<'b, 'p, const D: usize, const N: usize> {
     all: &'b Equilibration<'p, D, N>,
     forces: &'b [ForcesKnown<D>],
-    strains: Option<Smoothed<'b>>,
+    strains: Option<Strains<'b>>,
     force_scale: &'b Lanes,
     block: usize,
     fields: &'b mut StarFields<D>,
@@ -324,10 +334,11 @@ impl<const D: usize> StarFields<D> {
         &mut self,
         like: Wide<R>,
         all: &Equilibration<'_, D, N>,
-        (forces, strains): (&[ForcesKnown<D>], Option<Smoothed<'_>>),
+        (forces, strains): (&[ForcesKnown<D>], Option<Strains<'_>>),
         block: &StarBlock<'_, N>,
     ) -> bool {
-        if strains.is_none() {
+        let finite = all.problem.is_finite();
+        if strains.is_none() || finite {
             self.displacement.gather(like, block.nodes, forces.iter().map(|f| Some(&f.level.displacement[..])));
         }
         self.acceleration.gather(like, block.nodes, forces.iter().map(|f| Some(&f.acceleration[..])));
@@ -340,11 +351,15 @@ impl<const D: usize> StarFields<D> {
         self.stress.clear();
         for (id, local) in block.cells() {
             let (element, law) = (&all.elements[id.index()], all.problem.material(id));
-            let gradient = match strains {
-                Some((strains, smoothing)) => strains.of(like, all.strained(smoothing), id),
-                None => element.gradient(&self.displacement.of(like, local)),
+            let mean = |(strains, smoothing): Strains<'_>| strains.of(like, all.smoothed(smoothing), id);
+            let (gradient, mut stress) = match strains.map(mean) {
+                Some(strain) if !finite => (strain, law.respond(&strain, &mut []).0),
+                mean => {
+                    let gradient = element.gradient(&self.displacement.of(like, local));
+                    let plain = || law.respond(&gradient, &mut []).0;
+                    (gradient, mean.map_or_else(plain, |second| first_stress(&gradient, &second)))
+                }
             };
-            let (mut stress, _) = law.respond(&gradient, &mut []);
             if split {
                 let arms = arms(&all.problem.mesh().corners::<D, N>(id));
                 let lumped = self.lumped.of(like, local);

@@ -3,7 +3,6 @@
 
 mod auxiliary;
 mod concentration;
-mod finite_auxiliary;
 mod impulse_smoothing;
 mod moment_correction;
 mod non_matching;
@@ -27,10 +26,9 @@ use crate::residual::worse;
 use crate::smoothing::{SmoothedStrains, Smoothing};
 use crate::time_level::{ForcesKnown, KnownInertia, MotionKnown, SplitFields, SurfaceStep};
 use crate::traction::{EquilibratedLevels, Equilibration, Then};
-use auxiliary::{AuxiliaryLevel, AuxiliarySolutions, Shares, SimulatedLevel, SplitLevel};
+use auxiliary::{Auxiliary, AuxiliaryLevel, Shares, SimulatedLevel, SplitLevel};
 pub(crate) use concentration::Concentration;
 use concentration::{AuxiliaryForces, Faced, Known};
-use finite_auxiliary::{FiniteAuxiliary, FiniteLevel};
 use impulse_smoothing::{ImpulseSmoothing, Stopped};
 use moment_correction::MomentCorrection;
 use non_matching::NonMatchingForces;
@@ -59,9 +57,7 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     moment_correction: Option<MomentCorrection<D>>,
     impulse_smoothing: Option<ImpulseSmoothing<D>>,
     non_matching: NonMatchingForces<'p, D>,
-    auxiliary: Option<AuxiliarySolutions<'p, D, N>>,
-    /// The auxiliary solution of a body that turns.
-    finite: Option<FiniteAuxiliary<D>>,
+    auxiliary: Option<Auxiliary<'p, D, N>>,
     /// ΣF²k and ΣF² over the nodes at the last level (N²).
     halvings: [f64; 2],
     smoothing: Arc<Smoothing>,
@@ -88,9 +84,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         let keeps = |part: Ablation| options.ablation != part;
         let shares = if keeps(Ablation::Correction) { Shares::ALL } else { Shares::NONE };
         let smoothing = Arc::new(Smoothing::new(problem));
-        let auxiliary = || AuxiliarySolutions::new(problem, times, Arc::clone(&smoothing), shares);
-        let splits = options.acceleration(D) == Acceleration::Split;
-        let has_auxiliary = keeps(Ablation::AuxiliarySolution);
+        let auxiliary = || Auxiliary::new(problem, times, Arc::clone(&smoothing), shares);
         Self {
             problem,
             times,
@@ -100,12 +94,11 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             moment_correction: keeps(Ablation::Moment).then(|| MomentCorrection::new(problem)),
             impulse_smoothing: keeps(Ablation::ImpulseSmoothing).then(|| ImpulseSmoothing::new(problem)),
             non_matching: NonMatchingForces::new(problem),
-            auxiliary: (has_auxiliary && !problem.is_finite()).then(auxiliary),
-            finite: (has_auxiliary && problem.is_finite()).then(|| FiniteAuxiliary::new(problem, splits)),
+            auxiliary: keeps(Ablation::AuxiliarySolution).then(auxiliary),
             smoothing,
             strains: Pool::new(),
             halvings: [0.0; 2],
-            splits,
+            splits: options.acceleration(D) == Acceleration::Split,
             minimises: keeps(Ablation::LeastEnergy),
             minimisation: None,
             normal_work: match options.ablation {
@@ -122,27 +115,29 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         let of_stars = || Concentration::new(problem).memory(problem);
         let concentration = concentrates(problem, options).then(of_stars).unwrap_or(0);
         TractionMinimisation::memory(mesh.kind(), mesh.element_count())
-            .saturating_add(AuxiliarySolutions::<D, N>::memory(mesh.node_count(), mesh.element_count()))
+            .saturating_add(Auxiliary::<D, N>::memory(mesh.node_count(), mesh.element_count()))
             .saturating_add(concentration)
     }
 
     /// Replaces the forces (N) at nodes that touch alone, from the foreseen motions of all contact nodes in the step n.
     fn replace_own(
         &mut self,
-        (n, auxiliary): (usize, &mut AuxiliarySolutions<'p, D, N>),
+        (n, auxiliary): (usize, &mut Auxiliary<'p, D, N>),
         stopped: &[Option<Stopped>],
         around: &SurfaceInstant<'_, D>,
         [contact, arresting]: [&mut [[f64; D]]; 2],
     ) {
         let (problem, surface, length) = (self.problem, self.problem.surface(), self.times.step(n));
         let Some(concentration) = &self.concentration else { return };
-        let foreseen = auxiliary.foresee(n);
+        let Some(foreseen) = auxiliary.foresee(n, around.present.as_ref()) else { return };
         let time = |at: usize| {
             let own = || self.impulse_smoothing.as_ref().map_or(length, |smoothing| smoothing.time(at));
             stopped.get(at).copied().flatten().map_or_else(own, |stopped| stopped.time)
         };
         let steps = |at: usize| length / time(at);
-        let mut known = Known { problem, concentration, gap: around.gap, steps: &steps, contact, arresting };
+        let pulled = |at: usize, vector: &[f64; D]| around.pulled(at, vector);
+        let (gap, pulled) = (around.gap, &pulled);
+        let mut known = Known { problem, concentration, gap, steps: &steps, pulled, contact, arresting };
         self.auxiliary_forces.replace(
             &mut known,
             |at| foreseen.free_gap(at),
@@ -303,8 +298,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     }
 
     fn check(&self, step: &Step<'_>) -> Result<(), EstimateError> {
-        let small = self.auxiliary.as_ref().is_some_and(AuxiliarySolutions::is_unstable);
-        if !small && !self.finite.as_ref().is_some_and(FiniteAuxiliary::is_unstable) {
+        if !self.auxiliary.as_ref().is_some_and(Auxiliary::is_unstable) {
             return Ok(());
         }
         let longest_step = self.times.longest_step();
@@ -336,17 +330,8 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let gap = surface.gaps(step.displacement());
         let mut around = self.around(&gap, &couplings);
         if problem.is_finite() {
-            let balanced = self.finite.as_ref().map_or(step.displacement(), FiniteAuxiliary::displacement);
+            let balanced = self.auxiliary.as_ref().and_then(Auxiliary::displacement).unwrap_or(step.displacement());
             around.present = Some(PresentStars::new(problem, step.displacement(), balanced));
-        }
-        if let Some(mut finite) = self.finite.take() {
-            let densities = self.level([&contact, &arresting], &around);
-            let pull = driving_forces(problem, &densities.acting);
-            let level = finite.advance::<N>(dynamics, self.times, state, &pull, pool);
-            self.finite = Some(finite);
-            let FiniteLevel { displacement, acceleration, split } = level;
-            let (inertia, densities) = (KnownInertia::Acceleration(acceleration), Some(densities));
-            return BalancedFields { displacement, inertia, contact, densities, split, smoothed: false };
         }
         let Some(mut auxiliary) = self.auxiliary.take() else {
             return self.balance_simulation(dynamics, state, [contact, arresting], &around, pool);
@@ -411,11 +396,11 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
     }
 
     fn auxiliary_contact_energy(&self) -> f64 {
-        self.auxiliary.as_ref().map_or(0.0, AuxiliarySolutions::contact_energy)
+        self.auxiliary.as_ref().map_or(0.0, Auxiliary::contact_energy)
     }
 
     fn differences(&self) -> Option<&[Difference]> {
-        self.auxiliary.as_ref().map(AuxiliarySolutions::differences)
+        self.auxiliary.as_ref().and_then(Auxiliary::differences)
     }
 
     fn normal_misfit(&self, pressures: &FacePressures<D>, tracks: &[ContactMotion]) -> NormalMisfit {
@@ -438,7 +423,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         self.strains.lend(SmoothedStrains::default, |strains| {
             if smoothed {
                 let fields: Vec<_> = forces.iter().map(|f| (&f.level.displacement[..], f.level.smoothed)).collect();
-                strains.fill(equilibration.strained(&self.smoothing), &fields);
+                equilibration.fill_strains(&self.smoothing, &fields, strains);
             }
             let strains = smoothed.then_some((&*strains, &*self.smoothing));
             let Some(minimisation) = &self.minimisation else {

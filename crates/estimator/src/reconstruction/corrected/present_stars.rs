@@ -1,7 +1,8 @@
-//! The deformation of the stars of contact nodes of a body that turns.
+//! The deformation of the stars of contact nodes of a body that turns, and their rotation.
 
 use crate::deformation::Deformation;
 use percute_core::element_state::displacement_gradient;
+use percute_core::material::Tensor;
 use percute_core::problem::Problem;
 
 /// F̄⁻¹ of the mean F of the elements around each contact node, and the places of the simulation.
@@ -10,6 +11,8 @@ pub(super) struct PresentStars<'a, const D: usize> {
     /// Displacements of the simulation (m).
     pub(super) displacement: &'a [[f64; D]],
     stars: Vec<Deformation<D, f64>>,
+    /// R of F̄ = RU.
+    rotations: Vec<Tensor<D>>,
 }
 
 impl<'a, const D: usize> PresentStars<'a, D> {
@@ -23,10 +26,16 @@ impl<'a, const D: usize> PresentStars<'a, D> {
                 volume += own;
                 (0..D).for_each(|a| (0..D).for_each(|b| mean[a][b] += own * gradient[a][b]));
             }
-            Deformation::new(&mean.map(|row| row.map(|x| x / volume)))
+            mean.map(|row| row.map(|x| x / volume))
         };
-        let stars = problem.surface().nodes().iter().map(|contact| star(contact.node)).collect();
-        Self { displacement, stars }
+        let means = problem.surface().nodes().iter().map(|contact| star(contact.node));
+        let (stars, rotations) = means.map(|mean| (Deformation::new(&mean), rotation(&mean))).unzip();
+        Self { displacement, stars, rotations }
+    }
+
+    /// The rotation of the star of a contact node.
+    pub(super) fn rotation(&self, at: usize) -> &Tensor<D> {
+        &self.rotations[at]
     }
 
     /// F̄⁻¹ of a force on a contact node.
@@ -35,4 +44,16 @@ impl<'a, const D: usize> PresentStars<'a, D> {
         self.stars[at].pull_back(&mut pulled);
         pulled
     }
+}
+
+/// R of F = 1 + H = RU: in the plane, with the angle of (F₁₁ + F₂₂, F₂₁ − F₁₂).
+fn rotation<const D: usize>(gradient: &Tensor<D>) -> Tensor<D> {
+    let mut rotation = [[1.0; D]; D];
+    if D == 2 {
+        let (sum, difference) = (2.0 + gradient[0][0] + gradient[1][1], gradient[1][0] - gradient[0][1]);
+        let length = sum.hypot(difference);
+        let (cosine, sine) = (sum / length, difference / length);
+        (rotation[0][0], rotation[1][1], rotation[1][0], rotation[0][1]) = (cosine, cosine, sine, -sine);
+    }
+    rotation
 }

@@ -7,7 +7,9 @@ use super::pairs::{PairSurroundings, Pairs, TrianglePair};
 use super::patch::{Factors, Near, Patch, PatchOperator};
 use super::response::{Neighbours, Response, dot};
 use super::surface::SurfaceForces;
+use crate::reconstruction::corrected::present_stars::PresentStars;
 use crate::smoothing::Smoothing;
+use percute_core::material::Tensor;
 use percute_core::problem::Problem;
 use std::array::from_fn;
 use std::sync::OnceLock;
@@ -90,6 +92,16 @@ impl<const D: usize> Mobility<D> {
         Self(from_fn(|c| from_fn(|d| 0.5 * (self.0[c][d] + self.0[d][c]))))
     }
 
+    /// R G Rᵀ.
+    fn turned(&self, rotation: &Tensor<D>) -> Self {
+        Self(from_fn(|c| {
+            from_fn(|d| {
+                let entry = |a: usize| (0..D).map(move |b| rotation[c][a] * self.0[a][b] * rotation[d][b]).sum::<f64>();
+                (0..D).map(entry).sum()
+            })
+        }))
+    }
+
     fn times(&self, factor: f64) -> Self {
         Self(self.0.map(|row| row.map(|x| factor * x)))
     }
@@ -120,6 +132,8 @@ pub(in crate::reconstruction::corrected) struct Foreseen<'a, const D: usize> {
     pub(super) factors: Factors,
     /// Δt_n h_n (s²).
     pub(super) square: f64,
+    /// Those of a body that turns: it responds as the undeformed body does, turned with the stars.
+    pub(super) turned: Option<&'a PresentStars<'a, D>>,
 }
 
 impl<const D: usize> Foreseen<'_, D> {
@@ -176,7 +190,8 @@ impl<const D: usize> Foreseen<'_, D> {
         let response = self.near.response(self.problem, self.operator, at);
         let partner = self.problem.surface().nodes()[by].partner;
         let compliance = if at == by { response.own(&self.factors) } else { response.of(&self.factors, by, partner) };
-        Mobility(compliance.map(|row| row.map(|g| self.square * g)))
+        let compliance = Mobility(compliance.map(|row| row.map(|g| self.square * g)));
+        self.turned.map_or(compliance, |stars| compliance.turned(stars.rotation(at)))
     }
 
     /// Displacements of a node against its obstacle (m), now and at the next instant under these forces (N) but this
@@ -184,11 +199,24 @@ impl<const D: usize> Foreseen<'_, D> {
     fn places(&self, at: usize, forces: &[[f64; D]], (by, without): (usize, &[f64; D])) -> [[f64; D]; 2] {
         let response = self.near.response(self.problem, self.operator, at);
         let [now, next] = self.displacements(at);
-        let moved = response.under(&self.factors, forces);
+        let moved = match self.turned.map(|stars| stars.rotation(at)) {
+            Some(rotation) => turned(rotation, &response.under(&self.factors, |by| turned_back(rotation, &forces[by]))),
+            None => response.under(&self.factors, |by| forces[by]),
+        };
         let own = self.mobility(at, at).under(&forces[at]);
         let less = self.mobility(at, by).under(without);
         [now, from_fn(|c| next[c] + self.square * moved[c] + own[c] - less[c])]
     }
+}
+
+/// R v.
+fn turned<const D: usize>(rotation: &Tensor<D>, vector: &[f64; D]) -> [f64; D] {
+    from_fn(|c| dot(&rotation[c], vector))
+}
+
+/// Rᵀ v.
+fn turned_back<const D: usize>(rotation: &Tensor<D>, vector: &[f64; D]) -> [f64; D] {
+    from_fn(|c| (0..D).map(|d| rotation[d][c] * vector[d]).sum())
 }
 
 /// The data of the level before its pass.
@@ -256,6 +284,11 @@ impl<const D: usize> ContactElements<D> {
             let facing: Vec<(u32, u32)> = facing.map(|at| (self.places[at], at as u32)).collect();
             Response::new((&self.patch, &self.neighbours), operator, &facing, &self.loaded)
         })
+    }
+
+    /// Takes in the motions of all contact nodes until t_{n+1} without a contact force.
+    pub(super) fn set_free(&mut self, free: Vec<FreeFlight<D>>) {
+        self.free = free;
     }
 
     /// Foresees the motions of all contact nodes until t_{n+1} without a contact force.

@@ -31,11 +31,13 @@
 //! step.
 
 mod approach;
+mod balance;
 mod blocks;
 #[cfg(test)]
 mod comparison;
-mod contact_work;
+mod either;
 mod energies;
+mod finite;
 mod lanes;
 mod pairs;
 mod parts;
@@ -54,8 +56,10 @@ use crate::element::Element;
 use crate::smoothing::Smoothing;
 pub(super) use approach::{Approach, Foreseen, FreeFlight, Mobility};
 use approach::{BeforePass, ContactElements};
+use balance::{EnergyBalance, half_work};
 use blocks::Blocks;
-use contact_work::{ContactWork, FreeDirections, half_work, is_driven};
+
+pub(super) use either::Auxiliary;
 use energies::Energies;
 use lanes::{FirstPair, Gradient, Nodal};
 use pairs::{PairSurroundings, Pairs, TrianglePair};
@@ -64,7 +68,6 @@ use pass::{Kinetic, PartPass, Pass};
 use patch::{Factors, PatchOperator};
 use percute_core::dynamics::Dynamics;
 use percute_core::problem::Problem;
-use percute_core::ratio;
 use percute_core::simd::run_task;
 use percute_core::time::TimeGrid;
 use std::sync::Arc;
@@ -94,14 +97,7 @@ pub(super) struct AuxiliarySolutions<'p, const D: usize, const N: usize> {
     external: Vec<[f64; D]>,
     /// The step that has to be made from `displacement` before it is that of the present level (s).
     due: f64,
-    /// Largest kinetic and strain energy of the simulation so far (J).
-    peak_energy: f64,
-    /// The same without that of the common velocity along `free` (J).
-    peak_relative: f64,
-    free: FreeDirections<D>,
-    /// ½ v·M v of the auxiliary solution half a step after the last level (J).
-    kinetic: f64,
-    contact_work: ContactWork,
+    energy_balance: EnergyBalance<D>,
     differences: Vec<Difference>,
 }
 
@@ -225,11 +221,7 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
             energies: None,
             external: if problem.is_loaded() { vec![[0.0; D]; problem.mesh().node_count()] } else { Vec::new() },
             due: 0.0,
-            peak_energy: 0.0,
-            peak_relative: 0.0,
-            free: FreeDirections::new(problem),
-            kinetic: 0.0,
-            contact_work: ContactWork::default(),
+            energy_balance: EnergyBalance::new(problem),
             differences: Vec::new(),
         }
     }
@@ -260,7 +252,7 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
         let operator = PatchOperator { laws: &pairs.laws, weights };
         let (factors, steps) = (Factors::new(&weights.at(times, n)), [times.step(n), times.velocity_step(n)]);
         near.foresee(problem, &BeforePass { operator, surface, fields, external, due: *due, factors, steps });
-        Foreseen { problem, near, operator, factors, square: steps[0] * steps[1] }
+        Foreseen { problem, near, operator, factors, square: steps[0] * steps[1], turned: None }
     }
 
     /// Takes in a level: forces of the density on the nodes of the contact surface (N). Goes on to the next half step
@@ -274,7 +266,7 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
         level: AuxiliaryLevel<'_, D>,
     ) {
         self.surface.contact(pull, simulated.reaction);
-        let before = half_work(self.problem, &self.surface, &self.fields, pull, self.due);
+        let before = self.half_work(pull);
         let mut fields = std::mem::take(&mut self.fields);
         let pass = Pass {
             external: &self.external,
@@ -291,13 +283,17 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
         let kinetic = for_all((&self.plan, &start), View::new(&mut fields, level), &work);
         self.fields = fields;
         let sum = |of: fn(&Kinetic) -> f64| 0.5 * kinetic.iter().map(of).sum::<f64>();
-        let energy = simulated.strain + sum(|k| k.simulated);
-        self.peak_energy = self.peak_energy.max(energy);
-        self.peak_relative = self.peak_relative.max(energy - self.free.energy(self.problem, simulated.velocity));
-        self.kinetic = sum(|k| k.auxiliary);
+        let energies = [simulated.strain + sum(|k| k.simulated), sum(|k| k.auxiliary)];
         self.due = self.times.step(n);
-        self.contact_work.add(before + half_work(self.problem, &self.surface, &self.fields, pull, self.due));
+        let work = before + self.half_work(pull);
+        self.energy_balance.add(self.problem, energies, simulated.velocity, work);
         self.differences.resize(n + 1, Difference::default());
+    }
+
+    /// The work of contact over half of the step that has still to be made (J).
+    fn half_work(&self, pull: &[[f64; D]]) -> f64 {
+        let velocity = |node: usize| self.fields.half_step[node].of(0);
+        half_work((self.problem, &self.surface), velocity, pull, self.due)
     }
 
     /// A pass that makes nothing move.
@@ -334,18 +330,14 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
         &self.differences
     }
 
-    /// The largest energy that contact has given the auxiliary solution so far, over that of the simulation without
-    /// the common velocity that no plane stops. Loads and supports may give that velocity and take back what contact
-    /// gives: with them it counts.
-    pub(super) fn contact_energy(&self) -> f64 {
-        ratio(self.contact_work.most(), if is_driven(self.problem) { self.peak_energy } else { self.peak_relative })
+    /// The energies of the simulation and of this motion.
+    pub(super) fn energy_balance(&self) -> &EnergyBalance<D> {
+        &self.energy_balance
     }
 
-    /// Whether the auxiliary solution has become unstable, as it does where a history of another scheme takes steps
-    /// above the critical one. A stable one has about the energy of the simulation, an unstable one soon any.
+    /// Whether the auxiliary solution has become unstable.
     pub(super) fn is_unstable(&self) -> bool {
-        // A body that starts unstrained at rest has no energy before it is loaded.
-        self.peak_energy > 0.0 && self.kinetic > UNSTABLE * self.peak_energy
+        self.energy_balance.is_beyond(UNSTABLE)
     }
 }
 

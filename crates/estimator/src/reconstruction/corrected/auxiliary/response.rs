@@ -102,12 +102,13 @@ impl<const D: usize> Response<D> {
         std::array::from_fn(|c| std::array::from_fn(|d| direct[c][d] - facing[c][d]))
     }
 
-    /// The acceleration under these forces (N) of all other contact nodes.
-    pub(super) fn under(&self, factors: &Factors, forces: &[[f64; D]]) -> [f64; D] {
+    /// The acceleration under the forces (N) of all other contact nodes.
+    pub(super) fn under(&self, factors: &Factors, force: impl Fn(usize) -> [f64; D]) -> [f64; D] {
         let mut moved = [0.0; D];
-        for (at, compliance) in self.others.iter().filter(|(at, _)| forces[*at as usize] != [0.0; D]) {
+        let forces = self.others.iter().map(|(at, compliance)| (force(*at as usize), compliance));
+        for (force, compliance) in forces.filter(|(force, _)| *force != [0.0; D]) {
             for (moved, parts) in moved.iter_mut().zip(compliance) {
-                *moved += dot(&factors.sum(parts), &forces[*at as usize]);
+                *moved += dot(&factors.sum(parts), &force);
             }
         }
         moved

@@ -115,6 +115,11 @@ impl Weights {
         self.bodies[body].auxiliary()
     }
 
+    /// The same, 0 where corrections are not made.
+    pub(super) fn mass(&self, body: usize) -> [f64; 3] {
+        if self.corrects() { self.auxiliary(body) } else { [0.0; 3] }
+    }
+
     /// Those at t_n.
     pub(super) fn at(&self, times: &TimeGrid, n: usize) -> LevelWeights<'_> {
         let (next, last) = (times.step(n.min(times.step_count() - 1)), times.step(n.saturating_sub(1)));

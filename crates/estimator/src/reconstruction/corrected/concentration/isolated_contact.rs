@@ -26,6 +26,10 @@ pub(super) struct IsolatedContact<const D: usize> {
 /// A node that has a force of its own.
 pub(super) struct Own<const D: usize> {
     pub(super) frame: Frame<D>,
+    /// The normal and the tangent of the plane, pulled back to the star in the undeformed body.
+    pub(super) axes: [[f64; 2]; 2],
+    /// Whether the body may turn.
+    pub(super) turns: bool,
     pub(super) law: Option<Coulomb>,
     pub(super) approach: Approach<D>,
     /// The depth at which the node may be at the next instant (m).
@@ -33,12 +37,6 @@ pub(super) struct Own<const D: usize> {
 }
 
 impl<const D: usize> Own<D> {
-    /// The normal of the plane.
-    fn across(&self) -> [f64; 2] {
-        let normal = self.frame.normal();
-        [normal[0], normal[D - 1]]
-    }
-
     /// The normal force (N) that brings the node to its plane without a local compliance.
     pub(super) fn largest(&self) -> f64 {
         let normal = self.frame.normal();
@@ -53,8 +51,8 @@ impl<const D: usize> Own<D> {
         let body = mean.gap + force * mean.mobility.between(normal, normal);
         // Where the motion of far nodes is not foreseen, edges have the gaps of the simulation.
         let local = match self.approach.far[0] {
-            Some(_) => costs.beyond_edges(shape, self.across(), force),
-            None => costs.approach(shape, self.across(), force),
+            Some(_) => costs.beyond_edges(shape, self.axes[0], force),
+            None => costs.approach(shape, self.axes[0], force),
         };
         body + self.depth + local
     }
@@ -96,9 +94,9 @@ impl<const D: usize> Own<D> {
         }
         let approach = self.approach.of_traction(far_parts(&shape));
         let [now, next] = approach.along;
-        let (across, along) = (self.across(), [-self.across()[1], self.across()[0]]);
-        let anchor = last.map_or(now, |last| last.anchor);
-        let tangent = std::array::from_fn(|c| if c == 0 { -normal[D - 1] } else { normal[0] });
+        let [across, along] = self.axes;
+        let anchor = last.map_or(now, |last| self.anchor(&last, &now));
+        let tangent = tangent_of(normal);
         let body = &approach.mobility;
         let mobility = body.between(&tangent, &tangent) + costs.local(&shape, along, along);
         let away = (0..D).map(|c| (next[c] - anchor[c]) * tangent[c]).sum::<f64>()
@@ -116,6 +114,22 @@ impl<const D: usize> Own<D> {
             width,
         }
     }
+
+    /// Where the traction with the mean displacement `now` sticks. The displacements of a body that turns differ by its
+    /// rotation along an edge: where the shape has changed, the mean is one of other points, and the anchor goes with
+    /// it.
+    fn anchor(&self, last: &IsolatedContact<D>, now: &[f64; D]) -> [f64; D] {
+        if !self.turns {
+            return last.anchor;
+        }
+        let [before, _] = self.approach.of_traction(far_parts(&last.shape)).along;
+        std::array::from_fn(|c| last.anchor[c] + (now[c] - before[c]))
+    }
+}
+
+/// The tangent of a plane with this normal.
+pub(super) fn tangent_of<const D: usize>(normal: &[f64; D]) -> [f64; D] {
+    std::array::from_fn(|c| if c == 0 { -normal[D - 1] } else { normal[0] })
 }
 
 /// The parts of the force of a traction on the far nodes of its edges.

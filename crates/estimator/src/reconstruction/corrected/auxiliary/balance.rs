@@ -1,51 +1,109 @@
-//! The energy that contact gives to the auxiliary solution.
+//! The energies of the simulation and of the auxiliary solution, and the energy that contact gives to the latter.
 
-use super::MotionFields;
 use super::response::dot;
 use super::surface::SurfaceForces;
 use percute_core::problem::Problem;
+use percute_core::ratio;
 use std::array::from_fn;
+
+/// The energies of both so far.
+#[derive(Debug)]
+pub(in crate::reconstruction::corrected) struct EnergyBalance<const D: usize> {
+    /// Largest kinetic and strain energy of the simulation (J).
+    peak: f64,
+    /// The same without that of the common velocity along `free` (J).
+    peak_relative: f64,
+    free: FreeDirections<D>,
+    /// ½ v·M v of the auxiliary solution half a step after the last level (J).
+    kinetic: f64,
+    contact_work: ContactWork,
+    driven: bool,
+}
+
+impl<const D: usize> EnergyBalance<D> {
+    /// Before the first level.
+    pub(super) fn new(problem: &Problem<D>) -> Self {
+        Self {
+            peak: 0.0,
+            peak_relative: 0.0,
+            free: FreeDirections::new(problem),
+            kinetic: 0.0,
+            contact_work: ContactWork::default(),
+            driven: is_driven(problem),
+        }
+    }
+
+    /// Takes in a level: the energy and velocity of the simulation (J, m/s), the kinetic energy of the auxiliary
+    /// solution half a step later (J), and the work of contact on it (J).
+    pub(super) fn add(
+        &mut self,
+        problem: &Problem<D>,
+        [simulated, kinetic]: [f64; 2],
+        velocity: &[[f64; D]],
+        work: f64,
+    ) {
+        self.peak = self.peak.max(simulated);
+        self.peak_relative = self.peak_relative.max(simulated - self.free.energy(problem, velocity));
+        self.kinetic = kinetic;
+        self.contact_work.add(work);
+    }
+
+    /// The largest energy that contact has given the auxiliary solution so far, over that of the simulation without
+    /// the common velocity that no plane stops. Loads and supports may give that velocity and take back what contact
+    /// gives: with them it counts.
+    pub(super) fn contact_energy(&self) -> f64 {
+        ratio(self.contact_work.most, if self.driven { self.peak } else { self.peak_relative })
+    }
+
+    /// Whether the kinetic energy of the auxiliary solution is beyond so many times the energy of the simulation, as it
+    /// becomes where a history of another scheme takes steps above the critical one. A stable one has about the energy
+    /// of the simulation, an unstable one soon any.
+    pub(super) fn is_beyond(&self, factor: f64) -> bool {
+        // A body that starts unstrained at rest has no energy before it is loaded.
+        self.kinetic.is_nan() || (self.peak > 0.0 && self.kinetic > factor * self.peak)
+    }
+
+    /// The work of contact so far (J): now, and its largest.
+    #[cfg(test)]
+    pub(super) fn work(&self) -> [f64; 2] {
+        [self.contact_work.sum, self.contact_work.most]
+    }
+}
 
 /// The work of the normal forces of F_DA, Σf_n·(u_{n+1} − u_{n−1})/2. With equal steps, this is what they add to an
 /// energy that the corrected scheme keeps. Planes have none to give, and bodies that strike each other only their own:
 /// a sum that becomes large is that of forces that do not fit the motion. Friction takes energy, and is left out,
 /// unless loads or supports give what it takes.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct ContactWork {
+struct ContactWork {
     sum: f64,
     most: f64,
 }
 
 impl ContactWork {
     /// Takes in the work of a level (J).
-    pub(super) fn add(&mut self, work: f64) {
+    fn add(&mut self, work: f64) {
         self.sum += work;
         self.most = self.most.max(self.sum);
-    }
-
-    /// The largest sum so far (J).
-    pub(super) fn most(&self) -> f64 {
-        self.most
     }
 }
 
 /// Whether loads or supports may give and take energy, too.
-pub(super) fn is_driven<const D: usize>(problem: &Problem<D>) -> bool {
+fn is_driven<const D: usize>(problem: &Problem<D>) -> bool {
     problem.is_loaded() || !problem.prescribed().is_empty()
 }
 
 /// The work (J) of the normal parts of forces (N) on the contact nodes over half of this time (s), at the velocities of
 /// the half step; of whole forces where the problem is driven. Forces along supports act on these.
 pub(super) fn half_work<const D: usize>(
-    problem: &Problem<D>,
-    surface: &SurfaceForces,
-    fields: &MotionFields,
+    (problem, surface): (&Problem<D>, &SurfaceForces),
+    half_step: impl Fn(usize) -> [f64; D],
     forces: &[[f64; D]],
     time: f64,
 ) -> f64 {
     let whole = is_driven(problem);
     let of = |node: usize, obstacle: usize, force: &[f64; D]| {
-        let mut velocity: [f64; D] = fields.half_step[node].of(0);
+        let mut velocity = half_step(node);
         surface.prescribed(&(node..node + 1)).for_each(|(_, c)| velocity[c] = 0.0);
         let frame = problem.obstacles()[obstacle].flat_frame();
         if whole { dot(&velocity, force) } else { frame.split(&velocity).0 * frame.split(force).0 }
@@ -56,10 +114,10 @@ pub(super) fn half_work<const D: usize>(
 
 /// The directions in which no plane stops the bodies. A common velocity along them changes nothing in contact.
 #[derive(Debug)]
-pub(super) struct FreeDirections<const D: usize>(Vec<[f64; D]>);
+struct FreeDirections<const D: usize>(Vec<[f64; D]>);
 
 impl<const D: usize> FreeDirections<D> {
-    pub(super) fn new(problem: &Problem<D>) -> Self {
+    fn new(problem: &Problem<D>) -> Self {
         /// Normals whose difference is below this are parallel: far above rounding.
         const PARALLEL: f64 = 1e-6;
         let planes = problem.obstacles().iter().filter(|obstacle| obstacle.as_plane().is_some());
@@ -82,7 +140,7 @@ impl<const D: usize> FreeDirections<D> {
     }
 
     /// The kinetic energy of the common velocity along them (J).
-    pub(super) fn energy(&self, problem: &Problem<D>, velocity: &[[f64; D]]) -> f64 {
+    fn energy(&self, problem: &Problem<D>, velocity: &[[f64; D]]) -> f64 {
         if self.0.is_empty() {
             return 0.0;
         }
@@ -142,7 +200,7 @@ mod tests {
             let simulated = SimulatedLevel { velocity: &still, strain: 0.0, reaction: &pull };
             motions.advance(&dynamics, n, &simulated, &pull, level);
             displacements.push(displacement);
-            sums.push(motions.contact_work.sum);
+            sums.push(motions.energy_balance.work()[0]);
         }
         let product = |a: &[[f64; 2]], b: &[[f64; 2]]| -> f64 {
             a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| a * b).sum()
@@ -163,7 +221,7 @@ mod tests {
             assert!((found - energies[0] - gained).abs() < 1e-11 * largest, "{n}: {found} for {gained}");
         }
         let most = sums.iter().fold(0.0_f64, |most, sum| most.max(*sum));
-        assert!(most > 0.1 * largest && motions.contact_work.most() == most, "{most} of {largest}");
+        assert!(most > 0.1 * largest && motions.energy_balance.work()[1] == most, "{most} of {largest}");
     }
 
     /// A common velocity is taken from the energy where no plane stops it: along one plane, in no direction of two that

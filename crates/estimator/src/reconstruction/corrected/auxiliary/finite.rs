@@ -1,0 +1,328 @@
+//! The auxiliary solution of bodies that turn.
+//!
+//! With f the internal forces, f̄ those of smoothed stresses, ã = M⁻¹(F + F_DA − f̄(u)), o = M⁻¹(M − M_c)ã and v at t_n,
+//!
+//! a = ã + p(M⁻¹(M − M_c))ã − (1/12) M⁻¹[f(u + Δt v + ½Δt²ã) + f(u − Δt v + ½Δt²ã) − 2 f(u)].
+//!
+//! The bracket is Δt² d²f/dt², without a tangent; of a linear law it is −Δt²Kã. It has the term of the changing
+//! stiffness, without which a spinning body would be far off. f̄ has the stress F_E S̄_E, with S̄_E the smoothed second
+//! Piola–Kirchhoff stress: symmetric in the present body, and that of small strains where the body does not turn.
+
+use super::approach::{ContactElements, Foreseen, FreeFlight};
+use super::balance::{EnergyBalance, half_work};
+use super::blocks::Blocks;
+use super::pairs::Pairs;
+use super::patch::{Factors, PatchOperator};
+use super::surface::SurfaceForces;
+use super::weights::{Shares, Weights, shares};
+use super::{AuxiliaryLevel, SimulatedLevel, SplitLevel};
+use crate::deformation::first_stress;
+use crate::element::Element;
+use crate::parallel::by_pieces;
+use crate::reconstruction::corrected::present_stars::PresentStars;
+use crate::reconstruction::corrected::split::skew_acceleration;
+use crate::smoothing::{Smoothed, SmoothedStrains, Smoothing};
+use percute_core::contact::ContactNode;
+use percute_core::dynamics::{self, Dynamics};
+use percute_core::ids::{ElementId, NodeId};
+use percute_core::material::{PointLaw, Tensor};
+use percute_core::problem::Problem;
+use percute_core::time::TimeGrid;
+use std::array::from_fn;
+use std::sync::Arc;
+
+/// A motion whose kinetic energy is so many times the largest energy of the simulation is unstable: an element has been
+/// turned inside out, or nearly so.
+const UNSTABLE: f64 = 100.0;
+
+/// The auxiliary solution after the last level.
+#[derive(Debug)]
+pub(in crate::reconstruction::corrected) struct FiniteAuxiliary<'p, const D: usize, const N: usize> {
+    problem: &'p Problem<D>,
+    times: &'p TimeGrid,
+    smoothing: Arc<Smoothing>,
+    weights: Weights,
+    /// Those of the undeformed body.
+    pairs: Pairs,
+    near: ContactElements<D>,
+    elements: Vec<Element<D, N>>,
+    displacement: Vec<[f64; D]>,
+    half_step: Vec<[f64; D]>,
+    /// All forces of the level that has begun but those of contact (N).
+    force: Vec<[f64; D]>,
+    strains: SmoothedStrains<f64>,
+    /// F_E S̄_E (Pa).
+    stresses: Vec<Tensor<D>>,
+    surface: SurfaceForces,
+    energy_balance: EnergyBalance<D>,
+}
+
+impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
+    /// Before the first level.
+    pub(super) fn new(problem: &'p Problem<D>, times: &'p TimeGrid, smoothing: Arc<Smoothing>, own: Shares) -> Self {
+        let blocks = Blocks::new(problem.mesh());
+        let pairs = Pairs::new(problem, &blocks, &smoothing, &shares(own));
+        Self {
+            problem,
+            times,
+            near: ContactElements::new(problem, &blocks, &pairs, &smoothing),
+            weights: Weights::new(&smoothing, own),
+            smoothing,
+            pairs,
+            elements: Vec::new(),
+            displacement: problem.initial_displacement().to_vec(),
+            half_step: problem.initial_velocity().to_vec(),
+            force: vec![[0.0; D]; problem.mesh().node_count()],
+            strains: SmoothedStrains::default(),
+            stresses: Vec::new(),
+            surface: SurfaceForces::new(problem),
+            energy_balance: EnergyBalance::new(problem),
+        }
+    }
+
+    pub(super) fn prepare(&mut self, elements: &[Element<D, N>]) {
+        self.elements = elements.to_vec();
+        self.stresses = vec![[[0.0; D]; D]; elements.len()];
+    }
+
+    /// u at the level to come (m).
+    pub(super) fn displacement(&self) -> &[[f64; D]] {
+        &self.displacement
+    }
+
+    pub(super) fn energy_balance(&self) -> &EnergyBalance<D> {
+        &self.energy_balance
+    }
+
+    pub(super) fn is_unstable(&self) -> bool {
+        self.energy_balance.is_beyond(UNSTABLE)
+    }
+
+    pub(super) fn smooths(&self) -> bool {
+        self.weights.corrects() && self.smoothing.smooths()
+    }
+
+    /// Takes in the loads and supports of a level, and makes all forces but those of contact.
+    pub(super) fn begin(&mut self, dynamics: &Dynamics<'_, D>, n: usize) {
+        self.weights.begin(self.times, n);
+        let mut force = std::mem::take(&mut self.force);
+        if self.smooths() {
+            force.fill([0.0; D]);
+            self.problem.external_forces(self.times.instants()[n], &mut force);
+            self.subtract_smoothed_forces(&mut force);
+            dynamics.apply_supports(n, &mut force, |_, _| ());
+        } else {
+            dynamics.forces_without_contact(n, &self.displacement, &mut force);
+        }
+        self.force = force;
+    }
+
+    /// Subtracts f̄(u) (N).
+    fn subtract_smoothed_forces(&mut self, force: &mut [[f64; D]]) {
+        let Self { problem, smoothing, elements, displacement, strains, stresses, .. } = self;
+        let of = Smoothed { problem: *problem, smoothing, elements };
+        strains.fill_one(of, displacement);
+        by_pieces((&mut stresses[..], &elements[..]), &|first, (stresses, elements)| {
+            for (k, (stress, element)) in stresses.iter_mut().zip(elements).enumerate() {
+                let gradient = element.gradient(&element.gather(displacement));
+                *stress = first_stress(&gradient, &strains.of(0.0, of, ElementId::new(first + k)));
+            }
+        });
+        let stars = problem.mesh().stars();
+        by_pieces(force, &|first, force| {
+            for (k, force) in force.iter_mut().enumerate() {
+                let node = NodeId::new(first + k);
+                for element in stars.star(node).elements {
+                    let (own, stress) = (&elements[element.index()], &stresses[element.index()]);
+                    let internal = own.internal_force(corner(own, node), stress);
+                    (0..D).for_each(|c| force[c] -= internal[c]);
+                }
+            }
+        });
+    }
+
+    /// Foresees the motion at all contact nodes until t_{n+1}, after `begin`: without contact forces that of the whole
+    /// correction; under them that of the undeformed body, turned with the stars.
+    pub(super) fn foresee<'a>(&'a mut self, n: usize, stars: &'a PresentStars<'_, D>) -> Foreseen<'a, D> {
+        let (problem, times) = (self.problem, self.times);
+        let steps = [times.step(n), times.velocity_step(n)];
+        let mut plain = self.force.clone();
+        divide(&mut plain, problem.mass());
+        let mass = self.weights.mass(0);
+        let lumped = self.lumped(&plain, mass);
+        let (around, time) = (self.steps_around(n), self.time_share(n));
+        let flight = |contact: &ContactNode| {
+            let i = contact.node.index();
+            let bracket = self.bracket_at(contact.node, around, &plain);
+            let acceleration: [f64; D] =
+                from_fn(|c| plain[i][c] + lumped[i][c] - time * bracket[c] / problem.mass()[i]);
+            let (now, velocity) = (self.displacement[i], self.half_step[i]);
+            let next = from_fn(|c| now[c] + steps[0] * (velocity[c] + steps[1] * acceleration[c]));
+            FreeFlight { displacements: [now, next], mobility: steps[0] * steps[1] / problem.mass()[i] }
+        };
+        let flights = problem.surface().nodes().iter().map(flight).collect();
+        self.near.set_free(flights);
+        let factors = Factors::new(&self.weights.at(times, n));
+        let operator = PatchOperator { laws: &self.pairs.laws, weights: &self.weights };
+        let square = steps[0] * steps[1];
+        Foreseen { problem, near: &self.near, operator, factors, square, turned: Some(stars) }
+    }
+
+    /// Takes in a level under forces on the nodes of the contact surface (N), and goes on to the next one.
+    pub(super) fn advance(
+        &mut self,
+        dynamics: &Dynamics<'_, D>,
+        n: usize,
+        simulated: &SimulatedLevel<'_, D>,
+        pull: &[[f64; D]],
+        level: AuxiliaryLevel<'_, D>,
+    ) {
+        let (problem, times) = (self.problem, self.times);
+        let mut plain = std::mem::take(&mut self.force);
+        crate::acceleration::accelerate(problem, dynamics.inverse_mass(), &mut plain, pull);
+        let mass = self.weights.mass(0);
+        let once = self.lumping_difference(&plain);
+        let lumped = self.lumped_from(&once, mass);
+        let bracket = self.bracket(dynamics, self.steps_around(n), &plain);
+        let (time, inverse) = (self.time_share(n), dynamics.inverse_mass());
+        level.displacement.copy_from_slice(&self.displacement);
+        let [back, forward] = self.steps_around(n);
+        let before = self.half_work(pull, 2.0 * back);
+        let accelerations =
+            (0..plain.len()).map(|i| from_fn(|c| plain[i][c] + lumped[i][c] - time * bracket[i][c] * inverse[i]));
+        dynamics::advance(times, n, &mut self.half_step, &mut self.displacement, accelerations);
+        let after = self.half_work(pull, forward);
+        let kinetic = |velocity: &[[f64; D]]| -> f64 {
+            let moving = velocity.iter().zip(problem.mass());
+            moving.map(|(v, m)| 0.5 * m * v.iter().map(|v| v * v).sum::<f64>()).sum()
+        };
+        let energies = [simulated.strain + kinetic(simulated.velocity), kinetic(&self.half_step)];
+        self.energy_balance.add(problem, energies, simulated.velocity, before + after);
+        let [first, ..] = mass;
+        for (acceleration, (plain, once)) in level.acceleration.iter_mut().zip(plain.iter().zip(&once)) {
+            let share = if level.split.is_some() { first } else { 0.0 };
+            *acceleration = from_fn(|c| plain[c] + share * once[c]);
+        }
+        if let Some(SplitLevel { lumped, skew }) = level.split {
+            for (w, (plain, once)) in lumped.iter_mut().zip(plain.iter().zip(&once)) {
+                *w = from_fn(|c| (1.0 - first) * plain[c] + first * once[c]);
+            }
+            skew.copy_from_slice(&skew_acceleration::<D, N>(problem, inverse, lumped, level.displacement));
+        }
+        self.force = plain;
+    }
+
+    /// The work of contact over half of a step (J).
+    fn half_work(&self, pull: &[[f64; D]], step: f64) -> f64 {
+        half_work((self.problem, &self.surface), |node| self.half_step[node], pull, step)
+    }
+
+    /// From v_{n−½} to v_n, and the step from t_n on (s).
+    fn steps_around(&self, n: usize) -> [f64; 2] {
+        let back = if n == 0 { 0.0 } else { 0.5 * self.times.step(n - 1) };
+        [back, self.times.step(n.min(self.times.step_count() - 1))]
+    }
+
+    /// The share of M⁻¹ of the bracket in the acceleration.
+    fn time_share(&self, n: usize) -> f64 {
+        let [_, next] = self.steps_around(n);
+        self.weights.at(self.times, n).time[0].0[0] / (next * next)
+    }
+
+    /// f(u + Δt v + ½Δt²ã) + f(u − Δt v + ½Δt²ã) − 2 f(u) (N), with v = v_{n−½} + `back` ã.
+    fn bracket(&self, dynamics: &Dynamics<'_, D>, around: [f64; 2], plain: &[[f64; D]]) -> Vec<[f64; D]> {
+        let mut forces = vec![[0.0; D]; plain.len()];
+        dynamics.subtract_internal_forces(&self.displacement, &mut forces);
+        forces.as_flattened_mut().iter_mut().for_each(|f| *f *= -2.0);
+        let mut moved = vec![[0.0; D]; plain.len()];
+        for sign in [1.0, -1.0] {
+            by_pieces(&mut moved[..], &|first, moved| {
+                moved.iter_mut().zip(first..).for_each(|(moved, i)| *moved = self.moved(i, sign, around, plain));
+            });
+            dynamics.subtract_internal_forces(&moved, &mut forces);
+        }
+        // The forces were subtracted.
+        forces.as_flattened_mut().iter_mut().for_each(|f| *f = -*f);
+        self.problem.prescribed().iter().for_each(|p| forces[p.node.index()][p.component] = 0.0);
+        forces
+    }
+
+    /// The same at one node.
+    fn bracket_at(&self, node: NodeId, around: [f64; 2], plain: &[[f64; D]]) -> [f64; D] {
+        let mut force = [0.0; D];
+        for &id in self.problem.mesh().stars().star(node).elements {
+            let (element, law) = (&self.elements[id.index()], self.problem.material(id));
+            for (sign, factor) in [(1.0, 1.0), (-1.0, 1.0), (0.0, -2.0)] {
+                let places = element.nodes.map(|node| match sign {
+                    0.0 => self.displacement[node.index()],
+                    _ => self.moved(node.index(), sign, around, plain),
+                });
+                let (stress, _) = law.respond(&element.gradient(&places), &mut []);
+                let internal = element.internal_force(corner(element, node), &stress);
+                (0..D).for_each(|c| force[c] += factor * internal[c]);
+            }
+        }
+        self.problem.prescribed().iter().filter(|p| p.node == node).for_each(|p| force[p.component] = 0.0);
+        force
+    }
+
+    /// u ± Δt v + ½Δt²ã of a node.
+    fn moved(&self, i: usize, sign: f64, [back, step]: [f64; 2], plain: &[[f64; D]]) -> [f64; D] {
+        let (u, v, a) = (&self.displacement[i], &self.half_step[i], &plain[i]);
+        from_fn(|c| u[c] + sign * step * (v[c] + back * a[c]) + 0.5 * step * step * a[c])
+    }
+
+    /// p(M⁻¹(M − M_c)) of a nodal field with these coefficients.
+    fn lumped(&self, field: &[[f64; D]], mass: [f64; 3]) -> Vec<[f64; D]> {
+        self.lumped_from(&self.lumping_difference(field), mass)
+    }
+
+    /// The same from M⁻¹(M − M_c) of the field.
+    fn lumped_from(&self, once: &[[f64; D]], [first, others @ ..]: [f64; 3]) -> Vec<[f64; D]> {
+        let mut sum: Vec<[f64; D]> = once.iter().map(|x| x.map(|x| first * x)).collect();
+        let mut again = None;
+        for factor in others {
+            let next = self.lumping_difference(again.as_deref().unwrap_or(once));
+            for (sum, next) in sum.as_flattened_mut().iter_mut().zip(next.as_flattened()) {
+                *sum += factor * next;
+            }
+            again = Some(next);
+        }
+        sum
+    }
+
+    /// M⁻¹(M − M_c) of a nodal field, 0 on prescribed components: an element gives m/(D+2) times the distance to the
+    /// mean of its nodes.
+    fn lumping_difference(&self, field: &[[f64; D]]) -> Vec<[f64; D]> {
+        let (problem, mut difference) = (self.problem, vec![[0.0; D]; field.len()]);
+        let (stars, share) = (problem.mesh().stars(), N as f64 / (D + 2) as f64);
+        by_pieces((&mut difference[..], problem.mass()), &|first, (difference, mass)| {
+            for ((k, difference), mass) in difference.iter_mut().enumerate().zip(mass) {
+                let own = &field[first + k];
+                for element in stars.star(NodeId::new(first + k)).elements {
+                    let element = &self.elements[element.index()];
+                    let mut away = [0.0; D];
+                    for node in element.nodes {
+                        (0..D).for_each(|c| away[c] += own[c] - field[node.index()][c]);
+                    }
+                    (0..D).for_each(|c| difference[c] += share * element.nodal_mass * away[c] / N as f64);
+                }
+                difference.iter_mut().for_each(|x| *x /= mass);
+            }
+        });
+        problem.prescribed().iter().for_each(|p| difference[p.node.index()][p.component] = 0.0);
+        difference
+    }
+}
+
+/// The local number of a node of an element.
+fn corner<const D: usize, const N: usize>(element: &Element<D, N>, node: NodeId) -> usize {
+    element.nodes.iter().position(|own| *own == node).unwrap_or(0)
+}
+
+/// M⁻¹ of forces.
+fn divide<const D: usize>(forces: &mut [[f64; D]], mass: &[f64]) {
+    by_pieces((forces, mass), &|_, (forces, mass)| {
+        forces.iter_mut().zip(mass).for_each(|(force, mass)| force.iter_mut().for_each(|f| *f /= mass));
+    });
+}
