@@ -16,6 +16,7 @@ use super::patch::{Factors, PatchOperator};
 use super::surface::SurfaceForces;
 use super::weights::{Shares, Weights, shares};
 use super::{AuxiliaryLevel, SimulatedLevel, SplitLevel};
+use crate::acceleration::accelerate;
 use crate::deformation::first_stress;
 use crate::element::Element;
 use crate::parallel::by_pieces;
@@ -29,6 +30,7 @@ use percute_core::material::{PointLaw, Tensor};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::array::from_fn;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A motion whose kinetic energy is so many times the largest energy of the simulation is unstable: an element has been
@@ -48,8 +50,10 @@ pub(in crate::reconstruction::corrected) struct FiniteAuxiliary<'p, const D: usi
     elements: Vec<Element<D, N>>,
     displacement: Vec<[f64; D]>,
     half_step: Vec<[f64; D]>,
-    /// All forces of the level that has begun but those of contact (N).
-    force: Vec<[f64; D]>,
+    /// ã of the level that has begun (m/s²), without contact forces until these are known.
+    plain: Vec<[f64; D]>,
+    /// The lumping difference of ã, once, and its correction p (m/s²).
+    lumping: [Vec<[f64; D]>; 2],
     strains: SmoothedStrains<f64>,
     /// F_E S̄_E (Pa).
     stresses: Vec<Tensor<D>>,
@@ -72,7 +76,8 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
             elements: Vec::new(),
             displacement: problem.initial_displacement().to_vec(),
             half_step: problem.initial_velocity().to_vec(),
-            force: vec![[0.0; D]; problem.mesh().node_count()],
+            plain: vec![[0.0; D]; problem.mesh().node_count()],
+            lumping: [Vec::new(), Vec::new()],
             strains: SmoothedStrains::default(),
             stresses: Vec::new(),
             surface: SurfaceForces::new(problem),
@@ -102,10 +107,10 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
         self.weights.corrects() && self.smoothing.smooths()
     }
 
-    /// Takes in the loads and supports of a level, and makes all forces but those of contact.
+    /// Takes in the loads and supports of a level, and makes its acceleration without contact forces.
     pub(super) fn begin(&mut self, dynamics: &Dynamics<'_, D>, n: usize) {
         self.weights.begin(self.times, n);
-        let mut force = std::mem::take(&mut self.force);
+        let mut force = std::mem::take(&mut self.plain);
         if self.smooths() {
             force.fill([0.0; D]);
             self.problem.external_forces(self.times.instants()[n], &mut force);
@@ -114,7 +119,9 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
         } else {
             dynamics.forces_without_contact(n, &self.displacement, &mut force);
         }
-        self.force = force;
+        accelerate(self.problem, dynamics.inverse_mass(), &mut force, &[]);
+        self.plain = force;
+        self.correct_lumping(dynamics.inverse_mass());
     }
 
     /// Subtracts f̄(u) (N).
@@ -146,14 +153,11 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
     pub(super) fn foresee<'a>(&'a mut self, n: usize, stars: &'a PresentStars<'_, D>) -> Foreseen<'a, D> {
         let (problem, times) = (self.problem, self.times);
         let steps = [times.step(n), times.velocity_step(n)];
-        let mut plain = self.force.clone();
-        divide(&mut plain, problem.mass());
-        let mass = self.weights.mass(0);
-        let lumped = self.lumped(&plain, mass);
+        let (plain, [_, lumped]) = (&self.plain, &self.lumping);
         let (around, time) = (self.steps_around(n), self.time_share(n));
         let flight = |contact: &ContactNode| {
             let i = contact.node.index();
-            let bracket = self.bracket_at(contact.node, around, &plain);
+            let bracket = self.bracket_at(contact.node, around);
             let acceleration: [f64; D] =
                 from_fn(|c| plain[i][c] + lumped[i][c] - time * bracket[c] / problem.mass()[i]);
             let (now, velocity) = (self.displacement[i], self.half_step[i]);
@@ -177,39 +181,40 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
         pull: &[[f64; D]],
         level: AuxiliaryLevel<'_, D>,
     ) {
-        let (problem, times) = (self.problem, self.times);
-        let mut plain = std::mem::take(&mut self.force);
-        crate::acceleration::accelerate(problem, dynamics.inverse_mass(), &mut plain, pull);
-        let mass = self.weights.mass(0);
-        let once = self.lumping_difference(&plain);
-        let lumped = self.lumped_from(&once, mass);
-        let bracket = self.bracket(dynamics, self.steps_around(n), &plain);
-        let (time, inverse) = (self.time_share(n), dynamics.inverse_mass());
-        level.displacement.copy_from_slice(&self.displacement);
-        let [back, forward] = self.steps_around(n);
-        let before = self.half_work(pull, 2.0 * back);
+        let (problem, times, inverse_mass) = (self.problem, self.times, dynamics.inverse_mass());
+        self.add_contact(inverse_mass, pull);
+        let (around, time) = (self.steps_around(n), self.time_share(n));
+        let bracket = self.bracket(dynamics, around);
+        self.write(inverse_mass, level);
+        let before = self.half_work(pull, 2.0 * around[0]);
+        let Self { half_step, displacement, plain, lumping: [_, lumped], .. } = self;
         let accelerations =
-            (0..plain.len()).map(|i| from_fn(|c| plain[i][c] + lumped[i][c] - time * bracket[i][c] * inverse[i]));
-        dynamics::advance(times, n, &mut self.half_step, &mut self.displacement, accelerations);
-        let after = self.half_work(pull, forward);
+            (0..plain.len()).map(|i| from_fn(|c| plain[i][c] + lumped[i][c] - time * bracket[i][c] * inverse_mass[i]));
+        dynamics::advance(times, n, half_step, displacement, accelerations);
+        let after = self.half_work(pull, around[1]);
         let kinetic = |velocity: &[[f64; D]]| -> f64 {
             let moving = velocity.iter().zip(problem.mass());
             moving.map(|(v, m)| 0.5 * m * v.iter().map(|v| v * v).sum::<f64>()).sum()
         };
         let energies = [simulated.strain + kinetic(simulated.velocity), kinetic(&self.half_step)];
         self.energy_balance.add(problem, energies, simulated.velocity, before + after);
-        let [first, ..] = mass;
-        for (acceleration, (plain, once)) in level.acceleration.iter_mut().zip(plain.iter().zip(&once)) {
-            let share = if level.split.is_some() { first } else { 0.0 };
+    }
+
+    /// Fills in the fields of the level.
+    fn write(&self, inverse_mass: &[f64], level: AuxiliaryLevel<'_, D>) {
+        level.displacement.copy_from_slice(&self.displacement);
+        let [first, ..] = self.weights.mass(0);
+        let fields = || self.plain.iter().zip(&self.lumping[0]);
+        let share = if level.split.is_some() { first } else { 0.0 };
+        for (acceleration, (plain, once)) in level.acceleration.iter_mut().zip(fields()) {
             *acceleration = from_fn(|c| plain[c] + share * once[c]);
         }
         if let Some(SplitLevel { lumped, skew }) = level.split {
-            for (w, (plain, once)) in lumped.iter_mut().zip(plain.iter().zip(&once)) {
+            for (w, (plain, once)) in lumped.iter_mut().zip(fields()) {
                 *w = from_fn(|c| (1.0 - first) * plain[c] + first * once[c]);
             }
-            skew.copy_from_slice(&skew_acceleration::<D, N>(problem, inverse, lumped, level.displacement));
+            skew.copy_from_slice(&skew_acceleration::<D, N>(self.problem, inverse_mass, lumped, level.displacement));
         }
-        self.force = plain;
     }
 
     /// The work of contact over half of a step (J).
@@ -230,14 +235,14 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
     }
 
     /// f(u + Δt v + ½Δt²ã) + f(u − Δt v + ½Δt²ã) − 2 f(u) (N), with v = v_{n−½} + `back` ã.
-    fn bracket(&self, dynamics: &Dynamics<'_, D>, around: [f64; 2], plain: &[[f64; D]]) -> Vec<[f64; D]> {
-        let mut forces = vec![[0.0; D]; plain.len()];
+    fn bracket(&self, dynamics: &Dynamics<'_, D>, around: [f64; 2]) -> Vec<[f64; D]> {
+        let mut forces = vec![[0.0; D]; self.plain.len()];
         dynamics.subtract_internal_forces(&self.displacement, &mut forces);
         forces.as_flattened_mut().iter_mut().for_each(|f| *f *= -2.0);
-        let mut moved = vec![[0.0; D]; plain.len()];
+        let mut moved = vec![[0.0; D]; self.plain.len()];
         for sign in [1.0, -1.0] {
             by_pieces(&mut moved[..], &|first, moved| {
-                moved.iter_mut().zip(first..).for_each(|(moved, i)| *moved = self.moved(i, sign, around, plain));
+                moved.iter_mut().zip(first..).for_each(|(moved, i)| *moved = self.moved(i, sign, around));
             });
             dynamics.subtract_internal_forces(&moved, &mut forces);
         }
@@ -248,14 +253,14 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
     }
 
     /// The same at one node.
-    fn bracket_at(&self, node: NodeId, around: [f64; 2], plain: &[[f64; D]]) -> [f64; D] {
+    fn bracket_at(&self, node: NodeId, around: [f64; 2]) -> [f64; D] {
         let mut force = [0.0; D];
         for &id in self.problem.mesh().stars().star(node).elements {
             let (element, law) = (&self.elements[id.index()], self.problem.material(id));
             for (sign, factor) in [(1.0, 1.0), (-1.0, 1.0), (0.0, -2.0)] {
                 let places = element.nodes.map(|node| match sign {
                     0.0 => self.displacement[node.index()],
-                    _ => self.moved(node.index(), sign, around, plain),
+                    _ => self.moved(node.index(), sign, around),
                 });
                 let (stress, _) = law.respond(&element.gradient(&places), &mut []);
                 let internal = element.internal_force(corner(element, node), &stress);
@@ -267,62 +272,105 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
     }
 
     /// u ± Δt v + ½Δt²ã of a node.
-    fn moved(&self, i: usize, sign: f64, [back, step]: [f64; 2], plain: &[[f64; D]]) -> [f64; D] {
-        let (u, v, a) = (&self.displacement[i], &self.half_step[i], &plain[i]);
+    fn moved(&self, i: usize, sign: f64, [back, step]: [f64; 2]) -> [f64; D] {
+        let (u, v, a) = (&self.displacement[i], &self.half_step[i], &self.plain[i]);
         from_fn(|c| u[c] + sign * step * (v[c] + back * a[c]) + 0.5 * step * step * a[c])
     }
 
-    /// p(M⁻¹(M − M_c)) of a nodal field with these coefficients.
-    fn lumped(&self, field: &[[f64; D]], mass: [f64; 3]) -> Vec<[f64; D]> {
-        self.lumped_from(&self.lumping_difference(field), mass)
-    }
-
-    /// The same from M⁻¹(M − M_c) of the field.
-    fn lumped_from(&self, once: &[[f64; D]], [first, others @ ..]: [f64; 3]) -> Vec<[f64; D]> {
-        let mut sum: Vec<[f64; D]> = once.iter().map(|x| x.map(|x| first * x)).collect();
-        let mut again = None;
-        for factor in others {
-            let next = self.lumping_difference(again.as_deref().unwrap_or(once));
+    /// Makes the lumping difference of ã and its correction: an element gives m/(D+2) times the distance to the mean of
+    /// its nodes.
+    fn correct_lumping(&mut self, inverse_mass: &[f64]) {
+        let mass = self.weights.mass(0);
+        let mut last = Vec::new();
+        for (k, factor) in mass.into_iter().enumerate() {
+            let next = self.lumping_difference(if k == 0 { &self.plain } else { &last }, inverse_mass);
+            let sum = &mut self.lumping[1];
+            sum.resize(next.len(), [0.0; D]);
             for (sum, next) in sum.as_flattened_mut().iter_mut().zip(next.as_flattened()) {
-                *sum += factor * next;
+                *sum = if k == 0 { factor * next } else { *sum + factor * next };
             }
-            again = Some(next);
+            last = next;
+            if k == 0 {
+                self.lumping[0].clone_from(&last);
+            }
         }
-        sum
     }
 
-    /// M⁻¹(M − M_c) of a nodal field, 0 on prescribed components: an element gives m/(D+2) times the distance to the
-    /// mean of its nodes.
-    fn lumping_difference(&self, field: &[[f64; D]]) -> Vec<[f64; D]> {
-        let (problem, mut difference) = (self.problem, vec![[0.0; D]; field.len()]);
-        let (stars, share) = (problem.mesh().stars(), N as f64 / (D + 2) as f64);
-        by_pieces((&mut difference[..], problem.mass()), &|first, (difference, mass)| {
-            for ((k, difference), mass) in difference.iter_mut().enumerate().zip(mass) {
-                let own = &field[first + k];
-                for element in stars.star(NodeId::new(first + k)).elements {
-                    let element = &self.elements[element.index()];
-                    let mut away = [0.0; D];
-                    for node in element.nodes {
-                        (0..D).for_each(|c| away[c] += own[c] - field[node.index()][c]);
-                    }
-                    (0..D).for_each(|c| difference[c] += share * element.nodal_mass * away[c] / N as f64);
-                }
-                difference.iter_mut().for_each(|x| *x /= mass);
+    /// M⁻¹(M − M_c) of a nodal field, 0 on prescribed components.
+    fn lumping_difference(&self, field: &[[f64; D]], inverse_mass: &[f64]) -> Vec<[f64; D]> {
+        let mut difference = vec![[0.0; D]; field.len()];
+        for element in &self.elements {
+            let (share, values) = (lumped_share(element), element.gather(field));
+            let mut mean = values[0];
+            (1..N).for_each(|i| (0..D).for_each(|c| mean[c] += values[i][c]));
+            for (node, value) in element.nodes.iter().zip(&values) {
+                let difference = &mut difference[node.index()];
+                (0..D).for_each(|c| difference[c] += share * (value[c] - mean[c] / N as f64));
             }
-        });
-        problem.prescribed().iter().for_each(|p| difference[p.node.index()][p.component] = 0.0);
+        }
+        for (difference, inverse) in difference.iter_mut().zip(inverse_mass) {
+            difference.iter_mut().for_each(|x| *x *= inverse);
+        }
+        self.problem.prescribed().iter().for_each(|p| difference[p.node.index()][p.component] = 0.0);
         difference
     }
+
+    /// Adds contact forces (N) to ã, and their part of the lumping difference and of its correction around their nodes.
+    fn add_contact(&mut self, inverse_mass: &[f64], pull: &[[f64; D]]) {
+        let mut field = BTreeMap::new();
+        for (contact, pull) in self.problem.surface().nodes().iter().zip(pull).filter(|(_, pull)| **pull != [0.0; D]) {
+            let i = contact.node.index();
+            let sum: &mut [f64; D] = field.entry(i).or_insert([0.0; D]);
+            (0..D).for_each(|c| sum[c] += pull[c] * inverse_mass[i]);
+        }
+        add(&mut self.plain, &field, 1.0);
+        for (k, factor) in self.weights.mass(0).into_iter().enumerate() {
+            field = self.lumping_difference_of(&field, inverse_mass);
+            let [once, sum] = &mut self.lumping;
+            add(sum, &field, factor);
+            if k == 0 {
+                add(once, &field, 1.0);
+            }
+        }
+    }
+
+    /// The lumping difference of a field of few nodes.
+    fn lumping_difference_of(&self, field: &FewNodes<D>, inverse_mass: &[f64]) -> FewNodes<D> {
+        let mut difference = FewNodes::new();
+        for (&node, value) in field {
+            for element in self.problem.mesh().stars().star(NodeId::new(node)).elements {
+                let element = &self.elements[element.index()];
+                for other in element.nodes.map(NodeId::index) {
+                    let own = if other == node { 1.0 } else { 0.0 };
+                    let share = lumped_share(element) * (own - 1.0 / N as f64) * inverse_mass[other];
+                    let sum = difference.entry(other).or_insert([0.0; D]);
+                    (0..D).for_each(|c| sum[c] += share * value[c]);
+                }
+            }
+        }
+        for held in self.problem.prescribed() {
+            if let Some(value) = difference.get_mut(&held.node.index()) {
+                value[held.component] = 0.0;
+            }
+        }
+        difference
+    }
+}
+
+/// A nodal field that is 0 at all nodes but these.
+type FewNodes<const D: usize> = BTreeMap<usize, [f64; D]>;
+
+/// Adds so many times the values of few nodes.
+fn add<const D: usize>(field: &mut [[f64; D]], few: &FewNodes<D>, factor: f64) {
+    few.iter().for_each(|(&node, value)| (0..D).for_each(|c| field[node][c] += factor * value[c]));
+}
+
+/// m/(D+2) of an element (kg).
+fn lumped_share<const D: usize, const N: usize>(element: &Element<D, N>) -> f64 {
+    element.nodal_mass * N as f64 / (D + 2) as f64
 }
 
 /// The local number of a node of an element.
 fn corner<const D: usize, const N: usize>(element: &Element<D, N>, node: NodeId) -> usize {
     element.nodes.iter().position(|own| *own == node).unwrap_or(0)
-}
-
-/// M⁻¹ of forces.
-fn divide<const D: usize>(forces: &mut [[f64; D]], mass: &[f64]) {
-    by_pieces((forces, mass), &|_, (forces, mass)| {
-        forces.iter_mut().zip(mass).for_each(|(force, mass)| force.iter_mut().for_each(|f| *f /= mass));
-    });
 }
