@@ -3,11 +3,13 @@
 //! A kernel cuts the elements of a strip into chunks. The pass moves the nodes that a chunk needs, sweeps its elements,
 //! and sums up the nodes that no later chunk has.
 
+mod internal;
 mod linear;
 mod pairs;
 mod points;
 mod reach;
 
+pub use internal::InternalForces;
 pub use linear::Stiffness;
 pub(crate) use points::PointKernel;
 pub(crate) use reach::Reach;

@@ -13,7 +13,6 @@ use crate::plan::{Basis, Branch, Plan, sizes};
 use crate::report::{Report, Subject};
 use crate::restated::Restated;
 use crate::run::{Results, whole};
-use crate::verify::FINITE;
 use percute_core::dynamics::critical_time_step;
 use percute_core::observer::Observer;
 use percute_core::problem::AnyProblem;
@@ -53,6 +52,10 @@ pub struct Adapting {
     reason: Option<Reason>,
 }
 
+/// Why a body that turns is not adapted.
+const FINITE: &str = "runs on adapted meshes need kinematics = \"small\": with finite kinematics the error has no sources \
+                      to plan from; refine the mesh, and compare by `percute verify`";
+
 impl Adapting {
     /// Begins with a problem on its mesh.
     ///
@@ -67,7 +70,7 @@ impl Adapting {
     ) -> Result<Self, Failure> {
         wish.check()?;
         if problem.is_finite() {
-            return Err(Failure::Argument(format!("runs on adapted meshes {FINITE}")));
+            return Err(Failure::Argument(FINITE.into()));
         }
         if options.reconstruction != Reconstruction::Corrected {
             return Err(Failure::Argument(format!(

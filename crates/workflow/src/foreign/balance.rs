@@ -1,8 +1,8 @@
-//! The terms of the balance M a + K u = F + R at a step, eq. \[30\].
+//! The terms of the balance M a + K u = F + R at a step, eq. \[30\]; with finite kinematics K u are the internal forces.
 
 use super::window::{Held, Window, vectors_of};
 use percute_core::border::Vector;
-use percute_core::kernel::Stiffness;
+use percute_core::kernel::InternalForces;
 use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 
@@ -45,14 +45,14 @@ impl Motion {
 /// Computes [`Terms`] and [`Motion`].
 #[derive(Debug)]
 pub(crate) struct Balance<'p> {
-    stiffness: Stiffness,
+    internal: InternalForces,
     problem: &'p AnyProblem,
     times: &'p TimeGrid,
 }
 
 impl<'p> Balance<'p> {
     pub(crate) fn new(problem: &'p AnyProblem, times: &'p TimeGrid) -> Self {
-        Self { stiffness: Stiffness::new(problem), problem, times }
+        Self { internal: InternalForces::new(problem), problem, times }
     }
 
     pub(crate) fn problem(&self) -> &'p AnyProblem {
@@ -100,7 +100,7 @@ impl<'p> Balance<'p> {
     pub(crate) fn terms(&self, now: &Held, acceleration: &[Vector]) -> Terms {
         let (d, mut rest) = (self.problem.dimension(), self.problem.external_forces(now.time));
         let mut load = vectors_of(&rest, d);
-        self.stiffness.subtract_from_rows(now.step().displacement, &mut rest);
+        self.internal.subtract_from_rows(now.step().displacement, &mut rest);
         let rest = vectors_of(&rest, d);
         let of = |a: &Vector, b: &Vector| std::array::from_fn(|c| a[c] - b[c]);
         let mut stiffness: Vec<_> = load.iter().zip(&rest).map(|(load, rest)| of(load, rest)).collect();

@@ -61,13 +61,10 @@ impl<'s> Completed<'s> {
     /// Looks at a history once, to see whether its last contact forces are known.
     ///
     /// # Errors
-    /// Finite kinematics; a node that may touch two planes; missing forces on non-matching interfaces; steps that
+    /// A node that may touch two planes; missing forces on non-matching interfaces; steps that
     /// cannot be read; forces on two nodes of different bodies that are not opposite; fewer than three instants of
     /// which the last is not known.
     pub fn new(problem: &'s AnyProblem, source: &'s dyn StepSource, lacks: Lacks) -> Result<Self, SinkError> {
-        if problem.is_finite() {
-            return Err("histories of other programs are read for kinematics = \"small\"; simulate with percute".into());
-        }
         if let Some(contact) = problem.contact_nodes().iter().find(|contact| contact.second_slot.is_some()) {
             let told = format!(
                 "histories of other programs are read for nodes at one plane, and node {} may touch two; name for each \

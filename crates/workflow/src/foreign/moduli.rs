@@ -17,8 +17,11 @@ const OF_LAMBDA: usize = 1;
 const OF_SHEAR: usize = 2;
 type Products = [[f64; 4]; 4];
 
-/// Other moduli of a plane body of one material.
+/// Other moduli of a plane body of one material with small strains, whose forces are linear in the moduli.
 pub(super) fn attempt(diagnosis: &Diagnosis<'_>) -> Result<Vec<Attempt>, SinkError> {
+    if diagnosis.problem.is_finite() {
+        return Ok(Vec::new());
+    }
     let [material] = diagnosis.problem.materials() else { return Ok(Vec::new()) };
     let Some(sheared) = sheared(diagnosis.problem, material) else { return Ok(Vec::new()) };
     let products = products(diagnosis, &sheared)?;

@@ -1,6 +1,7 @@
 //! A problem on its mesh and on nested refinements of it: estimates beside true errors against the finest.
 //!
-//! All meshes have the Courant number of the first. Each run is compared with all coarser ones as it goes, so that each
+//! All meshes have the Courant number of the first; with finite kinematics the steps of refinements follow the stiffness.
+//! Each run is compared with all coarser ones as it goes, so that each
 //! is simulated once and a verification is complete after each mesh.
 
 mod criterion;
@@ -18,9 +19,9 @@ use crate::memory;
 use crate::numbering::Ordered;
 use crate::quantity::{Probe, ProbeSink, Quantity};
 use crate::report::{Report, Subject};
-use crate::run::{Results, whole};
+use crate::run::{Results, following, whole};
 use levels::Followed;
-use percute_core::dynamics::critical_time_step;
+use percute_core::dynamics::{critical_time_step, first_stable_step};
 use percute_core::mesh::room;
 use percute_core::observer::Observer;
 use percute_core::problem::AnyProblem;
@@ -35,8 +36,11 @@ pub const MOST_LEVELS: usize = 5;
 #[derive(Clone, Debug)]
 pub struct Prepared {
     problem: AnyProblem,
+    /// With finite kinematics those of a refinement have about as many steps as this, until they are found.
     times: TimeGrid,
     critical_step: f64,
+    /// The Courant number of steps that are to be found.
+    following: Option<f64>,
 }
 
 /// The problem on its mesh and on so many refinements, which may be long.
@@ -50,9 +54,6 @@ pub fn prepare(
     options: &Options,
     (levels, long): (usize, Long),
 ) -> Result<Vec<Prepared>, Failure> {
-    if problem.is_finite() {
-        return Err(Failure::Argument(format!("refined runs {FINITE}")));
-    }
     if !(1..=MOST_LEVELS).contains(&levels) {
         return Err(Failure::Argument(format!("`levels` is {levels}; give 1 to {MOST_LEVELS} refinements")));
     }
@@ -64,9 +65,10 @@ pub fn prepare(
     room(problem.mesh().element_count() << (problem.dimension() * levels))
         .map_err(|error| Failure::Memory(format!("{levels} refinements: {error}, or give fewer levels")))?;
     let stated = Source::new("the refined problem", statement(problem, None)?);
-    let critical_step = critical_time_step(problem);
+    let critical_step = stable_step(problem);
     let courant = times.longest_step() / critical_step;
-    let mut all = vec![Prepared { problem: problem.clone(), times: times.clone(), critical_step }];
+    let (following, stated_times) = (None, times.clone());
+    let mut all = vec![Prepared { problem: problem.clone(), times: stated_times, critical_step, following }];
     for _ in 0..levels {
         let coarse = &all[all.len() - 1].problem;
         let mesh = coarse.mesh();
@@ -74,17 +76,19 @@ pub fn prepare(
         let initial = [coarse.initial_displacement(), coarse.initial_velocity()].map(|field| mesh.prolonged(field));
         let [displacement, velocity] = initial;
         let (problem, _) = problem_from(&stated, &fine.into(), displacement, velocity)?;
-        let critical_step = critical_time_step(&problem);
+        let critical_step = stable_step(&problem);
         let times = TimeGrid::with_step(times.end(), courant * critical_step);
         let times = times.map_err(|error| Failure::Argument(error.to_string()))?;
-        all.push(Prepared { problem, times, critical_step });
+        let following = problem.is_finite().then_some(courant);
+        all.push(Prepared { problem, times, critical_step, following });
     }
     Ok(all)
 }
 
-/// Why a body that turns is not refined.
-pub(crate) const FINITE: &str =
-    "need kinematics = \"small\"; compare simulations on two meshes, in Python by `history.error`";
+/// The step of which the Courant number is a part (s).
+fn stable_step(problem: &AnyProblem) -> f64 {
+    if problem.is_finite() { first_stable_step(problem) } else { critical_time_step(problem) }
+}
 
 /// The work before it starts.
 #[must_use]
@@ -122,10 +126,11 @@ pub fn verify(
         // Nothing is compared with the motion of the finest.
         let mut motion = (motions.len() + 1 < prepared.len()).then(Motion::default);
         let beside = &mut ((&mut comparison, &mut motion), &mut sinks);
-        let Some(results) = whole(problem, &each.times, options, beside, observer)? else { break };
+        let Some(times) = each.found(observer)? else { break };
+        let Some(results) = whole(problem, &times, options, beside, observer)? else { break };
         let errors = comparison.finish()?;
         levels.iter_mut().zip(&errors).for_each(|(level, error)| level.compare(error));
-        levels.push(each.level(options, &results, &quantities, &sinks));
+        levels.push(each.level((&times, options), &results, &quantities, &sinks));
         first_errors.extend(errors.first().map(|error| error.mean));
         motions.extend(motion);
         done(&so_far(&levels, &first_errors));
@@ -134,14 +139,22 @@ pub fn verify(
 }
 
 impl Prepared {
+    /// Its instants, found if its steps follow the stiffness; none if the observer stops it.
+    fn found(&self, observer: &mut dyn Observer) -> Result<Option<TimeGrid>, Failure> {
+        match self.following {
+            Some(courant) => following(&self.problem, self.times.end(), courant, observer),
+            None => Ok(Some(self.times.clone())),
+        }
+    }
+
     fn level(
         &self,
-        options: Options,
+        (times, options): (&TimeGrid, Options),
         results: &Results,
         quantities: &[Quantity],
         sinks: &[Option<ProbeSink<'_>>],
     ) -> Level {
-        let Self { problem, times, critical_step } = self;
+        let Self { problem, critical_step, .. } = self;
         let (name, critical_step) = ("", *critical_step);
         let subject = Subject { name, problem, times, critical_step, held: None, checked: None, unended: None };
         let report = Report::new(&subject, options, results.findings(), 0.0);

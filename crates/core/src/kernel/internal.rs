@@ -1,0 +1,38 @@
+//! The internal forces of any problem, in rows.
+
+use super::{Kernel, ProblemKernel, on_kernel};
+use crate::border::vectors;
+use crate::problem::ProblemRef;
+
+/// The internal forces of all elements of a problem, of small strains or a finite law.
+#[derive(Clone, Debug)]
+pub struct InternalForces(OfDimension);
+
+#[derive(Clone, Debug)]
+enum OfDimension {
+    One(ProblemKernel<1>),
+    Two(ProblemKernel<2>),
+}
+
+impl InternalForces {
+    /// Prepares the elements of a problem.
+    #[must_use]
+    pub fn new<'p>(problem: impl Into<ProblemRef<'p>>) -> Self {
+        Self(match problem.into() {
+            ProblemRef::D1(problem) => OfDimension::One(ProblemKernel::new(problem)),
+            ProblemRef::D2(problem) => OfDimension::Two(ProblemKernel::new(problem)),
+        })
+    }
+
+    /// Subtracts the internal forces from `force` (N), both in rows, and returns the strain energy (J).
+    pub fn subtract_from_rows(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
+        match &self.0 {
+            OfDimension::One(kernel) => {
+                on_kernel!(kernel, kernel => kernel.subtract(vectors::<1>(displacement), &mut [], force.as_chunks_mut().0))
+            }
+            OfDimension::Two(kernel) => {
+                on_kernel!(kernel, kernel => kernel.subtract(vectors::<2>(displacement), &mut [], force.as_chunks_mut().0))
+            }
+        }
+    }
+}
