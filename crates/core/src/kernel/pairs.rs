@@ -2,14 +2,14 @@
 
 use super::Reach;
 use crate::ids::{ElementId, NodeId};
-use crate::material::LinearLaw;
-use crate::mesh::Strips;
+use crate::material::{LinearLaw, Tensor};
+use crate::mesh::{Mesh, Strips};
 use crate::problem::Problem;
 use std::ops::Range;
 
 /// A sweep goes over so many pairs at a time. Few of them let the elements of a chunk hide the time in which the nodes
 /// of the next come from memory; fewer have more work at their ends.
-const CHUNK: usize = 32;
+pub(super) const CHUNK: usize = 32;
 
 /// A partner of an element reaches at most so many nodes farther than the elements before. In a triangulation by levels
 /// of nodes it would else reach a level farther: twice the nodes would be in work at a time, too many for the first
@@ -55,11 +55,37 @@ pub(crate) struct ChunkData<'a> {
 }
 
 /// An element and the element across one of its faces, if it has a partner.
-struct Pair {
+pub(super) struct Pair {
     first: ElementId,
     second: Option<ElementId>,
     /// The local node of the first element that the second does not have.
     apart: usize,
+}
+
+impl Pair {
+    /// The nodes, in the order of [`PairNodes`]; those that it does not have are the first.
+    pub(super) fn nodes<const D: usize>(&self, mesh: &Mesh) -> [NodeId; 4] {
+        let (cell, corners) = (mesh.cell(self.first), D + 1);
+        // Node 1 of A is the one that B does not have.
+        let order = |i: usize| cell[(self.apart + corners - 1 + i) % corners];
+        let mut nodes = [order(0); 4];
+        (1..corners).for_each(|i| nodes[i] = order(i));
+        if let Some(second) = self.second {
+            let other = mesh.cell(second).iter().find(|node| !cell.contains(node));
+            nodes[corners] = other.copied().unwrap_or(order(0));
+        }
+        nodes
+    }
+
+    /// The elements, each with its place in the pair and ∇φ of its nodes but the first.
+    pub(super) fn elements<const D: usize>(&self, mesh: &Mesh) -> impl Iterator<Item = (usize, ElementId, Tensor<D>)> {
+        let nodes = self.nodes::<D>(mesh);
+        [Some(self.first), self.second].into_iter().flatten().enumerate().map(move |(l, element)| {
+            let (cell, slopes) = (mesh.cell(element), mesh.gradients_in::<D>(element));
+            let place = |i: usize| cell.iter().position(|node| *node == nodes[i + 1 + l]).unwrap_or(0);
+            (l, element, std::array::from_fn(|i| slopes[place(i)]))
+        })
+    }
 }
 
 impl ElementPairs {
@@ -75,15 +101,11 @@ impl ElementPairs {
         };
         let mut taken = vec![false; problem.mesh().element_count()];
         for strip in 0..strips.count() {
-            let law = |e: usize| law_of_material[usize::from(problem.element_material()[e])];
-            let mut pairs = pair(problem, strips.elements(strip), &mut taken, law);
             let first_chunk = all.chunks.len();
-            for window in pairs.chunks_mut(CHUNK) {
-                window.sort_by_key(|pair| law(pair.first.index()));
-                for same in window.chunk_by(|a, b| law(a.first.index()) == law(b.first.index())) {
-                    all.add(problem, strips.nodes(strip).start, same, law(same[0].first.index()));
-                }
-            }
+            let law = |e: usize| law_of_material[usize::from(problem.element_material()[e])];
+            in_chunks(problem, strips.elements(strip), &mut taken, law, |pairs, law| {
+                all.add(problem, strips.nodes(strip).start, pairs, law);
+            });
             Reach::close(all.chunks[first_chunk..].iter_mut().map(|chunk| &mut chunk.reach), strips.nodes(strip).len());
             all.of_strip.push(all.chunks.len() as u32);
         }
@@ -94,31 +116,17 @@ impl ElementPairs {
 
     /// Adds a chunk of pairs.
     fn add<const D: usize>(&mut self, problem: &Problem<D>, start: usize, pairs: &[Pair], law: u32) {
-        let (mesh, corners) = (problem.mesh(), D + 1);
+        let mesh = problem.mesh();
         for two in pairs.chunks(2) {
             let (mut nodes, mut gradients) = ([[0; 4]; 2], Gradients::default());
             for (p, pair) in two.iter().enumerate() {
-                let cell = mesh.cell(pair.first);
-                // Node 1 of A is the one that B does not have.
-                let order = |i: usize| cell[(pair.apart + corners - 1 + i) % corners];
-                let mut of_pair = [order(0); 4];
-                (1..corners).for_each(|i| of_pair[i] = order(i));
-                if let Some(second) = pair.second {
-                    let other = mesh.cell(second).iter().find(|node| !cell.contains(node));
-                    of_pair[corners] = other.copied().unwrap_or(order(0));
-                }
-                for (l, element) in [Some(pair.first), pair.second].into_iter().enumerate() {
-                    let Some(element) = element else { continue };
-                    let (cell, slopes) = (mesh.cell(element), mesh.gradients_in::<D>(element));
+                nodes[p] = pair.nodes::<D>(mesh).map(|node| (node.index() - start) as u32);
+                for (l, element, slopes) in pair.elements::<D>(mesh) {
                     let root = (problem.volume(element) * problem.material(element).moduli().1).sqrt();
                     for i in 0..D {
-                        let at = cell.iter().position(|node| *node == of_pair[i + 1 + l]).unwrap_or(0);
-                        for b in 0..D {
-                            gradients.0[i][2 * (2 * p + l) + b] = root * slopes[at][b];
-                        }
+                        (0..D).for_each(|b| gradients.0[i][2 * (2 * p + l) + b] = root * slopes[i][b]);
                     }
                 }
-                nodes[p] = of_pair.map(|node: NodeId| (node.index() - start) as u32);
             }
             if two.len() == 1 {
                 nodes[1] = [nodes[0][0]; 4];
@@ -165,6 +173,21 @@ fn laws<const D: usize>(problem: &Problem<D>) -> (Vec<[f64; 2]>, Vec<u32>) {
     (laws, of_material)
 }
 
+/// Hands the pairs of a strip to `add`, those of a chunk at a time, with their law.
+pub(super) fn in_chunks<const D: usize>(
+    problem: &Problem<D>,
+    strip: Range<usize>,
+    taken: &mut [bool],
+    law: impl Fn(usize) -> u32,
+    mut add: impl FnMut(&[Pair], u32),
+) {
+    let of = |pair: &Pair| law(pair.first.index());
+    for window in pair(problem, strip, taken, &law).chunks_mut(CHUNK) {
+        window.sort_by_key(of);
+        window.chunk_by(|a, b| of(a) == of(b)).for_each(|same| add(same, of(&same[0])));
+    }
+}
+
 /// Joins elements of a strip that share a face and a law: each with its free neighbour of the lowest number, if that
 /// is not far ahead.
 fn pair<const D: usize>(
@@ -205,7 +228,6 @@ fn pair<const D: usize>(
 mod tests {
     use super::*;
     use crate::material::Elastic;
-    use crate::mesh::Mesh;
     use percute_testkit::random_rectangle;
 
     /// In the local numbering of an unstructured mesh, few more nodes than those of a level are in work at a time, and

@@ -1,43 +1,58 @@
-//! Internal forces of P1 elements with any law: one point of integration in each, eight elements at a time.
+//! Internal forces of P1 elements with any law: one point of integration in each, four pairs of elements at a time.
 
+use super::pairs::{CHUNK, Pair, PairNodes, in_chunks};
 use super::{Kernel, Reach};
-use crate::ids::ElementId;
 use crate::material::{Elastic, Law, MOST_VARIABLES, PointLaw};
 use crate::mesh::Strips;
 use crate::problem::Problem;
-use crate::simd::lanes::{LANES, Lanes, Value, load};
+use crate::simd::lanes::{LANES, Lanes, Value, load, store};
 use crate::simd::{Eight, Registers, Task, Wide, run_task};
 use std::ops::Range;
 
-/// A chunk has so many groups of eight elements, of all laws.
-const CHUNK: usize = 8;
+/// Pairs of a group.
+const PAIRS: usize = LANES / 2;
+/// Groups of a chunk, at the most.
+const GROUPS: usize = CHUNK / PAIRS;
 
-/// Eight elements of one law; lanes that are left have no volume.
+/// Four pairs of elements of one law: element l of pair p has lane 2 p + l. Lanes that are left have no volume.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Group<const D: usize> {
-    /// Their numbers in the strip, and how many there are.
-    elements: [u32; LANES],
-    count: u32,
-    /// Their first and other nodes in the strip.
-    first: [u32; LANES],
-    others: [[u32; LANES]; D],
-    /// ∇φ_i of the other nodes (1/m).
+    /// Their nodes in the strip.
+    nodes: [PairNodes; PAIRS],
+    /// ∇φ_i of the nodes i + 1 + l of a pair (1/m).
     slopes: [[Lanes; D]; D],
     /// |E| with section or thickness (m³).
     volume: Lanes,
-    law: u32,
 }
 
 /// A tensor at eight points.
 type Tensors<R, const D: usize> = [[Wide<R>; D]; D];
+
+/// Groups of one law that are swept together.
+#[derive(Clone, Debug)]
+struct Chunk {
+    groups: Range<u32>,
+    law: u32,
+    reach: Reach,
+}
+
+/// A chunk as the sweep needs it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ChunkData<'a, M, const D: usize> {
+    groups: &'a [Group<D>],
+    /// Numbers of the elements in the strip.
+    elements: &'a [[u32; LANES]],
+    law: &'a M,
+}
 
 /// The elements of all strips.
 #[derive(Clone, Debug)]
 pub(crate) struct PointKernel<M, const D: usize> {
     strips: Strips,
     groups: Vec<Group<D>>,
-    /// Nodes and groups of each chunk.
-    chunks: Vec<(Reach, Range<u32>)>,
+    /// Their elements, apart from them: only laws with internal variables read these.
+    elements: Vec<[u32; LANES]>,
+    chunks: Vec<Chunk>,
     /// Where the chunks of each strip begin.
     of_strip: Vec<usize>,
     laws: Vec<M>,
@@ -53,24 +68,32 @@ impl<const D: usize> PointKernel<Elastic, D> {
 impl<M: PointLaw, const D: usize> PointKernel<M, D> {
     /// The same with a law for each material.
     fn with_laws(problem: &Problem<D>, strips: Strips, laws: Vec<M>) -> Self {
-        let (mut groups, mut chunks, mut of_strip) = (Vec::new(), Vec::new(), vec![0]);
-        for strip in 0..strips.count() {
-            let (starts, first_chunk) = ([strips.nodes(strip).start, strips.elements(strip).start], chunks.len());
-            let elements: Vec<usize> = strips.elements(strip).collect();
-            for window in elements.chunks(CHUNK * LANES) {
-                let from = groups.len();
-                for law in 0..laws.len() {
-                    let same = window.iter().filter(|e| usize::from(problem.element_material()[**e]) == law);
-                    let same: Vec<ElementId> = same.map(|e| ElementId::new(*e)).collect();
-                    groups.extend(same.chunks(LANES).map(|elements| Group::new(problem, starts, elements, law)));
-                }
-                let nodes = groups[from..].iter().flat_map(|group: &Group<D>| group.nodes());
-                chunks.push((Reach::of(nodes), from as u32..groups.len() as u32));
-            }
-            Reach::close(chunks[first_chunk..].iter_mut().map(|(reach, _)| reach), strips.nodes(strip).len());
-            of_strip.push(chunks.len());
+        let (groups, elements, chunks) = (Vec::new(), Vec::new(), Vec::new());
+        let mut all = Self { strips, groups, elements, chunks, of_strip: vec![0], laws };
+        let mut taken = vec![false; problem.mesh().element_count()];
+        for strip in 0..all.strips.count() {
+            let (nodes, elements) = (all.strips.nodes(strip), all.strips.elements(strip));
+            let first_chunk = all.chunks.len();
+            let law = |e: usize| problem.element_material()[e].into();
+            in_chunks(problem, elements.clone(), &mut taken, law, |pairs, law| {
+                all.add(problem, [nodes.start, elements.start], pairs, law);
+            });
+            Reach::close(all.chunks[first_chunk..].iter_mut().map(|chunk| &mut chunk.reach), nodes.len());
+            all.of_strip.push(all.chunks.len());
         }
-        Self { strips, groups, chunks, of_strip, laws }
+        all
+    }
+
+    /// Adds a chunk of pairs.
+    fn add(&mut self, problem: &Problem<D>, starts: [usize; 2], pairs: &[Pair], law: u32) {
+        let from = self.groups.len();
+        for pairs in pairs.chunks(PAIRS) {
+            let (group, elements) = Group::new(problem, starts, pairs);
+            self.groups.push(group);
+            self.elements.push(elements);
+        }
+        let nodes = self.groups[from..].iter().flat_map(|group| group.nodes.into_iter().flatten());
+        self.chunks.push(Chunk { reach: Reach::of(nodes), groups: from as u32..self.groups.len() as u32, law });
     }
 
     /// A stable step (s) at these displacements, Δt = 2/ω_max with the largest ω² of any element alone: some per cent
@@ -83,6 +106,18 @@ impl<M: PointLaw, const D: usize> PointKernel<M, D> {
         });
         2.0 / largest.sqrt()
     }
+
+    #[inline(always)]
+    fn chunks_of(&self, strip: usize) -> &[Chunk] {
+        &self.chunks[self.of_strip[strip]..self.of_strip[strip + 1]]
+    }
+
+    #[inline(always)]
+    fn data(&self, chunk: &Chunk) -> ChunkData<'_, M, D> {
+        let groups = chunk.groups.start as usize..chunk.groups.end as usize;
+        let (elements, law) = (&self.elements[groups.clone()], &self.laws[chunk.law as usize]);
+        ChunkData { groups: &self.groups[groups], elements, law }
+    }
 }
 
 /// The larger of two numbers; NaN counts as largest.
@@ -92,42 +127,133 @@ fn larger(a: f64, b: f64) -> f64 {
 }
 
 impl<const D: usize> Group<D> {
-    fn new(problem: &Problem<D>, [first_node, first_element]: [usize; 2], elements: &[ElementId], law: usize) -> Self {
+    /// A group, and the numbers of its elements.
+    fn new(problem: &Problem<D>, [first_node, first_element]: [usize; 2], pairs: &[Pair]) -> (Self, [u32; LANES]) {
         let (mesh, zero) = (problem.mesh(), [[Lanes::ZERO; D]; D]);
-        let place = |element: ElementId, i: usize| (mesh.cell(element)[i].index() - first_node) as u32;
+        let nodes = |pair: &Pair| pair.nodes::<D>(mesh).map(|node| (node.index() - first_node) as u32);
         // Lanes that are left move with a node of the group.
-        let mut group = Self {
-            elements: [0; LANES],
-            count: elements.len() as u32,
-            first: [place(elements[0], 0); LANES],
-            others: [[place(elements[0], 0); LANES]; D],
-            slopes: zero,
-            volume: Lanes::ZERO,
-            law: law as u32,
-        };
-        for (lane, &element) in elements.iter().enumerate() {
-            let slopes = mesh.gradients_in::<D>(element);
-            group.elements[lane] = (element.index() - first_element) as u32;
-            group.first[lane] = place(element, 0);
-            group.volume.0[lane] = problem.volume(element);
-            for i in 0..D {
-                group.others[i][lane] = place(element, i + 1);
-                (0..D).for_each(|b| group.slopes[i][b].0[lane] = slopes[i + 1][b]);
+        let first = nodes(&pairs[0])[0];
+        let mut group = Self { nodes: [[first; 4]; PAIRS], slopes: zero, volume: Lanes::ZERO };
+        let mut elements = [0; LANES];
+        for (p, pair) in pairs.iter().enumerate() {
+            group.nodes[p] = nodes(pair);
+            for (l, element, slopes) in pair.elements::<D>(mesh) {
+                let lane = 2 * p + l;
+                elements[lane] = (element.index() - first_element) as u32;
+                group.volume.0[lane] = problem.volume(element);
+                for i in 0..D {
+                    (0..D).for_each(|b| group.slopes[i][b].0[lane] = slopes[i][b]);
+                }
             }
         }
-        group
+        (group, elements)
     }
 
-    fn nodes(&self) -> impl Iterator<Item = u32> {
-        self.first.into_iter().chain(self.others.into_iter().flatten())
+    /// The slopes, and H = ∂u_a/∂X_b.
+    #[inline(always)]
+    fn gradient<R: Registers>(&self, like: Wide<R>, displacement: &[[f64; D]]) -> [Tensors<R, D>; 2] {
+        let differences = self.differences(like, displacement);
+        let (mut slopes, mut gradient) = ([[like; D]; D], [[like; D]; D]);
+        for i in 0..D {
+            slopes[i] = load(like, &self.slopes[i]);
+            for a in 0..D {
+                for b in 0..D {
+                    let part = differences[i][a] * slopes[i][b];
+                    gradient[a][b] = if i == 0 { part } else { gradient[a][b] + part };
+                }
+            }
+        }
+        [slopes, gradient]
+    }
+
+    /// u at the node k of each pair of triangles.
+    #[inline(always)]
+    fn at<R: Registers>(&self, like: Wide<R>, u: &[[f64; D]], k: usize) -> Wide<R> {
+        let ([a, b, c, d], u) = (&self.nodes, u.as_flattened().as_chunks().0);
+        like.quad([u[a[k] as usize], u[b[k] as usize], u[c[k] as usize], u[d[k] as usize]])
+    }
+
+    /// u at the node i + 1 of each element less that at its first, `[i][c]` of component c.
+    #[inline(always)]
+    fn differences<R: Registers>(&self, like: Wide<R>, u: &[[f64; D]]) -> Tensors<R, D> {
+        let mut found = [[like; D]; D];
+        if D == 2 {
+            let base = self.at(like, u, 0);
+            let (first, shared, last) =
+                (self.at(like, u, 1) - base, self.at(like, u, 2) - base, self.at(like, u, 3) - base);
+            let of_elements = [first.interleave(shared), shared.interleave(last)];
+            for i in 0..D {
+                (0..D).for_each(|c| found[i][c] = of_elements[i][c]);
+            }
+        } else {
+            let node = |lane: usize, i: usize| self.nodes[lane / 2][i] as usize;
+            for i in 0..D {
+                for c in 0..D {
+                    let difference = |lane| u[node(lane, i + 1 + lane % 2)][c] - u[node(lane, 0)][c];
+                    found[i][c] = like.load(&Lanes::at_levels(difference));
+                }
+            }
+        }
+        found
+    }
+
+    /// The forces on the nodes i + 1 of each element, `[i][a]` of component a, from P times the volume.
+    #[inline(always)]
+    fn forces<R: Registers>(&self, like: Wide<R>, stress: &[[Lanes; D]; D]) -> Tensors<R, D> {
+        let mut forces = [[like; D]; D];
+        for a in 0..D {
+            for b in 0..D {
+                let stress = like.load(&stress[a][b]);
+                for i in 0..D {
+                    let part = stress * like.load(&self.slopes[i][b]);
+                    forces[i][a] = if b == 0 { part } else { forces[i][a] + part };
+                }
+            }
+        }
+        forces
+    }
+
+    /// Subtracts these forces, and adds them to that on the first node.
+    #[inline(always)]
+    fn subtract<R: Registers>(&self, lanes: R, forces: &Tensors<R, D>, from: &mut [[f64; D]]) {
+        if D == 2 {
+            let from = from.as_flattened_mut().as_chunks_mut().0;
+            let [first, shared] = forces[0][0].interleave(forces[0][1]);
+            let [also_shared, last] = forces[1][0].interleave(forces[1][1]);
+            let shared = shared + also_shared;
+            let base = first + shared + last;
+            let (base, first, shared, last) = (base.vectors(), first.vectors(), shared.vectors(), last.vectors());
+            for p in 0..PAIRS {
+                let nodes = &self.nodes[p];
+                lanes.add_to(&mut from[nodes[0] as usize], base[p]);
+                lanes.take_from(&mut from[nodes[1] as usize], first[p]);
+                lanes.take_from(&mut from[nodes[2] as usize], shared[p]);
+                lanes.take_from(&mut from[nodes[3] as usize], last[p]);
+            }
+        } else {
+            for i in 0..D {
+                for c in 0..D {
+                    let forces = forces[i][c].store();
+                    for lane in 0..LANES {
+                        let nodes = &self.nodes[lane / 2];
+                        from[nodes[i + 1 + lane % 2] as usize][c] -= forces.0[lane];
+                        from[nodes[0] as usize][c] += forces.0[lane];
+                    }
+                }
+            }
+        }
     }
 
     /// The internal variables of its elements.
     #[inline(always)]
-    fn variables<M: PointLaw, R: Registers>(&self, like: Wide<R>, internal: &[f64]) -> [Wide<R>; MOST_VARIABLES] {
+    fn variables<M: PointLaw, R: Registers>(
+        like: Wide<R>,
+        elements: &[u32; LANES],
+        internal: &[f64],
+    ) -> [Wide<R>; MOST_VARIABLES] {
         let mut found = [like; MOST_VARIABLES];
         for k in 0..M::VARIABLES {
-            let of_element = |lane: usize| internal[M::VARIABLES * self.elements[lane] as usize + k];
+            let of_element = |lane: usize| internal[M::VARIABLES * elements[lane] as usize + k];
             found[k] = like.load(&Lanes::at_levels(of_element));
         }
         found
@@ -135,48 +261,24 @@ impl<const D: usize> Group<D> {
 
     /// Stores them.
     #[inline(always)]
-    fn store<M: PointLaw, R: Registers>(&self, variables: &[Wide<R>; MOST_VARIABLES], internal: &mut [f64]) {
+    fn store<M: PointLaw, R: Registers>(
+        &self,
+        variables: &[Wide<R>; MOST_VARIABLES],
+        elements: &[u32; LANES],
+        internal: &mut [f64],
+    ) {
         for k in 0..M::VARIABLES {
             let stored = variables[k].store();
-            for lane in 0..self.count as usize {
-                internal[M::VARIABLES * self.elements[lane] as usize + k] = stored.0[lane];
+            for lane in (0..LANES).filter(|lane| self.volume.0[*lane] > 0.0) {
+                internal[M::VARIABLES * elements[lane] as usize + k] = stored.0[lane];
             }
         }
     }
-
-    /// H = ∂u_a/∂X_b, and ∇φ_i of the other nodes.
-    #[inline(always)]
-    fn gradient<R: Registers>(&self, like: Wide<R>, displacement: &[[f64; D]]) -> [Tensors<R, D>; 2] {
-        let (zero, first) = (like.zero(), gather(like, displacement, &self.first));
-        let (mut gradient, mut slopes) = ([[zero; D]; D], [[zero; D]; D]);
-        for i in 0..D {
-            slopes[i] = load(like, &self.slopes[i]);
-            let u = gather(like, displacement, &self.others[i]);
-            for a in 0..D {
-                (0..D).for_each(|b| gradient[a][b] += (u[a] - first[a]) * slopes[i][b]);
-            }
-        }
-        [gradient, slopes]
-    }
-}
-
-/// A nodal field at eight nodes.
-#[inline(always)]
-fn gather<R: Registers, const D: usize>(like: Wide<R>, field: &[[f64; D]], nodes: &[u32; LANES]) -> [Wide<R>; D] {
-    let mut found = [like; D];
-    if D == 2 {
-        let field = field.as_flattened().as_chunks::<2>().0;
-        let both = like.transpose(nodes.each_ref().map(|node| &field[*node as usize]));
-        (0..D).for_each(|c| found[c] = both[c]);
-    } else {
-        (0..D).for_each(|c| found[c] = like.load(&Lanes::at_levels(|lane| field[nodes[lane] as usize][c])));
-    }
-    found
 }
 
 impl<M: PointLaw, const D: usize> Kernel<D> for PointKernel<M, D> {
     type Chunk<'a>
-        = &'a [Group<D>]
+        = ChunkData<'a, M, D>
     where
         M: 'a;
 
@@ -189,11 +291,10 @@ impl<M: PointLaw, const D: usize> Kernel<D> for PointKernel<M, D> {
     }
 
     #[inline(always)]
-    fn chunks(&self, strip: usize) -> impl Iterator<Item = (&Reach, &[Group<D>])> {
-        let chunks = &self.chunks[self.of_strip[strip]..self.of_strip[strip + 1]];
-        chunks.iter().map(
+    fn chunks(&self, strip: usize) -> impl Iterator<Item = (&Reach, ChunkData<'_, M, D>)> {
+        self.chunks_of(strip).iter().map(
             #[inline(always)]
-            |(reach, groups)| (reach, &self.groups[groups.start as usize..groups.end as usize]),
+            |chunk| (&chunk.reach, self.data(chunk)),
         )
     }
 
@@ -201,46 +302,38 @@ impl<M: PointLaw, const D: usize> Kernel<D> for PointKernel<M, D> {
     fn sweep<L: Registers>(
         &self,
         lanes: L,
-        chunk: &&[Group<D>],
+        chunk: &ChunkData<'_, M, D>,
         displacement: &[[f64; D]],
         internal: &mut [f64],
         force: &mut [[f64; D]],
         energy: &mut Eight,
     ) {
         let like = Wide::zeros(lanes);
+        // One check of an index is enough for both.
         let force = &mut force[..displacement.len()];
-        let mut total = like.load(&Lanes(*energy));
-        for group in *chunk {
-            let [gradient, slopes] = group.gradient(like, displacement);
-            let mut variables = group.variables::<M, L>(like, internal);
-            let law = &self.laws[group.law as usize];
-            let (stress, density) = law.respond(&gradient, &mut variables[..M::VARIABLES]);
-            group.store::<M, L>(&variables, internal);
-            let volume = like.load(&group.volume);
-            total += density * volume * 2.0;
-            let mut first = [like; D];
-            for i in 0..D {
-                let mut on_node = [like; D];
-                for a in 0..D {
-                    (0..D).for_each(|b| on_node[a] += stress[a][b] * slopes[i][b]);
-                    on_node[a] = on_node[a] * volume;
-                    first[a] += on_node[a];
-                }
-                scatter(force, &group.others[i], on_node.map(|f| -f));
-            }
-            scatter(force, &group.first, first);
+        // Each part has a loop of its own: a group alone keeps the processor waiting for quotients and powers.
+        let mut tensors = [[[Lanes::ZERO; D]; D]; GROUPS];
+        for (group, gradient) in chunk.groups.iter().zip(&mut tensors) {
+            let [_, found] = group.gradient(like, displacement);
+            (0..D).for_each(|a| gradient[a] = store(&found[a]));
         }
-        *energy = total.store().0;
-    }
-}
-
-/// Adds forces at eight nodes.
-#[inline(always)]
-fn scatter<R: Registers, const D: usize>(force: &mut [[f64; D]], nodes: &[u32; LANES], added: [Wide<R>; D]) {
-    let added = added.map(Value::store);
-    for lane in 0..LANES {
-        let at = &mut force[nodes[lane] as usize];
-        (0..D).for_each(|c| at[c] += added[c].0[lane]);
+        let mut total = like;
+        for ((group, elements), tensor) in chunk.groups.iter().zip(chunk.elements).zip(&mut tensors) {
+            let mut gradient = [[like; D]; D];
+            (0..D).for_each(|a| gradient[a] = load(like, &tensor[a]));
+            let mut variables = Group::<D>::variables::<M, L>(like, elements, internal);
+            let (stress, density) = chunk.law.respond(&gradient, &mut variables[..M::VARIABLES]);
+            group.store::<M, L>(&variables, elements, internal);
+            let volume = like.load(&group.volume);
+            total += density * volume;
+            for a in 0..D {
+                (0..D).for_each(|b| tensor[a][b] = (stress[a][b] * volume).store());
+            }
+        }
+        for (group, stress) in chunk.groups.iter().zip(&tensors) {
+            group.subtract(lanes, &group.forces(like, stress), force);
+        }
+        *energy = (like.load(&Lanes(*energy)) + total * 2.0).store().0;
     }
 }
 
@@ -259,10 +352,10 @@ impl<M: PointLaw, const D: usize> Task for StripBound<'_, M, D> {
     fn run<L: Registers>(self, lanes: L) -> f64 {
         let like = Wide::zeros(lanes);
         let mut largest = like;
-        for (_, groups) in self.kernel.chunks(self.strip) {
-            for group in groups {
-                let [gradient, slopes] = group.gradient(like, self.displacement);
-                let law = group.law as usize;
+        for chunk in self.kernel.chunks_of(self.strip) {
+            let law = chunk.law as usize;
+            for group in self.kernel.data(chunk).groups {
+                let [slopes, gradient] = group.gradient(like, self.displacement);
                 let bound = self.kernel.laws[law].stiffness_bound(&gradient, &root(&slopes));
                 largest = largest.worse(bound * ((D + 1) as f64 / self.densities[law]));
             }
@@ -287,7 +380,8 @@ fn root<V: Value, const D: usize>(slopes: &[[V; D]; D]) -> [[V; D]; D] {
         }
     }
     if D == 1 {
-        return square.map(|row| row.map(Value::sqrt));
+        square[0][0] = square[0][0].sqrt();
+        return square;
     }
     // √Q = (Q + √det Q 1)/√(tr Q + 2 √det Q); lanes that are left have no slopes.
     let determinant = (square[0][0] * square[1][1] - square[0][1] * square[1][0]).sqrt();
@@ -295,13 +389,15 @@ fn root<V: Value, const D: usize>(slopes: &[[V; D]; D]) -> [[V; D]; D] {
     let scale = trace.fill(1.0) / trace.sqrt().max(trace.fill(f64::MIN_POSITIVE));
     for a in 0..D {
         square[a][a] += determinant;
+        (0..D).for_each(|b| square[a][b] = square[a][b] * scale);
     }
-    square.map(|row| row.map(|x| x * scale))
+    square
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ids::ElementId;
     use crate::kernel::Stiffness;
     use crate::material::{HyperelasticLaw, Kinematics, LinearLaw, Response};
     use crate::mesh::Mesh;

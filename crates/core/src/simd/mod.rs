@@ -82,6 +82,8 @@ pub trait Registers: Copy {
     /// Each number at the place after its own, behind the one given; the last is left out.
     fn later(self, first: f64, v: Self::Eight) -> Self::Eight;
 
+    /// The first components of the vectors of both, two and two, and the second components.
+    fn interleave(self, a: Self::Eight, b: Self::Eight) -> [Self::Eight; 2];
     /// The first and the second components of eight vectors.
     fn transpose(self, vectors: [&[f64; 2]; 8]) -> [Self::Eight; 2];
 
@@ -280,6 +282,11 @@ impl Registers for Portable {
     }
 
     #[inline(always)]
+    fn interleave(self, a: Eight, b: Eight) -> [Eight; 2] {
+        [[a[0], b[0], a[2], b[2], a[4], b[4], a[6], b[6]], [a[1], b[1], a[3], b[3], a[5], b[5], a[7], b[7]]]
+    }
+
+    #[inline(always)]
     fn transpose(self, [a, b, c, d, e, f, g, h]: [&[f64; 2]; 8]) -> [Eight; 2] {
         [[a[0], b[0], c[0], d[0], e[0], f[0], g[0], h[0]], [a[1], b[1], c[1], d[1], e[1], f[1], g[1], h[1]]]
     }
@@ -426,7 +433,7 @@ mod tests {
             let (c, d) = (r.first(a), r.load4(&[self.0[1][1], self.0[1][3], self.0[1][5], self.0[1][7]]));
             let nothing = r.splat(f64::NAN);
             let pairs: [[f64; 2]; 8] = std::array::from_fn(|i| [self.0[0][i], self.0[1][i]]);
-            let transposed = r.transpose(pairs.each_ref());
+            let (transposed, interleaved) = (r.transpose(pairs.each_ref()), r.interleave(a, b));
             let eight = [
                 r.splat(self.0[0][3]),
                 r.add(a, b),
@@ -442,6 +449,8 @@ mod tests {
                 r.later(self.0[1][6], a),
                 transposed[0],
                 transposed[1],
+                interleaved[0],
+                interleaved[1],
                 r.swap_pairs(a),
                 r.turn(a),
                 r.with_first(b, c),
@@ -480,8 +489,10 @@ mod tests {
         }
         assert!(plain.0[7].iter().chain(&plain.0[9]).all(|x| x.is_nan()));
         assert_eq!([plain.0[6], plain.0[12], plain.0[13]], [values[0], values[0], values[1]]);
-        assert_eq!(plain.0[14], [2, 3, 0, 1, 6, 7, 4, 5].map(|i| values[0][i]));
-        assert_eq!(plain.0[15], [5, 4, 7, 6, 1, 0, 3, 2].map(|i| values[0][i]));
+        let alternating = |c: usize| std::array::from_fn(|i| values[i % 2][i - i % 2 + c]);
+        assert_eq!([plain.0[14], plain.0[15]], [0, 1].map(alternating));
+        assert_eq!(plain.0[16], [2, 3, 0, 1, 6, 7, 4, 5].map(|i| values[0][i]));
+        assert_eq!(plain.0[17], [5, 4, 7, 6, 1, 0, 3, 2].map(|i| values[0][i]));
         assert_eq!(plain.2[1], [values[0][5] - values[0][4], values[1][5] - values[0][5]]);
     }
 }

@@ -3,8 +3,8 @@
 //! [`Lanes`](super::lanes::Lanes) are memory: where a formula holds many of them, the compiler keeps their arrays in
 //! memory too, and moves three numbers for each operation. In registers a formula moves those that do not fit.
 
-use super::Registers;
 use super::lanes::{LANES, Lanes, Value};
+use super::{Registers, Two};
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -31,6 +31,27 @@ impl<R: Registers> Wide<R> {
     #[inline(always)]
     pub fn transpose(self, vectors: [&[f64; 2]; LANES]) -> [Self; 2] {
         let [first, second] = self.registers.transpose(vectors);
+        [self.with(first), self.with(second)]
+    }
+
+    /// Four vectors, one after the other.
+    #[inline(always)]
+    pub(crate) fn quad(self, vectors: [Two; 4]) -> Self {
+        self.with(self.registers.quad(vectors))
+    }
+
+    /// The four vectors.
+    #[inline(always)]
+    pub(crate) fn vectors(self) -> [R::Two; 4] {
+        let [a, c] = self.registers.ends(self.numbers);
+        let [b, d] = self.registers.ends(self.registers.swap_pairs(self.numbers));
+        [a, b, c, d]
+    }
+
+    /// The first components of the vectors of both, two and two, and the second components.
+    #[inline(always)]
+    pub(crate) fn interleave(self, other: Self) -> [Self; 2] {
+        let [first, second] = self.registers.interleave(self.numbers, other.numbers);
         [self.with(first), self.with(second)]
     }
 

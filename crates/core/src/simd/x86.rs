@@ -123,6 +123,12 @@ impl Registers for V3 {
     }
 
     #[inline(always)]
+    fn interleave(self, [a, b]: Self::Eight, [c, d]: Self::Eight) -> [Self::Eight; 2] {
+        let first = [self.avx._mm256_unpacklo_pd(a, c), self.avx._mm256_unpacklo_pd(b, d)];
+        [first, [self.avx._mm256_unpackhi_pd(a, c), self.avx._mm256_unpackhi_pd(b, d)]]
+    }
+
+    #[inline(always)]
     fn transpose(self, [a, b, c, d, e, f, g, h]: [&[f64; 2]; 8]) -> [Self::Eight; 2] {
         let [p, q] = [both(self, a, c), both(self, e, g)];
         let [r, s] = [both(self, b, d), both(self, f, h)];
@@ -288,6 +294,11 @@ impl Registers for V4 {
     #[inline(always)]
     fn later(self, first: f64, v: __m512d) -> __m512d {
         cast(self.avx512f._mm512_alignr_epi64::<7>(cast(v), cast(self.splat(first))))
+    }
+
+    #[inline(always)]
+    fn interleave(self, a: __m512d, b: __m512d) -> [__m512d; 2] {
+        [self.avx512f._mm512_unpacklo_pd(a, b), self.avx512f._mm512_unpackhi_pd(a, b)]
     }
 
     #[inline(always)]
