@@ -5,7 +5,7 @@
 //! On the principal axes of E the tangent of an isotropic law couples the normal components with each other, and the
 //! shear with itself alone.
 
-use super::hyperelastic::{HyperelasticLaw, Moduli, across, dilatation, green_strain, log_and_rest};
+use super::hyperelastic::{HyperelasticLaw, Moduli, across, dilatation, green_strain, logarithm};
 use super::{Elastic, Kinematics, LinearLaw};
 use crate::simd::lanes::Value;
 
@@ -113,11 +113,11 @@ fn tangent<V: Value>(law: HyperelasticLaw, moduli: &Moduli, strains: [V; 2], dil
     match law {
         // S_a = μ + (λ ln J − μ)/C_a.
         HyperelasticLaw::NeoHookean => {
-            let mut log = log_and_rest(dilatation).0;
+            let mut log = logarithm(dilatation).log;
             let mut effective = one * lambda;
             if moduli.free_thickness {
                 let z = across(moduli, log);
-                log += log_and_rest(z).0 * 0.5;
+                log += logarithm(z).log * 0.5;
                 let resistance = (one + z) * shear;
                 effective = resistance * lambda / (resistance + one * (0.5 * lambda));
             }
@@ -131,13 +131,13 @@ fn tangent<V: Value>(law: HyperelasticLaw, moduli: &Moduli, strains: [V; 2], dil
         }
         // S_a = τ_a/C_a with τ_a = 2μh_a + λΣh.
         HyperelasticLaw::Hencky => {
-            let logs = strains.map(|e| log_and_rest(e * 2.0).0 * 0.5);
+            let logs = strains.map(|e| logarithm(e * 2.0).log * 0.5);
             let trace = (logs[0] + logs[1]) * lambda;
             let kirchhoff = logs.map(|log| log * (2.0 * shear) + trace);
             let direct = |a: usize| (one * (lambda + 2.0 * shear) - kirchhoff[a] * 2.0) * inverse[a];
             // (h₁ − h₂)/(E₁ − E₂) = L/C₂ with L = ln(1 + x)/x, x = C₁/C₂ − 1.
             let x = (strains[0] - strains[1]) * 2.0 / squares[1];
-            let slope = log_and_rest(x + one * 1e-300).0 / (x + one * 1e-300);
+            let slope = logarithm(x + one * 1e-300).log / (x + one * 1e-300);
             ([direct(0), one * lambda * both, direct(1)], (slope * shear - kirchhoff[1]) * both)
         }
     }

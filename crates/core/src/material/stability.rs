@@ -3,7 +3,7 @@
 //! On the principal axes, with δF_ab along current axis a and reference axis b, the tangent ∂P/∂F of an isotropic law
 //! couples δF₁₁ with δF₂₂ by the second derivatives of the energy in the stretches, and δF₁₂ with δF₂₁.
 
-use super::hyperelastic::{HyperelasticLaw, Moduli, across, dilatation, green_strain, log_and_rest};
+use super::hyperelastic::{HyperelasticLaw, Moduli, across, dilatation, green_strain, logarithm};
 use crate::simd::lanes::Value;
 
 /// Squarings of the matrix whose trace bounds its eigenvalue: (tr M³²)^(1/32) is at most 4^(1/32) = 1.044 times the
@@ -58,11 +58,11 @@ impl<V: Value> Principal<V> {
         match law {
             // P_a = μλ_a + (λ ln J − μ)/λ_a.
             HyperelasticLaw::NeoHookean => {
-                let mut log = log_and_rest(dilatation).0;
+                let mut log = logarithm(dilatation).log;
                 let mut effective = one * lambda;
                 if moduli.free_thickness {
                     let z = across(moduli, log);
-                    log += log_and_rest(z).0 * 0.5;
+                    log += logarithm(z).log * 0.5;
                     let resistance = (one + z) * shear;
                     effective = resistance * lambda / (resistance + one * (0.5 * lambda));
                 }
@@ -81,13 +81,13 @@ impl<V: Value> Principal<V> {
             }
             // P_a = τ_a/λ_a with τ_a = 2μ ln λ_a + λ ln J.
             HyperelasticLaw::Hencky => {
-                let logs = strains.map(|e| log_and_rest(e * 2.0).0 * 0.5);
+                let logs = strains.map(|e| logarithm(e * 2.0).log * 0.5);
                 let trace = (logs[0] + logs[1]) * lambda;
                 let kirchhoff = logs.map(|log| log * (2.0 * shear) + trace);
                 let direct = [0, 1].map(|a| (one * (lambda + 2.0 * shear) - kirchhoff[a]) / squares[a]);
                 let sum = stretches[0] + stretches[1];
                 let difference = radius * 4.0 / sum;
-                let slope = log_and_rest(difference / stretches[1]).0 / difference;
+                let slope = logarithm(difference / stretches[1]).log / difference;
                 let symmetric = (slope * stretches[1] * (2.0 * shear) - kirchhoff[1]) / product;
                 let skew = (kirchhoff[0] / stretches[0] + kirchhoff[1] / stretches[1]) / sum;
                 Self::of(direct, one * lambda / product, symmetric, skew)
