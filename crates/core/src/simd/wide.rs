@@ -97,7 +97,7 @@ impl<R: Registers> Value for Wide<R> {
 
     #[inline(always)]
     fn replaced_where(self, x: Self, wanted: impl Fn(f64) -> bool, f: impl Fn(f64) -> f64) -> Self {
-        self.load(&self.store().replaced_where(x.store(), wanted, f))
+        self.load(&replaced_where(&self.store(), &x.store(), wanted, f))
     }
 
     #[inline(always)]
@@ -109,6 +109,13 @@ impl<R: Registers> Value for Wide<R> {
     fn worse(self, other: Self) -> Self {
         self.with(self.registers.max_bits(self.numbers, other.numbers))
     }
+}
+
+/// In the rare case: only then the numbers of a loop around it go to memory.
+#[cold]
+#[inline(never)]
+fn replaced_where(of: &Lanes, x: &Lanes, wanted: impl Fn(f64) -> bool, f: impl Fn(f64) -> f64) -> Lanes {
+    of.replaced_where(*x, wanted, f)
 }
 
 /// An operation on two numbers at each level.
