@@ -107,6 +107,17 @@ impl<M: PointLaw, const D: usize> PointKernel<M, D> {
         2.0 / largest.sqrt()
     }
 
+    /// Whether the stable step is at least this one (s): much faster than to find it.
+    pub(crate) fn is_stable(&self, problem: &Problem<D>, displacement: &[[f64; D]], step: f64) -> bool {
+        let largest = 4.0 / (step * step);
+        let limits = problem.materials().iter().map(|law| largest * law.density() / (D + 1) as f64);
+        let limits: Vec<f64> = limits.collect();
+        (0..self.strips.count()).all(|strip| {
+            let displacement = &displacement[self.strips.nodes(strip)];
+            run_task(StripTest { kernel: self, strip, displacement, limits: &limits })
+        })
+    }
+
     #[inline(always)]
     fn chunks_of(&self, strip: usize) -> &[Chunk] {
         &self.chunks[self.of_strip[strip]..self.of_strip[strip + 1]]
@@ -356,7 +367,7 @@ impl<M: PointLaw, const D: usize> Task for StripBound<'_, M, D> {
             let law = chunk.law as usize;
             for group in self.kernel.data(chunk).groups {
                 let [slopes, gradient] = group.gradient(like, self.displacement);
-                let bound = self.kernel.laws[law].stiffness_bound(&gradient, &root(&slopes));
+                let bound = self.kernel.laws[law].stiffness_bound(&gradient, &root(square(&slopes)));
                 largest = largest.worse(bound * ((D + 1) as f64 / self.densities[law]));
             }
         }
@@ -364,9 +375,38 @@ impl<M: PointLaw, const D: usize> Task for StripBound<'_, M, D> {
     }
 }
 
-/// The root of Σ ∇φ_i⊗∇φ_i over all nodes.
+/// Whether no ω² of the elements of a strip is above that of the limits (Pa/m²).
+struct StripTest<'a, M, const D: usize> {
+    kernel: &'a PointKernel<M, D>,
+    strip: usize,
+    displacement: &'a [[f64; D]],
+    limits: &'a [f64],
+}
+
+impl<M: PointLaw, const D: usize> Task for StripTest<'_, M, D> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: Registers>(self, lanes: L) -> bool {
+        let like = Wide::zeros(lanes);
+        for chunk in self.kernel.chunks_of(self.strip) {
+            let limit = self.limits[chunk.law as usize];
+            let ChunkData { groups, law, .. } = self.kernel.data(chunk);
+            for group in groups {
+                let [slopes, gradient] = group.gradient(like, self.displacement);
+                let excess = law.stiffness_excess(&gradient, &square(&slopes), limit);
+                if excess.any(|excess| !(excess <= 0.0)) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+}
+
+/// Σ ∇φ_i⊗∇φ_i over all nodes.
 #[inline(always)]
-fn root<V: Value, const D: usize>(slopes: &[[V; D]; D]) -> [[V; D]; D] {
+fn square<V: Value, const D: usize>(slopes: &[[V; D]; D]) -> [[V; D]; D] {
     let mut square = [[slopes[0][0].zero(); D]; D];
     for a in 0..D {
         for b in 0..D {
@@ -379,6 +419,12 @@ fn root<V: Value, const D: usize>(slopes: &[[V; D]; D]) -> [[V; D]; D] {
             square[a][b] += first * second;
         }
     }
+    square
+}
+
+/// The root of a symmetric tensor Q that is not negative.
+#[inline(always)]
+fn root<V: Value, const D: usize>(mut square: [[V; D]; D]) -> [[V; D]; D] {
     if D == 1 {
         square[0][0] = square[0][0].sqrt();
         return square;
@@ -477,6 +523,8 @@ mod tests {
         let rest = vec![[0.0; 2]; problem.mesh().node_count()];
         let (found, expected) = (points.stable_step(&problem, &rest), crate::dynamics::element_time_step(&problem));
         assert!((0.9785..=1.0 + 1e-14).contains(&(found / expected)), "{found} against {expected}");
+        assert!(points.is_stable(&problem, &rest, found));
+        assert!(!points.is_stable(&problem, &rest, 1.023 * found));
     }
 
     /// A law with two internal variables: the number of instants, and the largest trace of H, which softens it.
@@ -498,6 +546,15 @@ mod tests {
 
         fn stiffness_bound<V: Value, const D: usize>(&self, gradient: &[[V; D]; D], root: &[[V; D]; D]) -> V {
             self.0.stiffness_bound(gradient, root)
+        }
+
+        fn stiffness_excess<V: Value, const D: usize>(
+            &self,
+            gradient: &[[V; D]; D],
+            square: &[[V; D]; D],
+            limit: f64,
+        ) -> V {
+            self.0.stiffness_excess(gradient, square, limit)
         }
     }
 

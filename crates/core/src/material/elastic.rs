@@ -1,7 +1,7 @@
 //! Isotropic linear elasticity in 1D and 2D, eq. \[9\].
 
 use super::hyperelastic::{HyperelasticLaw, Moduli, Response, dilatation, green_strain, present_stress, volume_ratio};
-use super::stability::bound;
+use super::stability::{bound, excess};
 use super::{Kinematics, Law, LinearLaw, MaterialError, PointLaw, Tensor, contract};
 use crate::simd::lanes::Value;
 
@@ -162,6 +162,15 @@ impl Elastic {
         Moduli { lambda: if free_thickness { in_space } else { self.lambda }, shear: self.shear, free_thickness }
     }
 
+    /// A hyperelastic law, and where it has the tangent at this gradient: with small kinematics that of any at rest.
+    #[inline(always)]
+    fn of_tangent<V: Value, const D: usize>(&self, gradient: &[[V; D]; D]) -> (HyperelasticLaw, [[V; D]; D]) {
+        match self.kinematics {
+            Kinematics::Finite(law) => (law, *gradient),
+            Kinematics::Small => (HyperelasticLaw::SaintVenantKirchhoff, [[gradient[0][0].zero(); D]; D]),
+        }
+    }
+
     /// σ = P Fᵀ/J of a first Piola–Kirchhoff stress, with the thickness that the law gives a sheet.
     fn present<const D: usize>(&self, first: &Tensor<D>, gradient: &Tensor<D>) -> Tensor<D> {
         let thickness = match (self.hypothesis, self.kinematics) {
@@ -260,14 +269,19 @@ impl PointLaw for Elastic {
 
     #[inline(always)]
     fn stiffness_bound<V: Value, const D: usize>(&self, gradient: &[[V; D]; D], root: &[[V; D]; D]) -> V {
-        match self.kinematics {
-            Kinematics::Finite(law) => bound(law, &self.finite(law), gradient, root),
-            Kinematics::Small => {
-                let at_rest = gradient.map(|row| row.map(Value::zero));
-                let law = HyperelasticLaw::SaintVenantKirchhoff;
-                bound(law, &self.finite(law), &at_rest, root)
-            }
-        }
+        let (law, gradient) = self.of_tangent(gradient);
+        bound(law, &self.finite(law), &gradient, root)
+    }
+
+    #[inline(always)]
+    fn stiffness_excess<V: Value, const D: usize>(
+        &self,
+        gradient: &[[V; D]; D],
+        square: &[[V; D]; D],
+        limit: f64,
+    ) -> V {
+        let (law, gradient) = self.of_tangent(gradient);
+        excess(law, &self.finite(law), &gradient, square, limit)
     }
 }
 

@@ -76,6 +76,11 @@ pub trait PointLaw: Copy + Send + Sync {
     /// A bound on the largest eigenvalue of (1⊗R) ∂P/∂F (1⊗R) for a symmetric R (1/m): that of K_T of an element over
     /// its volume (Pa/m²), if R² = Σ ∇φ_i⊗∇φ_i.
     fn stiffness_bound<V: Value, const D: usize>(&self, gradient: &[[V; D]; D], root: &[[V; D]; D]) -> V;
+
+    /// Positive where this eigenvalue, of R² = `square`, is above a limit (Pa/m²), and nowhere else: much faster than
+    /// the bound.
+    fn stiffness_excess<V: Value, const D: usize>(&self, gradient: &[[V; D]; D], square: &[[V; D]; D], limit: f64)
+    -> V;
 }
 
 /// Room for internal variables of a point.

@@ -18,23 +18,49 @@ pub(super) fn bound<V: Value, const D: usize>(
     h: &[[V; D]; D],
     root: &[[V; D]; D],
 ) -> V {
-    let strain = green_strain(h);
+    let (principal, axes) = Principal::of_gradient(law, moduli, h);
     if D == 1 {
-        let half = strain[0][0] * 0.5;
-        let principal = Principal::new(law, moduli, [half, half], dilatation(h));
         return principal.direct[0] * root[0][0] * root[0][0];
     }
-    // Of two equal stretches any axes will do; the numbers are far below the rounding of strains.
-    let tiny = strain[0][0].fill(1e-150);
-    let (mean, half) = ((strain[0][0] + strain[1][1]) * 0.5, (strain[0][0] - strain[1][1]) * 0.5 + tiny);
-    let radius = (half * half + strain[0][1] * strain[0][1]).sqrt();
-    let inverse = tiny.fill(1.0) / radius;
-    let (cosine, sine) = (half * inverse, strain[0][1] * inverse);
-    let principal = Principal::new(law, moduli, [mean, radius], dilatation(h));
-    // R on the axes of C.
-    let (middle, across, off) = ((root[0][0] + root[1][1]) * 0.5, (root[0][0] - root[1][1]) * 0.5, root[0][1]);
-    let (turned, off) = (across * cosine + off * sine, off * cosine - across * sine);
-    largest_eigenvalue(&principal, [[middle + turned, off], [off, middle - turned]])
+    largest_eigenvalue(&principal, turned(root, axes))
+}
+
+/// Positive where the largest eigenvalue of (1⊗R) ∂P/∂F (1⊗R), Q = R², is above the limit, and nowhere else.
+///
+/// It is not where 1⊗Q⁻¹ − A/limit is not negative. Of these rows (1,1) and (2,1) have nothing in common, and what is
+/// left without them is a matrix of two rows. All is multiplied by determinants.
+#[inline(always)]
+pub(super) fn excess<V: Value, const D: usize>(
+    law: HyperelasticLaw,
+    moduli: &Moduli,
+    h: &[[V; D]; D],
+    square: &[[V; D]; D],
+    limit: f64,
+) -> V {
+    let (principal, axes) = Principal::of_gradient(law, moduli, h);
+    let Principal { direct, coupled, shear: [straight, crossed] } = principal;
+    if D == 1 {
+        return direct[0] * square[0][0] - direct[0].fill(limit);
+    }
+    let [[xx, xy], [_, yy]] = turned(square, axes);
+    let scale = (xx * yy - xy * xy) * (1.0 / limit);
+    let (coupled, crossed, straight) = (coupled * scale, crossed * scale, straight * scale);
+    let (a, b) = (yy - direct[0] * scale, yy - straight);
+    let (c, d) = (xx - straight, xx - direct[1] * scale);
+    let (ab, square) = (a * b, xy * xy);
+    let first = c * ab - square * b - crossed * crossed * a;
+    let second = d * ab - square * a - coupled * coupled * b;
+    let mixed = xy * (coupled * b + crossed * a);
+    (-a).max(-b).max(-first).max(mixed * mixed - first * second)
+}
+
+/// A symmetric tensor on axes with this cosine and sine of twice their angle.
+#[inline(always)]
+fn turned<V: Value, const D: usize>(tensor: &[[V; D]; D], [cosine, sine]: [V; 2]) -> [[V; 2]; 2] {
+    let middle = (tensor[0][0] + tensor[1][1]) * 0.5;
+    let (across, off) = ((tensor[0][0] - tensor[1][1]) * 0.5, tensor[0][1]);
+    let (across, off) = (across * cosine + off * sine, off * cosine - across * sine);
+    [[middle + across, off], [off, middle - across]]
 }
 
 /// The tangent on the principal axes.
@@ -48,6 +74,23 @@ struct Principal<V> {
 }
 
 impl<V: Value> Principal<V> {
+    /// With cosine and sine of twice the angle of the axes.
+    #[inline(always)]
+    fn of_gradient<const D: usize>(law: HyperelasticLaw, moduli: &Moduli, h: &[[V; D]; D]) -> (Self, [V; 2]) {
+        let strain = green_strain(h);
+        if D == 1 {
+            let half = strain[0][0] * 0.5;
+            return (Self::new(law, moduli, [half, half], dilatation(h)), [half, half]);
+        }
+        // Of two equal stretches any axes will do; the numbers are far below the rounding of strains.
+        let tiny = strain[0][0].fill(1e-150);
+        let (mean, half) = ((strain[0][0] + strain[1][1]) * 0.5, (strain[0][0] - strain[1][1]) * 0.5 + tiny);
+        let radius = (half * half + strain[0][1] * strain[0][1]).sqrt();
+        let inverse = tiny.fill(1.0) / radius;
+        let principal = Self::new(law, moduli, [mean, radius], dilatation(h));
+        (principal, [half * inverse, strain[0][1] * inverse])
+    }
+
     /// At principal Green strains of this mean and half difference, which is not 0.
     #[inline(always)]
     fn new(law: HyperelasticLaw, moduli: &Moduli, [mean, radius]: [V; 2], dilatation: V) -> Self {
@@ -192,6 +235,11 @@ mod tests {
                     let bound = law.stiffness_bound(&h, &root);
                     let sharp = exact * (1.0 - 1e-8) <= bound && bound <= 1.0443 * exact * (1.0 + 1e-8);
                     proptest::prop_assert!(sharp, "{law:?}: {bound} for {exact}");
+                    let most = values.max();
+                    let product = |i: usize, j: usize| root[i][0] * root[0][j] + root[i][1] * root[1][j];
+                    let square = [[product(0, 0), product(0, 1)], [product(1, 0), product(1, 1)]];
+                    let [above, below] = [1.0 - 1e-6, 1.0 + 1e-6].map(|x| law.stiffness_excess(&h, &square, x * most));
+                    proptest::prop_assert!(above > 0.0 && below <= 0.0, "{law:?}: {above}, {below} around {most}");
                 }
             }
         }
@@ -203,5 +251,6 @@ mod tests {
         let bar =
             Elastic::bar(3.0, 1.0, 1.0).unwrap().with_kinematics(Kinematics::Finite(HyperelasticLaw::Hencky)).unwrap();
         assert!((bar.stiffness_bound(&[[0.0]], &[[2.0]]) - 12.0).abs() < 1e-14);
+        assert!((bar.stiffness_excess(&[[0.0]], &[[4.0]], 11.0) - 1.0).abs() < 1e-14);
     }
 }
