@@ -47,6 +47,7 @@ from percute.names import name_arguments as _name_arguments
 from percute.problem import Problem
 from percute.rebound import NextTouch, Rebound
 from percute.records import ElementMap, OverTime, Parts, Separation, Sources, SourcesOverTime, WorstElement
+from percute.rigid_motion import RigidMotion
 from percute.simulation import simulate, true_errors
 from percute.statement import BodyForce, Elastic, Plane, Support, Traction
 from percute.sweeping import Sweep, sweep
@@ -94,6 +95,7 @@ __all__ = [
     "Problem",
     "Progress",
     "Rebound",
+    "RigidMotion",
     "Resultants",
     "Separation",
     "SimulationError",

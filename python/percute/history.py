@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from percute import _percute, animation_pictures, element_fields, exports, field_pictures as pictures, history_tables, notebook, tables
+from percute import _percute, animation_pictures, element_fields, exports, field_pictures as pictures, history_tables, notebook, rigid_motion, tables
 from percute.checks import flag, instance
 from percute.contact import Contact
 from percute.contents import chosen
 from percute.element_fields import Step
 from percute.progress import ProgressOption
+from percute.rigid_motion import RigidMotion
 from percute.steps import Steps
 from percute.true_error import TrueError
 from percute.views import File, Views
@@ -93,6 +94,38 @@ class History(Steps, Views):
     def stress(self, step: Step) -> NDArray[np.float64]:
         """Give the stress of each element (Pa), shape (elements, dimension, dimension), eq. [9]; ``step`` as for `strain`."""
         return element_fields.element_field(self, "stress", step)
+
+    def first_piola(self, step: Step) -> NDArray[np.float64]:
+        """Give the first Piola–Kirchhoff stress of each element (Pa), per undeformed area, shape (elements, dimension, dimension).
+
+        Row a, column b is the force along a on a surface with the undeformed normal b. With small strains it is the stress.
+        ``step`` as for `strain`.
+        """
+        return element_fields.element_field(self, "first_piola", step)
+
+    def principal_stretches(self, step: Step) -> NDArray[np.float64]:
+        """Give the principal stretches of each element in its plane, the larger first, shape (elements, dimension); ``step`` as for `strain`."""
+        return element_fields.element_field(self, "principal_stretches", step)
+
+    def rigid_motion(self, group: str | None = None) -> RigidMotion:
+        """Give the mean motion of the bodies, or of a group of elements, at all instants: its centre, rotation and momenta.
+
+        Parameters
+        ----------
+        group : str, optional
+            The name of a group of elements, such as a body; without it all elements.
+
+        Returns
+        -------
+        percute.RigidMotion
+            Of a bar, without rotation.
+
+        Raises
+        ------
+        InputError
+            There is no such group.
+        """
+        return rigid_motion.rigid_motion(self, group)
 
     def von_mises(self, step: Step) -> NDArray[np.float64]:
         """Give the von Mises stress of each element (Pa), shape (elements,), with σ_zz in plane strain; ``step`` as for `strain`."""

@@ -2,7 +2,7 @@
 
 use crate::border::vectors;
 use crate::ids::ElementId;
-use crate::material::{Law, Tensor};
+use crate::material::{Law, PointLaw, Tensor};
 use crate::mesh::Mesh;
 use crate::on_problem;
 use crate::problem::{Problem, ProblemRef};
@@ -95,6 +95,40 @@ pub fn displacement_gradient<const D: usize>(mesh: &Mesh, element: ElementId, di
         }
     }
     gradient
+}
+
+/// First Piola–Kirchhoff stress P of an element (Pa), force per undeformed area, for these displacements of all nodes
+/// (m), in rows. With small strains it is σ.
+#[must_use]
+pub fn first_piola_stress<'p>(problem: impl Into<ProblemRef<'p>>, element: ElementId, displacement: &[f64]) -> Tensor<3> {
+    fn of<const D: usize>(problem: &Problem<D>, element: ElementId, displacement: &[[f64; D]]) -> Tensor<3> {
+        let gradient = displacement_gradient(problem.mesh(), element, displacement);
+        in_space(&problem.material(element).respond(&gradient, &mut []).0)
+    }
+    fn any(problem: ProblemRef<'_>, element: ElementId, displacement: &[f64]) -> Tensor<3> {
+        on_problem!(problem, problem => of(problem, element, vectors(displacement)))
+    }
+    any(problem.into(), element, displacement)
+}
+
+/// Principal stretches of an element in the plane, the larger one first, for these displacements of all nodes (m), in
+/// rows: the roots of the eigenvalues of FᵀF. Of a bar the stretch, and 1.
+#[must_use]
+pub fn principal_stretches<'p>(problem: impl Into<ProblemRef<'p>>, element: ElementId, displacement: &[f64]) -> [f64; 2] {
+    fn of<const D: usize>(problem: &Problem<D>, element: ElementId, displacement: &[[f64; D]]) -> [f64; 2] {
+        let h = in_space(&displacement_gradient(problem.mesh(), element, displacement));
+        if D == 1 {
+            return [(1.0 + h[0][0]).abs(), 1.0];
+        }
+        // The singular values of F are the sum and the difference of the lengths of its parts that turn and mirror.
+        let turning = (2.0 + h[0][0] + h[1][1]).hypot(h[1][0] - h[0][1]);
+        let mirroring = (h[0][0] - h[1][1]).hypot(h[1][0] + h[0][1]);
+        [0.5 * (turning + mirroring), 0.5 * (turning - mirroring).abs()]
+    }
+    fn any(problem: ProblemRef<'_>, element: ElementId, displacement: &[f64]) -> [f64; 2] {
+        on_problem!(problem, problem => of(problem, element, vectors(displacement)))
+    }
+    any(problem.into(), element, displacement)
 }
 
 /// Kinetic energy of an element (J) for these velocities of all nodes (m/s), in rows, with its share of their lumped

@@ -4,7 +4,7 @@ use crate::bridge::Watch;
 use crate::problem::ProblemData;
 use crate::{bridge, errors};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
-use percute_core::element_state::{ElementState, kinetic_energy};
+use percute_core::element_state::{ElementState, first_piola_stress, kinetic_energy, principal_stretches};
 use percute_core::ids::ElementId;
 use percute_core::problem::AnyProblem;
 use pyo3::prelude::*;
@@ -12,8 +12,8 @@ use pyo3::prelude::*;
 /// Numbers of one element, from the rows of all nodes at an instant.
 type Numbers = fn(&AnyProblem, ElementId, &[f64], &mut Vec<f64>);
 
-/// A quantity of each element at instants: (instants, elements), of a tensor (instants, elements, dimension,
-/// dimension). `nodal` are velocities (m/s) for `kinetic_energy` and displacements (m) for the others, (instants,
+/// A quantity of each element at instants: (instants, elements), of one with components (instants, elements,
+/// dimension), of a tensor (instants, elements, dimension, dimension). `nodal` are velocities (m/s) for `kinetic_energy` and displacements (m) for the others, (instants,
 /// nodes, dimension).
 #[pyfunction]
 pub(crate) fn element_field<'py>(
@@ -63,6 +63,10 @@ fn quantity_of(quantity: &str) -> Option<(Numbers, usize)> {
     Some(match quantity {
         "strain" => (|p, e, u, to| to.extend(tensor(p, &ElementState::new(p, e, u).strain)), 2),
         "stress" => (|p, e, u, to| to.extend(tensor(p, &ElementState::new(p, e, u).stress)), 2),
+        "first_piola" => (|p, e, u, to| to.extend(tensor(p, &first_piola_stress(p, e, u))), 2),
+        "principal_stretches" => {
+            (|p, e, u, to| to.extend(principal_stretches(p, e, u).into_iter().take(p.dimension())), 1)
+        }
         "stress_across" => (|p, e, u, to| to.push(ElementState::new(p, e, u).stress_across), 0),
         "von_mises" => (|p, e, u, to| to.push(ElementState::new(p, e, u).von_mises()), 0),
         "pressure" => (|p, e, u, to| to.push(ElementState::new(p, e, u).pressure()), 0),
