@@ -49,6 +49,7 @@ STUDIES: tuple[Study, ...] = (
     Study("time-steps", "The paper's figure 10: the error and the time step", "time_steps"),
     Study("benchmarks", "Exact and published cases, and how the simulation converges to them", "benchmarks"),
     Study("bar-rows", "Bars that strike each other, against the exact solution", "bar_rows"),
+    Study("finite-exact", "Large strains and rotations, against exact solutions", "finite_exact"),
 )
 
 

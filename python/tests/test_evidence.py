@@ -190,8 +190,8 @@ def test_no_text_has_a_placeholder(folder: Path) -> None:
 
 def test_the_committed_page_is_short_and_has_its_figures() -> None:
     page = PAGE.read_text(encoding="utf-8")
-    # Nine studies in 300 lines, and the bars that strike each other.
-    assert len(page.splitlines()) <= 360
+    # Nine studies in 300 lines, the bars that strike each other, and large strains and rotations.
+    assert len(page.splitlines()) <= 400
     for name in re.findall(r"\]\((figures/.*?)\)", page):
         assert (PAGE.parent / name).is_file(), name
 
