@@ -115,3 +115,39 @@ def test_a_tumbling_body_ends_with_its_rebound() -> None:
     history = pc.simulate(rubber(speed=8.0), end="rebound", longest=0.1, courant=0.9)
     assert 1e-3 < history.time[-1] < 0.05
     assert np.max(np.abs(history.reaction[-1])) == 0.0 < np.max(np.abs(history.reaction))
+
+
+def rubber_block(n: int = 2, *, speed: float = 10.0, law: str = "neo_hookean") -> pc.Problem:
+    """Make a rubber block that lands on a corner."""
+    rubber = pc.Elastic(young=10e6, poisson=0.4, density=1100.0, plane="strain", kinematics="finite", law=law)
+    mesh = pc.Mesh.rectangle(0.05, 0.04, nx=5 * n, ny=4 * n).rotated(20)
+    return pc.Problem(mesh, material=rubber, obstacles=[pc.Plane(gap=1e-4, normal=(0, 1), friction=0.3)], initial_velocity=(3.0, -speed))
+
+
+def test_the_estimate_falls_with_refinement() -> None:
+    """Refined runs find their own steps, and the estimate is near the true error against the finest."""
+    verification = pc.verify(rubber_block(), end=1e-3, courant=0.9, levels=2, progress=None)
+    assert 0.8 < verification.effectivity_sup[0] < 1.6
+    assert verification.error_sup[1] < 0.9 * verification.error_sup[0]
+
+
+@pytest.mark.parametrize("law", ["neo_hookean", "svk", "hencky"])
+def test_a_history_of_another_program_has_the_same_estimate(law: str) -> None:
+    """Displacements alone give the contact forces, from the internal forces of the law, and with them the estimate."""
+    problem = rubber_block(speed=5.0, law=law)
+    own = pc.simulate(problem, end=1e-3, courant=0.9, progress=None)
+    with pytest.warns(pc.InputWarning):
+        other = pc.History.from_arrays(problem, own.time, own.displacement)
+    # The last contact forces cannot be derived.
+    count = len(other)
+    assert len(own) - 1 <= count <= len(own)
+    assert np.abs(other.reaction[: count - 1] - own.reaction[: count - 1]).max() < 1e-6 * np.abs(own.reaction).max()
+    estimates = [pc.estimate(history, every=1, progress=None) for history in (own, other)]
+    assert estimates[1].error.mean == pytest.approx(estimates[0].error.mean, rel=1e-2)
+
+
+def test_another_law_is_not_in_balance() -> None:
+    """Displacements of another law leave forces inside the body, and this is told."""
+    own = pc.simulate(rubber_block(speed=15.0), end=1e-3, courant=0.9, progress=None)
+    with pytest.raises(pc.InputError, match="balance"):
+        pc.estimate(pc.History.from_arrays(rubber_block(speed=15.0, law="hencky"), own.time, own.displacement), progress=None)

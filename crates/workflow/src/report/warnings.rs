@@ -134,10 +134,16 @@ pub(super) fn touches_again(facts: &WarningFacts<'_>) -> Option<Warning> {
     let NextTouch { node, plane, time } = facts.touches_again?;
     let time = trimmed(time, 4);
     let brief = format!("node {node} would reach plane_{plane} at {time} s");
+    let remedy = match facts.linearity.finite {
+        true => "a later end shows it",
+        false => {
+            "a run in small strains moves points along straight lines: for what follows, begin a new run there, or \
+             take kinematics = \"finite\" and a later end"
+        }
+    };
     let message = format!(
         "the body turns after its last contact, and as a rigid body its {brief}: velocities and restitution are those \
-         of the impact until the end of the run, not of all of it. A run in small strains moves points along straight \
-         lines: for what follows, begin a new run there"
+         of the impact until the end of the run, not of all of it; {remedy}"
     );
     warning("touches_again", brief, message)
 }
