@@ -395,7 +395,7 @@ impl<M: PointLaw, const D: usize> Task for StripTest<'_, M, D> {
             for group in groups {
                 let [slopes, gradient] = group.gradient(like, self.displacement);
                 let excess = law.stiffness_excess(&gradient, &square(&slopes), limit);
-                if excess.any(|excess| !(excess <= 0.0)) {
+                if excess.any(|excess| excess > 0.0 || excess.is_nan()) {
                     return false;
                 }
             }

@@ -264,7 +264,7 @@ pub(super) fn logarithm<V: Value>(e: V) -> Logarithm<V> {
 #[inline(always)]
 fn artanh_over<V: Value>(t: V) -> V {
     let near = t * series(t) + t.fill(1.0);
-    let far = |t: f64| !(t < LONGEST);
+    let far = |t: f64| !(0.0..LONGEST).contains(&t);
     if t.any(far) { near.replaced_where(t, far, |t| t.sqrt().atanh() / t.sqrt()) } else { near }
 }
 
