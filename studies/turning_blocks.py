@@ -41,7 +41,7 @@ class Case:
             body = body.refine()
         height = body.points[:, 1].min()
         wave = float(pc.Problem(body, material=material).wave_speed)
-        gap = 0.001 * SIDE * self.speed / wave + 1e-9
+        gap = 0.18 * SIDE * self.speed / wave
         away = body.points - body.points.mean(axis=0)
         spin = 0.3 * self.speed / SIDE if self.situation == "corner" else 0.0
         along = self.speed if self.situation == "oblique" else 0.0

@@ -100,7 +100,11 @@ pub fn displacement_gradient<const D: usize>(mesh: &Mesh, element: ElementId, di
 /// First Piola–Kirchhoff stress P of an element (Pa), force per undeformed area, for these displacements of all nodes
 /// (m), in rows. With small strains it is σ.
 #[must_use]
-pub fn first_piola_stress<'p>(problem: impl Into<ProblemRef<'p>>, element: ElementId, displacement: &[f64]) -> Tensor<3> {
+pub fn first_piola_stress<'p>(
+    problem: impl Into<ProblemRef<'p>>,
+    element: ElementId,
+    displacement: &[f64],
+) -> Tensor<3> {
     fn of<const D: usize>(problem: &Problem<D>, element: ElementId, displacement: &[[f64; D]]) -> Tensor<3> {
         let gradient = displacement_gradient(problem.mesh(), element, displacement);
         in_space(&problem.material(element).respond(&gradient, &mut []).0)
@@ -114,7 +118,11 @@ pub fn first_piola_stress<'p>(problem: impl Into<ProblemRef<'p>>, element: Eleme
 /// Principal stretches of an element in the plane, the larger one first, for these displacements of all nodes (m), in
 /// rows: the roots of the eigenvalues of FᵀF. Of a bar the stretch, and 1.
 #[must_use]
-pub fn principal_stretches<'p>(problem: impl Into<ProblemRef<'p>>, element: ElementId, displacement: &[f64]) -> [f64; 2] {
+pub fn principal_stretches<'p>(
+    problem: impl Into<ProblemRef<'p>>,
+    element: ElementId,
+    displacement: &[f64],
+) -> [f64; 2] {
     fn of<const D: usize>(problem: &Problem<D>, element: ElementId, displacement: &[[f64; D]]) -> [f64; 2] {
         let h = in_space(&displacement_gradient(problem.mesh(), element, displacement));
         if D == 1 {
