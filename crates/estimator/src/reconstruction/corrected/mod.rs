@@ -135,9 +135,9 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             stopped.get(at).copied().flatten().map_or_else(own, |stopped| stopped.time)
         };
         let steps = |at: usize| length / time(at);
-        let pulled = |at: usize, vector: &[f64; D]| around.pulled(at, vector);
-        let (gap, pulled) = (around.gap, &pulled);
-        let mut known = Known { problem, concentration, gap, steps: &steps, pulled, contact, arresting };
+        let unturned = |at: usize, vector: &[f64; D]| around.unturned(at, vector);
+        let (gap, unturned) = (around.gap, &unturned);
+        let mut known = Known { problem, concentration, gap, steps: &steps, unturned, contact, arresting };
         self.auxiliary_forces.replace(
             &mut known,
             |at| foreseen.free_gap(at),
@@ -279,6 +279,12 @@ impl<const D: usize> SurfaceInstant<'_, D> {
     /// A force on a node, pulled back to its star in the undeformed body.
     fn pulled(&self, at: usize, force: &[f64; D]) -> [f64; D] {
         self.present.as_ref().map_or(*force, |present| present.pull_back(at, force))
+    }
+
+    /// A vector at a node, turned back with its star. The compliance of an auxiliary contact is that of the undeformed star
+    /// for it: one that changed with the strain would give energy.
+    fn unturned(&self, at: usize, vector: &[f64; D]) -> [f64; D] {
+        self.present.as_ref().map_or(*vector, |present| present.turn_back(at, vector))
     }
 
     /// Displacements of the simulation (m), of a body that turns.

@@ -38,6 +38,11 @@ impl<'a, const D: usize> PresentStars<'a, D> {
         &self.rotations[at]
     }
 
+    /// Rᵀ v.
+    pub(super) fn turn_back(&self, at: usize, vector: &[f64; D]) -> [f64; D] {
+        std::array::from_fn(|c| (0..D).map(|d| self.rotations[at][d][c] * vector[d]).sum())
+    }
+
     /// F̄⁻¹ of a force on a contact node.
     pub(super) fn pull_back(&self, at: usize, force: &[f64; D]) -> [f64; D] {
         let mut pulled = *force;

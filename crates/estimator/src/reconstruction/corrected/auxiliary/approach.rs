@@ -199,8 +199,10 @@ impl<const D: usize> Foreseen<'_, D> {
     fn places(&self, at: usize, forces: &[[f64; D]], (by, without): (usize, &[f64; D])) -> [[f64; D]; 2] {
         let response = self.near.response(self.problem, self.operator, at);
         let [now, next] = self.displacements(at);
-        let moved = match self.turned.map(|stars| stars.rotation(at)) {
-            Some(rotation) => turned(rotation, &response.under(&self.factors, |by| turned_back(rotation, &forces[by]))),
+        let moved = match self.turned.map(|stars| (stars, stars.rotation(at))) {
+            Some((stars, rotation)) => {
+                turned(rotation, &response.under(&self.factors, |by| stars.turn_back(at, &forces[by])))
+            }
             None => response.under(&self.factors, |by| forces[by]),
         };
         let own = self.mobility(at, at).under(&forces[at]);
@@ -212,11 +214,6 @@ impl<const D: usize> Foreseen<'_, D> {
 /// R v.
 fn turned<const D: usize>(rotation: &Tensor<D>, vector: &[f64; D]) -> [f64; D] {
     from_fn(|c| dot(&rotation[c], vector))
-}
-
-/// Rᵀ v.
-fn turned_back<const D: usize>(rotation: &Tensor<D>, vector: &[f64; D]) -> [f64; D] {
-    from_fn(|c| (0..D).map(|d| rotation[d][c] * vector[d]).sum())
 }
 
 /// The data of the level before its pass.

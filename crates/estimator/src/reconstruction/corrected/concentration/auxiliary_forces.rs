@@ -42,8 +42,8 @@ pub(in crate::reconstruction::corrected) struct Known<'a, const D: usize> {
     pub(in crate::reconstruction::corrected) gap: &'a [f64],
     /// The step over the time τ of each node.
     pub(in crate::reconstruction::corrected) steps: &'a dyn Fn(usize) -> f64,
-    /// A vector at a node, pulled back to its star in the undeformed body.
-    pub(in crate::reconstruction::corrected) pulled: &'a dyn Fn(usize, &[f64; D]) -> [f64; D],
+    /// A vector at a node, turned back with its star.
+    pub(in crate::reconstruction::corrected) unturned: &'a dyn Fn(usize, &[f64; D]) -> [f64; D],
     /// The smoothed forces of the simulation (N).
     pub(in crate::reconstruction::corrected) contact: &'a mut [[f64; D]],
     /// The reactions of which the normal work is measured (N): none at nodes whose force is replaced, where the loss is
@@ -150,7 +150,7 @@ impl<'a, const D: usize> Known<'a, D> {
         approach: Approach<D>,
         costs: impl FnOnce() -> Option<&'c NodeCosts<'c>>,
     ) -> Option<IsolatedContact<D>> {
-        let Self { problem, concentration, steps, pulled, .. } = self;
+        let Self { problem, concentration, steps, unturned, .. } = self;
         let node = &problem.surface().nodes()[at];
         let obstacle = &problem.obstacles()[node.obstacle];
         // Reactions of a foreign history need not be in the cone.
@@ -159,8 +159,8 @@ impl<'a, const D: usize> Known<'a, D> {
         let depth = depth * (1.0 - steps(at).min(1.0).powi(2));
         let frame = obstacle.flat_frame();
         let axes = [*frame.normal(), tangent_of(frame.normal())].map(|axis| {
-            let pulled = pulled(at, &axis);
-            [pulled[0], pulled[D - 1]]
+            let axis = unturned(at, &axis);
+            [axis[0], axis[D - 1]]
         });
         let own = Own {
             frame,
@@ -193,6 +193,6 @@ impl<'a, const D: usize> Known<'a, D> {
         let gaps = concentration.gaps(at, faced, gap)?;
         let frame = problem.obstacles()[problem.surface().nodes()[at].obstacle].flat_frame();
         let direction = last.map_or(*frame.normal(), |last| last.direction);
-        concentration.costs(problem, at, faced, &(self.pulled)(at, &direction), &gaps)
+        concentration.costs(problem, at, faced, &(self.unturned)(at, &direction), &gaps)
     }
 }

@@ -26,7 +26,7 @@ pub(super) struct IsolatedContact<const D: usize> {
 /// A node that has a force of its own.
 pub(super) struct Own<const D: usize> {
     pub(super) frame: Frame<D>,
-    /// The normal and the tangent of the plane, pulled back to the star in the undeformed body.
+    /// The normal and the tangent of the plane, turned back with the star.
     pub(super) axes: [[f64; 2]; 2],
     /// Whether the body may turn.
     pub(super) turns: bool,

@@ -171,9 +171,9 @@ fn replace(
     approach: impl Fn(usize) -> Approach<2>,
     [contact, arresting]: [&mut [[f64; 2]]; 2],
 ) {
-    let pulled = |_: usize, vector: &[f64; 2]| *vector;
-    let (steps, pulled) = (&|_| steps, &pulled);
-    let mut known = Known { problem, concentration, gap, steps, pulled, contact, arresting };
+    let unturned = |_: usize, vector: &[f64; 2]| *vector;
+    let (steps, unturned) = (&|_| steps, &unturned);
+    let mut known = Known { problem, concentration, gap, steps, unturned, contact, arresting };
     own.replace(&mut known, |at| approach(at).gap, |at, _| approach(at));
 }
 
