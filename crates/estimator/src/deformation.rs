@@ -92,10 +92,27 @@ impl<const D: usize, T: Value> Deformation<D, T> {
     }
 }
 
-/// S = F⁻¹P of a law at H (Pa).
+/// S of a law at a Green strain (Pa): that of the stretch U without a rotation, U − 1 = 2E(U + 1)⁻¹ without a difference
+/// of numbers near 1.
 #[inline(always)]
-pub(crate) fn second_stress<T: Value, const D: usize>(law: &Elastic, gradient: &[[T; D]; D]) -> [[T; D]; D] {
-    Deformation::new(gradient).second_stress(&law.respond(gradient, &mut []).0)
+pub(crate) fn second_stress<T: Value, const D: usize>(law: &Elastic, strain: &[[T; D]; D]) -> [[T; D]; D] {
+    let one = strain[0][0].fill(1.0);
+    let mut stretch = *strain;
+    if D == 1 {
+        let double = strain[0][0] * 2.0;
+        stretch[0][0] = double / ((one + double).sqrt() + one);
+    } else {
+        let (x, y, xy) = (strain[0][0] * 2.0, strain[1][1] * 2.0, strain[0][1] * 2.0);
+        let volume = ((one + x) * (one + y) - xy * xy).sqrt();
+        let trace = (one + x + one + y + volume * 2.0).sqrt();
+        // (U + 1)⁻¹ is tr U over C + (det U + tr U) 1.
+        let [a, b] = [one + x + volume + trace, one + y + volume + trace];
+        let factor = trace / (a * b - xy * xy);
+        (stretch[0][0], stretch[1][1]) = ((x * b - xy * xy) * factor, (y * a - xy * xy) * factor);
+        let shear = (xy * a - x * xy) * factor;
+        (stretch[0][1], stretch[1][0]) = (shear, shear);
+    }
+    Deformation::new(&stretch).second_stress(&law.respond(&stretch, &mut []).0)
 }
 
 /// P = F S (Pa).

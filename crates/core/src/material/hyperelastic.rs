@@ -225,9 +225,9 @@ fn metric_change<V: Value, const D: usize>(h: &[[V; D]; D]) -> [[V; D]; D] {
     change
 }
 
-/// E = ½ (C − 1).
+/// The Green strain E = ½ (C − 1) of H = F − 1.
 #[inline(always)]
-pub(super) fn green_strain<V: Value, const D: usize>(h: &[[V; D]; D]) -> [[V; D]; D] {
+pub fn green_strain<V: Value, const D: usize>(h: &[[V; D]; D]) -> [[V; D]; D] {
     let mut strain = metric_change(h);
     (0..D).for_each(|a| (0..D).for_each(|b| strain[a][b] = strain[a][b] * 0.5));
     strain

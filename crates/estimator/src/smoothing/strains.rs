@@ -1,5 +1,8 @@
-//! Smoothed strains at one level, or at some side by side. Of bodies that turn the second Piola–Kirchhoff stresses are
-//! smoothed: they do not change with a rotation, as strains of elements that turn by unlike angles do.
+//! Smoothed strains at one level, or at some side by side.
+//!
+//! Of bodies that turn the Green strains are averaged. S̄_E is the mean, with the same weights, of the stresses S of the
+//! mean strains of edges and nodes. F_E S̄_E is then the slope of an energy, that of the mean strains: the mean of the
+//! stresses of the elements would be no such slope, and give energy to rubber.
 
 use super::Smoothing;
 use crate::blocks::{BLOCK, ElementBlocks};
@@ -8,8 +11,8 @@ use crate::element::Element;
 use crate::field_lanes::FieldLanes;
 use crate::parallel::by_pieces;
 use crate::pool::Pool;
-use percute_core::ids::{ElementId, NodeId};
-use percute_core::material::Elastic;
+use percute_core::ids::{ElementId, FaceId, NodeId};
+use percute_core::material::{Elastic, Law, green_strain};
 use percute_core::problem::Problem;
 use percute_core::simd::Wide;
 use percute_core::simd::lanes::{Lanes, Value};
@@ -19,13 +22,19 @@ use rayon::prelude::*;
 /// Components of a strain: ε_xx, ε_yy, ε_xy.
 const COMPONENTS: usize = 3;
 
-/// The strains of which smoothed ones are made, of all elements at one level or some; S of finite laws.
+/// J₀: below this part of its undeformed volume an element resists by itself. In impacts below 0.15 of the wave speed few
+/// elements come below it.
+const RESISTING: f64 = 0.5;
+
+/// The strains of which smoothed ones are made, of all elements at one level or some; Green strains of finite laws.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SmoothedStrains<S = Lanes> {
     /// Of each element.
     strains: Vec<[S; COMPONENTS]>,
-    /// β/(3V) Σ|E|ε_E of each patch.
+    /// β/(3V) Σ|E|ε_E of each patch; β/3 S of the mean strain of a finite law.
     patches: Vec<[S; COMPONENTS]>,
+    /// (1 − β)/3 S of the mean strain of each edge within a material of a finite law; empty with small strains.
+    edges: Vec<[S; COMPONENTS]>,
     /// 1 at the levels whose strains are smoothed, 0 at others.
     share: S,
 }
@@ -61,6 +70,11 @@ impl SmoothedStrains {
         let strains = &self.strains;
         let parts = patches_of_nodes(of.smoothing, &mut self.patches);
         parts.into_par_iter().for_each(|part| run_task(PatchesOfNodes { of, strains, part }));
+        if of.problem.is_finite() {
+            self.edges.resize(of.problem.mesh().face_count(), [Lanes::ZERO; COMPONENTS]);
+            let edges = self.edges.par_chunks_mut(BLOCK).enumerate();
+            edges.for_each(|(k, edges)| run_task(EdgesOfBlock { of, strains, first: k * BLOCK, edges }));
+        }
     }
 }
 
@@ -87,11 +101,16 @@ impl SmoothedStrains<f64> {
             Some(_) => parts.into_par_iter().for_each(sum),
             None => parts.into_iter().for_each(sum),
         }
+        if of.problem.is_finite() {
+            self.edges.resize(of.problem.mesh().face_count(), [0.0; COMPONENTS]);
+            by_pieces(&mut self.edges[..], &|first, edges| edge_stresses(0.0, of, strains, first, edges));
+        }
     }
 }
 
 impl<S: Copy> SmoothedStrains<S> {
-    /// The strain of an element of which σ̄ is made: smoothed where it is, the plain one at other levels.
+    /// The strain of an element of which σ̄ is made: smoothed where it is, the plain one at other levels. S̄ of a finite
+    /// law.
     #[inline(always)]
     pub(crate) fn of<T: Value<Stored = S>, const D: usize, const N: usize>(
         &self,
@@ -100,18 +119,26 @@ impl<S: Copy> SmoothedStrains<S> {
         element: ElementId,
     ) -> [[T; D]; D] {
         let (mesh, volume) = (problem.mesh(), elements[element.index()].volume);
-        let own = self.strains[element.index()].map(
+        let (law, first) = (problem.material(element), mesh.nodes_of::<N>()[element.index()][0]);
+        let mut own = self.strains[element.index()].map(
             #[inline(always)]
             |x| like.load(&x),
         );
+        if law.is_finite() {
+            own = components(&second_stress::<T, D>(law, &tensor(own)));
+        }
         let mut smooth = [like.zero(); COMPONENTS];
         for face in mesh.faces_of::<N>()[element.index()] {
             let other = Smoothing::beyond(problem, element, face);
             let beyond = elements[other.index()].volume;
-            let weight = smoothing.edge_weight(mesh.nodes_of::<N>()[element.index()][0], volume + beyond);
+            let weight = smoothing.edge_weight(first, volume + beyond);
             let (mine, beyond) = (weight * volume, weight * beyond);
             for c in 0..COMPONENTS {
-                smooth[c] += own[c] * mine + like.load(&self.strains[other.index()][c]) * beyond;
+                smooth[c] += match law.is_finite() {
+                    false => own[c] * mine + like.load(&self.strains[other.index()][c]) * beyond,
+                    true if other == element => own[c] * (mine + beyond),
+                    true => like.load(&self.edges[face.index()][c]),
+                };
             }
         }
         let material = problem.element_material()[element.index()];
@@ -121,11 +148,19 @@ impl<S: Copy> SmoothedStrains<S> {
                 smooth[c] += like.load(&patch[c]);
             }
         }
+        if law.is_finite() {
+            let strain = self.strains[element.index()].map(
+                #[inline(always)]
+                |x| like.load(&x),
+            );
+            let resisting = resistance(law, strain);
+            for c in 0..COMPONENTS {
+                smooth[c] += resisting[c];
+            }
+        }
         let share = like.load(&self.share);
         let blend = |c: usize| own[c] + share * (smooth[c] - own[c]);
-        let mut strain = [[blend(2); D]; D];
-        (strain[0][0], strain[D - 1][D - 1]) = (blend(0), blend(1));
-        strain
+        tensor([blend(0), blend(1), blend(2)])
     }
 }
 
@@ -159,14 +194,91 @@ impl<const D: usize, const N: usize> Task for StrainsOfBlock<'_, '_, D, N> {
     }
 }
 
-/// The components that are averaged.
+/// The strain that is averaged.
 #[inline(always)]
 fn averaged<T: Value, const D: usize>(law: &Elastic, gradient: &[[T; D]; D]) -> [T; COMPONENTS] {
     if law.is_finite() {
-        let second = second_stress(law, gradient);
-        return [second[0][0], second[D - 1][D - 1], second[0][D - 1]];
+        return components(&green_strain(gradient));
     }
     [gradient[0][0], gradient[D - 1][D - 1], (gradient[0][D - 1] + gradient[D - 1][0]) * 0.5]
+}
+
+/// The components of a symmetric tensor.
+#[inline(always)]
+fn components<T: Value, const D: usize>(tensor: &[[T; D]; D]) -> [T; COMPONENTS] {
+    [tensor[0][0], tensor[D - 1][D - 1], tensor[0][D - 1]]
+}
+
+/// The symmetric tensor with these components.
+#[inline(always)]
+fn tensor<T: Value, const D: usize>([x, y, xy]: [T; COMPONENTS]) -> [[T; D]; D] {
+    let mut tensor = [[xy; D]; D];
+    (tensor[0][0], tensor[D - 1][D - 1]) = (x, y);
+    tensor
+}
+
+/// The stress at which an element resists its inversion, of which mean strains know nothing: S = κ ln(J/J₀) C⁻¹ of the
+/// energy ½κ ln²(J/J₀) below J₀, with κ = λ + 2μ.
+#[inline(always)]
+fn resistance<T: Value>(law: &Elastic, [x, y, xy]: [T; COMPONENTS]) -> [T; COMPONENTS] {
+    let one = x.fill(1.0);
+    let [a, b, ab] = [one + x * 2.0, one + y * 2.0, xy * 2.0];
+    let square = a * b - ab * ab;
+    if !square.any(|square| square < RESISTING * RESISTING) {
+        return [x.zero(); COMPONENTS];
+    }
+    let log = |square: f64| 0.5 * (square / (RESISTING * RESISTING)).max(f64::MIN_POSITIVE).ln();
+    let factor = x.zero().replaced_where(square, |square| square < RESISTING * RESISTING, log);
+    let stress = factor * law.wave_modulus() / square;
+    [b * stress, a * stress, -ab * stress]
+}
+
+/// (1 − β)/3 S of the mean strain of edges, of which the first has this number; those within a material.
+#[inline(always)]
+fn edge_stresses<T: Value, const D: usize, const N: usize>(
+    like: T,
+    Smoothed { problem, smoothing, elements }: Smoothed<'_, D, N>,
+    strains: &[[T::Stored; COMPONENTS]],
+    first: usize,
+    edges: &mut [[T::Stored; COMPONENTS]],
+) {
+    for (k, edge) in edges.iter_mut().enumerate() {
+        let id = FaceId::new(first + k);
+        let owner = problem.mesh().face(id).owner;
+        let other = Smoothing::beyond(problem, owner, id);
+        if other == owner {
+            continue;
+        }
+        let volumes = [owner, other].map(|element| elements[element.index()].volume);
+        let volume = volumes[0] + volumes[1];
+        let mut mean = [like.zero(); COMPONENTS];
+        for c in 0..COMPONENTS {
+            for (element, own) in [owner, other].into_iter().zip(volumes) {
+                mean[c] += like.load(&strains[element.index()][c]) * (own / volume);
+            }
+        }
+        let stress = components(&second_stress::<T, D>(problem.material(owner), &tensor(mean)));
+        let weight = smoothing.edge_weight(problem.mesh().face(id).nodes[0], volume) * volume;
+        for c in 0..COMPONENTS {
+            edge[c] = (stress[c] * weight).store();
+        }
+    }
+}
+
+struct EdgesOfBlock<'b, 'a, const D: usize, const N: usize> {
+    of: Smoothed<'a, D, N>,
+    strains: &'b [[Lanes; COMPONENTS]],
+    first: usize,
+    edges: &'b mut [[Lanes; COMPONENTS]],
+}
+
+impl<const D: usize, const N: usize> Task for EdgesOfBlock<'_, '_, D, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Registers>(self, r: R) {
+        edge_stresses(Wide::zeros(r), self.of, self.strains, self.first, self.edges);
+    }
 }
 
 /// The patches of some nodes, of which the first has this number.
@@ -199,7 +311,7 @@ impl<const D: usize, const N: usize> Task for PatchesOfNodes<'_, '_, D, N> {
     }
 }
 
-/// β/(3V) Σ|E|ε_E of the patches of some nodes.
+/// β/(3V) Σ|E|ε_E of the patches of some nodes; β/3 S of the mean strain of a finite law.
 #[inline(always)]
 fn sum_patches<T: Value, const D: usize, const N: usize>(
     like: T,
@@ -212,14 +324,26 @@ fn sum_patches<T: Value, const D: usize, const N: usize>(
     for node in (first..first + nodes).map(NodeId::new) {
         let own = smoothing.patches(&(node.index()..node.index() + 1));
         for patch in own {
-            let mut sum = [like.zero(); COMPONENTS];
+            let (mut sum, mut share) = ([like.zero(); COMPONENTS], 0.0);
             for &element in problem.mesh().stars().star(node).elements {
                 if laws[element.index()] == smoothing.material(patch) {
                     let volume = elements[element.index()].volume * smoothing.weights()[patch];
+                    share += volume;
                     for c in 0..COMPONENTS {
                         sum[c] += like.load(&strains[element.index()][c]) * volume;
                     }
                 }
+            }
+            let law = &problem.materials()[smoothing.material(patch) as usize];
+            if law.is_finite() && share > 0.0 {
+                let mean = tensor(sum.map(
+                    #[inline(always)]
+                    |x| x * (1.0 / share),
+                ));
+                sum = components(&second_stress::<T, D>(law, &mean)).map(
+                    #[inline(always)]
+                    |x| x * share,
+                );
             }
             for c in 0..COMPONENTS {
                 patches[patch - start][c] = sum[c].store();

@@ -5,8 +5,9 @@
 //! a = ã + p(M⁻¹(M − M_c))ã − (1/12) M⁻¹[f(u + Δt v + ½Δt²ã) + f(u − Δt v + ½Δt²ã) − 2 f(u)].
 //!
 //! The bracket is Δt² d²f/dt², without a tangent; of a linear law it is −Δt²Kã. It has the term of the changing
-//! stiffness, without which a spinning body would be far off. f̄ has the stress F_E S̄_E, with S̄_E the smoothed second
-//! Piola–Kirchhoff stress: symmetric in the present body, and that of small strains where the body does not turn.
+//! stiffness, without which a spinning body would be far off. f̄ has the stress F_E S̄_E, with S̄_E the mean of the
+//! stresses of smoothed Green strains ([`crate::smoothing`]): symmetric in the present body, the slope of an energy, and
+//! that of small strains where the body does not turn.
 
 use super::approach::{ContactElements, Foreseen, FreeFlight};
 use super::balance::{EnergyBalance, half_work};
@@ -26,12 +27,13 @@ use crate::smoothing::{Smoothed, SmoothedStrains, Smoothing};
 use percute_core::contact::ContactNode;
 use percute_core::dynamics::{self, Dynamics};
 use percute_core::ids::{ElementId, NodeId};
-use percute_core::material::{PointLaw, Tensor};
+use percute_core::material::{PointLaw, Tensor, volume_ratio};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::array::from_fn;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// A motion whose kinetic energy is so many times the largest energy of the simulation is unstable: an element has been
 /// turned inside out, or nearly so.
@@ -57,6 +59,8 @@ pub(in crate::reconstruction::corrected) struct FiniteAuxiliary<'p, const D: usi
     strains: SmoothedStrains<f64>,
     /// F_E S̄_E (Pa).
     stresses: Vec<Tensor<D>>,
+    /// Whether an element has been turned inside out, of which smoothed strains know nothing.
+    inside_out: bool,
     surface: SurfaceForces,
     energy_balance: EnergyBalance<D>,
 }
@@ -80,6 +84,7 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
             lumping: [Vec::new(), Vec::new()],
             strains: SmoothedStrains::default(),
             stresses: Vec::new(),
+            inside_out: false,
             surface: SurfaceForces::new(problem),
             energy_balance: EnergyBalance::new(problem),
         }
@@ -100,11 +105,11 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
     }
 
     pub(super) fn is_unstable(&self) -> bool {
-        self.energy_balance.is_beyond(UNSTABLE)
+        self.inside_out || self.energy_balance.is_beyond(UNSTABLE)
     }
 
     pub(super) fn smooths(&self) -> bool {
-        self.weights.corrects() && self.smoothing.smooths()
+        self.weights.smooths() && self.smoothing.smooths()
     }
 
     /// Takes in the loads and supports of a level, and makes its acceleration without contact forces.
@@ -126,15 +131,20 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
 
     /// Subtracts f̄(u) (N).
     fn subtract_smoothed_forces(&mut self, force: &mut [[f64; D]]) {
-        let Self { problem, smoothing, elements, displacement, strains, stresses, .. } = self;
+        let Self { problem, smoothing, elements, displacement, strains, stresses, inside_out, .. } = self;
         let of = Smoothed { problem: *problem, smoothing, elements };
         strains.fill_one(of, displacement);
+        let turned = AtomicBool::new(false);
         by_pieces((&mut stresses[..], &elements[..]), &|first, (stresses, elements)| {
             for (k, (stress, element)) in stresses.iter_mut().zip(elements).enumerate() {
                 let gradient = element.gradient(&element.gather(displacement));
                 *stress = first_stress(&gradient, &strains.of(0.0, of, ElementId::new(first + k)));
+                if volume_ratio(&gradient) <= 0.0 {
+                    turned.store(true, Relaxed);
+                }
             }
         });
+        *inside_out |= turned.into_inner();
         let stars = problem.mesh().stars();
         by_pieces(force, &|first, force| {
             for (k, force) in force.iter_mut().enumerate() {

@@ -105,6 +105,11 @@ impl Weights {
         self.bodies = BodyWeights::all(smoothing, pair);
     }
 
+    /// Whether strains of the auxiliary solution are smoothed at the level that has begun, if the mesh has such.
+    pub(super) fn smooths(&self) -> bool {
+        self.corrects() && self.shares[0].space > 0.0
+    }
+
     /// Whether corrections are made at the level that has begun.
     pub(super) fn corrects(&self) -> bool {
         self.reversals <= FEW
