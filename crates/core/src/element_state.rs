@@ -124,19 +124,23 @@ pub fn principal_stretches<'p>(
     displacement: &[f64],
 ) -> [f64; 2] {
     fn of<const D: usize>(problem: &Problem<D>, element: ElementId, displacement: &[[f64; D]]) -> [f64; 2] {
-        let h = in_space(&displacement_gradient(problem.mesh(), element, displacement));
-        if D == 1 {
-            return [(1.0 + h[0][0]).abs(), 1.0];
-        }
-        // The singular values of F are the sum and the difference of the lengths of its parts that turn and mirror.
-        let turning = (2.0 + h[0][0] + h[1][1]).hypot(h[1][0] - h[0][1]);
-        let mirroring = (h[0][0] - h[1][1]).hypot(h[1][0] + h[0][1]);
-        [0.5 * (turning + mirroring), 0.5 * (turning - mirroring).abs()]
+        let gradient = displacement_gradient(problem.mesh(), element, displacement);
+        if D == 1 { [(1.0 + gradient[0][0]).abs(), 1.0] } else { stretches(&gradient) }
     }
     fn any(problem: ProblemRef<'_>, element: ElementId, displacement: &[f64]) -> [f64; 2] {
         on_problem!(problem, problem => of(problem, element, vectors(displacement)))
     }
     any(problem.into(), element, displacement)
+}
+
+/// The principal stretches of a plane displacement gradient, the larger one first: the singular values of F are the sum
+/// and the difference of the lengths of its parts that turn and mirror.
+#[must_use]
+pub fn stretches<const D: usize>(gradient: &Tensor<D>) -> [f64; 2] {
+    let h = in_space(gradient);
+    let turning = (2.0 + h[0][0] + h[1][1]).hypot(h[1][0] - h[0][1]);
+    let mirroring = (h[0][0] - h[1][1]).hypot(h[1][0] + h[0][1]);
+    [0.5 * (turning + mirroring), 0.5 * (turning - mirroring).abs()]
 }
 
 /// Kinetic energy of an element (J) for these velocities of all nodes (m/s), in rows, with its share of their lumped

@@ -126,3 +126,30 @@ pub(crate) fn first_stress<T: Value, const D: usize>(gradient: &[[T; D]; D], sec
     }
     first
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percute_core::material::{HyperelasticLaw, Kinematics, green_strain};
+    use percute_testkit::Random;
+
+    /// The second stress at a Green strain is F⁻¹P of any F with this strain, to rounding.
+    #[test]
+    fn the_second_stress_follows_from_the_strain() {
+        let mut random = Random::new(6);
+        for law in [HyperelasticLaw::NeoHookean, HyperelasticLaw::SaintVenantKirchhoff, HyperelasticLaw::Hencky] {
+            for plane in [Elastic::plane_strain, Elastic::plane_stress] {
+                let law = plane(1.0, 0.3, 1.0, 1.0).unwrap().with_kinematics(Kinematics::Finite(law)).unwrap();
+                for size in [1e-9, 1e-3, 0.3] {
+                    let h: [[f64; 2]; 2] =
+                        std::array::from_fn(|_| std::array::from_fn(|_| random.between(-size, size)));
+                    let expected = Deformation::new(&h).second_stress(&law.respond(&h, &mut []).0);
+                    let found = second_stress(&law, &green_strain(&h));
+                    for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
+                        assert!((found - expected).abs() < 1e-14 * size.max(1e-2), "{found} for {expected}");
+                    }
+                }
+            }
+        }
+    }
+}

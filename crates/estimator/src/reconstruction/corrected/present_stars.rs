@@ -1,7 +1,7 @@
 //! The deformation of the stars of contact nodes of a body that turns, and their rotation.
 
 use crate::deformation::Deformation;
-use percute_core::element_state::displacement_gradient;
+use percute_core::element_state::{displacement_gradient, stretches};
 use percute_core::material::Tensor;
 use percute_core::problem::Problem;
 
@@ -13,6 +13,8 @@ pub(super) struct PresentStars<'a, const D: usize> {
     stars: Vec<Deformation<D, f64>>,
     /// R of F̄ = RU.
     rotations: Vec<Tensor<D>>,
+    /// The principal value of U − 1 that is largest without its sign.
+    strains: Vec<f64>,
 }
 
 impl<'a, const D: usize> PresentStars<'a, D> {
@@ -29,13 +31,23 @@ impl<'a, const D: usize> PresentStars<'a, D> {
             mean.map(|row| row.map(|x| x / volume))
         };
         let means = problem.surface().nodes().iter().map(|contact| star(contact.node));
-        let (stars, rotations) = means.map(|mean| (Deformation::new(&mean), rotation(&mean))).unzip();
-        Self { displacement, stars, rotations }
+        let means: Vec<_> = means.collect();
+        Self {
+            displacement,
+            stars: means.iter().map(Deformation::new).collect(),
+            rotations: means.iter().map(rotation).collect(),
+            strains: means.iter().map(strain).collect(),
+        }
     }
 
     /// The rotation of the star of a contact node.
     pub(super) fn rotation(&self, at: usize) -> &Tensor<D> {
         &self.rotations[at]
+    }
+
+    /// The principal value of U − 1 of a star that is largest without its sign.
+    pub(super) fn strain(&self, at: usize) -> f64 {
+        self.strains[at]
     }
 
     /// Rᵀ v.
@@ -61,4 +73,10 @@ fn rotation<const D: usize>(gradient: &Tensor<D>) -> Tensor<D> {
         (rotation[0][0], rotation[1][1], rotation[1][0], rotation[0][1]) = (cosine, cosine, sine, -sine);
     }
     rotation
+}
+
+/// The principal value of U − 1 that is largest without its sign.
+fn strain<const D: usize>(gradient: &Tensor<D>) -> f64 {
+    let stretches = if D == 1 { [1.0 + gradient[0][0]; 2] } else { stretches(gradient) };
+    stretches.into_iter().map(|stretch| (stretch - 1.0).abs()).fold(0.0, f64::max)
 }

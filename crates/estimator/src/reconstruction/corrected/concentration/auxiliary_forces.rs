@@ -10,6 +10,9 @@
 //! a step by (Δt/τ)² of it, τ the time of the impulse smoothing. Steps as long as τ bring the node to its plane at
 //! once.
 //!
+//! Where the star of a node of a body that turns is strained much, the undeformed star says too little of its compliance:
+//! the force of the simulation stays, or comes back.
+//!
 //! A node goes back to the force of the simulation where it touches with a neighbour that has one: beside it, an own
 //! force would take back the work of a force that the auxiliary contact does not know.
 
@@ -42,6 +45,8 @@ pub(in crate::reconstruction::corrected) struct Known<'a, const D: usize> {
     pub(in crate::reconstruction::corrected) gap: &'a [f64],
     /// The step over the time τ of each node.
     pub(in crate::reconstruction::corrected) steps: &'a dyn Fn(usize) -> f64,
+    /// Whether the star of a node is strained too much for an auxiliary contact.
+    pub(in crate::reconstruction::corrected) strained: &'a dyn Fn(usize) -> bool,
     /// A vector at a node, turned back with its star.
     pub(in crate::reconstruction::corrected) unturned: &'a dyn Fn(usize, &[f64; D]) -> [f64; D],
     /// The smoothed forces of the simulation (N).
@@ -81,7 +86,11 @@ impl<const D: usize> AuxiliaryForces<D> {
         approach: impl FnMut(usize, &[[f64; D]]) -> Approach<D>,
     ) {
         let surface = known.problem.surface();
-        let stands = |at: usize| surface.nodes()[at].free && surface.leads(at) && surface.non_matching_of(at).is_none();
+        (0..self.contacts.len()).filter(|&at| (known.strained)(at)).for_each(|at| self.contacts[at] = None);
+        let stands = |at: usize| {
+            let node = surface.nodes()[at].free && surface.leads(at) && surface.non_matching_of(at).is_none();
+            node && !(known.strained)(at)
+        };
         let touches = |at: usize| self.contacts[at].is_some() || known.contact[at] != [0.0; D] || free_gap(at) < 0.0;
         let nodes = (0..surface.nodes().len()).filter(|&at| stands(at) && touches(at));
         self.replace_in_turn(nodes.map(|at| (at, Faced::WHOLE)).collect(), known, approach);

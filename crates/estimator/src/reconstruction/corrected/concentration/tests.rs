@@ -172,8 +172,8 @@ fn replace(
     [contact, arresting]: [&mut [[f64; 2]]; 2],
 ) {
     let unturned = |_: usize, vector: &[f64; 2]| *vector;
-    let (steps, unturned) = (&|_| steps, &unturned);
-    let mut known = Known { problem, concentration, gap, steps, unturned, contact, arresting };
+    let (steps, strained, unturned) = (&|_| steps, &|_| false, &unturned);
+    let mut known = Known { problem, concentration, gap, steps, strained, unturned, contact, arresting };
     own.replace(&mut known, |at| approach(at).gap, |at, _| approach(at));
 }
 
