@@ -133,6 +133,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     ) {
         let (problem, surface, length) = (self.problem, self.problem.surface(), self.times.step(n));
         let Some(concentration) = &self.concentration else { return };
+        let has_own = auxiliary.has_own_contacts();
         let Some(foreseen) = auxiliary.foresee(n, around.present.as_ref()) else { return };
         let time = |at: usize| {
             let own = || self.impulse_smoothing.as_ref().map_or(length, |smoothing| smoothing.time(at));
@@ -140,7 +141,8 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
         };
         let steps = |at: usize| length / time(at);
         let unturned = |at: usize, vector: &[f64; D]| around.unturned(at, vector);
-        let strained = |at: usize| around.present.as_ref().is_some_and(|stars| stars.strain(at) > STRAINED);
+        let much = |at: usize| around.present.as_ref().is_some_and(|stars| stars.strain(at) > STRAINED);
+        let strained = |at: usize| !has_own || much(at);
         let (gap, steps, unturned, strained) = (around.gap, &steps, &unturned, &strained);
         let mut known = Known { problem, concentration, gap, steps, strained, unturned, contact, arresting };
         self.auxiliary_forces.replace(

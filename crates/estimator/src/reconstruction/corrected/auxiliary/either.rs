@@ -112,6 +112,14 @@ impl<'p, const D: usize, const N: usize> Auxiliary<'p, D, N> {
         of_either!(self, own => own.smooths())
     }
 
+    /// Whether nodes may have contacts of their own.
+    pub(in crate::reconstruction::corrected) fn has_own_contacts(&self) -> bool {
+        match self {
+            Self::Small(_) => true,
+            Self::Finite(own) => own.has_own_contacts(),
+        }
+    }
+
     /// Whether it has become unstable.
     pub(in crate::reconstruction::corrected) fn is_unstable(&self) -> bool {
         of_either!(self, own => own.is_unstable())

@@ -26,6 +26,7 @@ use crate::reconstruction::corrected::split::skew_acceleration;
 use crate::smoothing::{Smoothed, SmoothedStrains, Smoothing};
 use percute_core::contact::ContactNode;
 use percute_core::dynamics::{self, Dynamics};
+use percute_core::element_state::stretches;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::material::{PointLaw, Tensor, volume_ratio};
 use percute_core::problem::Problem;
@@ -38,6 +39,14 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 /// A motion whose kinetic energy is so many times the largest energy of the simulation is unstable: an element has been
 /// turned inside out, or nearly so.
 const UNSTABLE: f64 = 100.0;
+
+/// From the first element on whose principal stretches differ by more from 1, strains are smoothed no more, and the lumped
+/// mass has the coefficients of plain strains: corners of rubber at 0.14 of the wave speed turned elements of smoothed
+/// strains inside out.
+const LARGE: f64 = 0.25;
+
+/// c₁ to c₃ of plain strains: the leading error of the lumped mass, and what remains of it for waves along the axes.
+const PLAIN: [f64; 3] = [0.5, -2.0 / 27.0, 0.0];
 
 /// The auxiliary solution after the last level.
 #[derive(Debug)]
@@ -59,6 +68,10 @@ pub(in crate::reconstruction::corrected) struct FiniteAuxiliary<'p, const D: usi
     strains: SmoothedStrains<f64>,
     /// F_E S̄_E (Pa).
     stresses: Vec<Tensor<D>>,
+    /// Whether strains are smoothed at the level that has begun.
+    smooths: bool,
+    /// Whether strains have become large.
+    large: bool,
     /// Whether an element has been turned inside out, of which smoothed strains know nothing.
     inside_out: bool,
     surface: SurfaceForces,
@@ -84,6 +97,8 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
             lumping: [Vec::new(), Vec::new()],
             strains: SmoothedStrains::default(),
             stresses: Vec::new(),
+            smooths: false,
+            large: false,
             inside_out: false,
             surface: SurfaceForces::new(problem),
             energy_balance: EnergyBalance::new(problem),
@@ -109,14 +124,25 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
     }
 
     pub(super) fn smooths(&self) -> bool {
-        self.weights.smooths() && self.smoothing.smooths()
+        self.smooths
+    }
+
+    /// Whether nodes may have contacts of their own.
+    pub(super) fn has_own_contacts(&self) -> bool {
+        !self.large
+    }
+
+    /// The coefficients of the lumping difference at the level that has begun.
+    fn mass(&self) -> [f64; 3] {
+        if self.large && !self.smooths && self.weights.corrects() { PLAIN } else { self.weights.mass(0) }
     }
 
     /// Takes in the loads and supports of a level, and makes its acceleration without contact forces.
     pub(super) fn begin(&mut self, dynamics: &Dynamics<'_, D>, n: usize) {
         self.weights.begin(self.times, n);
+        self.smooths = self.weights.smooths() && self.smoothing.smooths() && !self.large;
         let mut force = std::mem::take(&mut self.plain);
-        if self.smooths() {
+        if self.smooths {
             force.fill([0.0; D]);
             self.problem.external_forces(self.times.instants()[n], &mut force);
             self.subtract_smoothed_forces(&mut force);
@@ -131,10 +157,10 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
 
     /// Subtracts f̄(u) (N).
     fn subtract_smoothed_forces(&mut self, force: &mut [[f64; D]]) {
-        let Self { problem, smoothing, elements, displacement, strains, stresses, inside_out, .. } = self;
+        let Self { problem, smoothing, elements, displacement, strains, stresses, inside_out, large, .. } = self;
         let of = Smoothed { problem: *problem, smoothing, elements };
         strains.fill_one(of, displacement);
-        let turned = AtomicBool::new(false);
+        let (turned, strained) = (AtomicBool::new(false), AtomicBool::new(false));
         by_pieces((&mut stresses[..], &elements[..]), &|first, (stresses, elements)| {
             for (k, (stress, element)) in stresses.iter_mut().zip(elements).enumerate() {
                 let gradient = element.gradient(&element.gather(displacement));
@@ -142,9 +168,13 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
                 if volume_ratio(&gradient) <= 0.0 {
                     turned.store(true, Relaxed);
                 }
+                if stretches(&gradient).into_iter().any(|stretch| (stretch - 1.0).abs() > LARGE) {
+                    strained.store(true, Relaxed);
+                }
             }
         });
         *inside_out |= turned.into_inner();
+        *large |= strained.into_inner();
         let stars = problem.mesh().stars();
         by_pieces(force, &|first, force| {
             for (k, force) in force.iter_mut().enumerate() {
@@ -213,7 +243,7 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
     /// Fills in the fields of the level.
     fn write(&self, inverse_mass: &[f64], level: AuxiliaryLevel<'_, D>) {
         level.displacement.copy_from_slice(&self.displacement);
-        let [first, ..] = self.weights.mass(0);
+        let [first, ..] = self.mass();
         let fields = || self.plain.iter().zip(&self.lumping[0]);
         let share = if level.split.is_some() { first } else { 0.0 };
         for (acceleration, (plain, once)) in level.acceleration.iter_mut().zip(fields()) {
@@ -290,7 +320,7 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
     /// Makes the lumping difference of ã and its correction: an element gives m/(D+2) times the distance to the mean of
     /// its nodes.
     fn correct_lumping(&mut self, inverse_mass: &[f64]) {
-        let mass = self.weights.mass(0);
+        let mass = self.mass();
         let mut last = Vec::new();
         for (k, factor) in mass.into_iter().enumerate() {
             let next = self.lumping_difference(if k == 0 { &self.plain } else { &last }, inverse_mass);
@@ -334,7 +364,7 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
             (0..D).for_each(|c| sum[c] += pull[c] * inverse_mass[i]);
         }
         add(&mut self.plain, &field, 1.0);
-        for (k, factor) in self.weights.mass(0).into_iter().enumerate() {
+        for (k, factor) in self.mass().into_iter().enumerate() {
             field = self.lumping_difference_of(&field, inverse_mass);
             let [once, sum] = &mut self.lumping;
             add(sum, &field, factor);
