@@ -87,4 +87,8 @@ def _nodes(mesh: Mesh, group: object) -> NDArray[np.int64]:
     if name not in mesh.element_groups:
         known = ", ".join(repr(known) for known in mesh.element_groups) or "the mesh has none"
         raise wrong("group", group, f"the name of a group of elements: {known}")
-    return np.unique(mesh.cells[mesh.element_groups[name]]).astype(np.int64)
+    nodes = np.unique(mesh.cells[mesh.element_groups[name]]).astype(np.int64)
+    others = np.delete(mesh.cells, mesh.element_groups[name], axis=0)
+    if np.isin(nodes, others).any():
+        raise wrong("group", group, "a whole body: its elements share nodes with others, which have one mass for both")
+    return nodes

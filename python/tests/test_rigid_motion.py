@@ -55,7 +55,7 @@ def test_stress_and_stretches_follow_from_the_gradient() -> None:
 
 def test_a_bar_has_no_rotation() -> None:
     """A bar has a centre, and one stretch."""
-    mesh = pc.Mesh.line(1.0, n=10)
+    mesh = pc.Mesh.bar(1.0, elements=10)
     steel = pc.Elastic(young=200e9, density=7800.0, section=1e-4)
     history = pc.simulate(pc.Problem(mesh, material=steel, initial_velocity=(2.0,)), end=1e-4, progress=None)
     motion = history.rigid_motion()

@@ -2,8 +2,8 @@
 
 use crate::options::{Stated, options};
 use crate::problem::ProblemData;
-use crate::simulate::Times;
-use crate::{bridge, errors, time};
+use crate::simulate::{Times, instants};
+use crate::{bridge, errors};
 use percute_estimator::Options;
 use percute_workflow::Failure;
 use percute_workflow::effort::Long;
@@ -41,8 +41,7 @@ pub(crate) fn verification(
     tell: Option<&Bound<'_, PyAny>>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<VerificationTexts> {
-    let (end, courant, step, steps) = times;
-    let times = time::grid(py, end, courant, step, steps, problem.critical_step(py)?)?;
+    let times = instants(py, problem, times, progress)?;
     let (reconstruction, acceleration, every) = stated;
     let options = Options { threads, ..options(py, &reconstruction, acceleration.as_deref(), &every)? };
     let so_far: Arc<Mutex<Option<Verification>>> = Arc::default();

@@ -178,7 +178,11 @@ impl<'p> DeformationRecorder<'p> {
     }
 
     fn rotations(&mut self, displacement: &[f64], time: f64) {
-        for (body, rotation) in self.found.bodies.iter_mut().zip(self.rigid.rotations(displacement)) {
+        let rotations = match self.problem.is_finite() {
+            true => vec![present_rotation(self.problem, displacement)],
+            false => self.rigid.rotations(displacement),
+        };
+        for (body, rotation) in self.found.bodies.iter_mut().zip(rotations) {
             if rotation.abs() > body.rotation.abs() {
                 (body.rotation, body.time_of_rotation) = (rotation, time);
             }
@@ -188,7 +192,11 @@ impl<'p> DeformationRecorder<'p> {
     /// The angular velocity of each body and, at the last instant, what would follow.
     fn turning(&mut self, state: &State<'_>) {
         let (step, velocity) = (state.step(), state.velocity());
-        for (body, spin) in self.found.bodies.iter_mut().zip(self.rigid.rotations(&velocity)) {
+        let spins = match self.problem.is_finite() {
+            true => vec![present_spin(self.problem, step.displacement, &velocity)],
+            false => self.rigid.rotations(&velocity),
+        };
+        for (body, spin) in self.found.bodies.iter_mut().zip(spins) {
             body.angular_velocity = spin;
         }
         if step.index == self.last {
@@ -223,4 +231,44 @@ impl StateSink for DeformationRecorder<'_> {
         }
         Ok(())
     }
+}
+
+/// The mean rotation of a plane body of finite kinematics, of Σ m (x − x̄)(X − X̄)ᵀ, from −π to π (rad); 0 of a bar.
+fn present_rotation(problem: &AnyProblem, displacement: &[f64]) -> f64 {
+    let undeformed = problem.mesh().points().to_vec();
+    let [turned, along] = moments(problem, &undeformed, &moved(problem, displacement));
+    turned.atan2(along)
+}
+
+/// The angular momentum of a plane body of finite kinematics about its centre over its present moment of inertia (rad/s);
+/// 0 of a bar.
+fn present_spin(problem: &AnyProblem, displacement: &[f64], velocity: &[f64]) -> f64 {
+    let places = moved(problem, displacement);
+    let [[turning, _], [_, inertia]] = [velocity, &places].map(|field| moments(problem, &places, field));
+    if inertia > 0.0 { turning / inertia } else { 0.0 }
+}
+
+/// The present places of all nodes, in rows (m).
+fn moved(problem: &AnyProblem, displacement: &[f64]) -> Vec<f64> {
+    problem.mesh().points().iter().zip(displacement).map(|(x, u)| x + u).collect()
+}
+
+/// Σ m a×b and Σ m a·b of two fields in rows, each less its mean; 0 of a bar.
+fn moments(problem: &AnyProblem, a: &[f64], b: &[f64]) -> [f64; 2] {
+    let (mass, mut sums) = (problem.mass(), [0.0; 2]);
+    if problem.dimension() != 2 {
+        return sums;
+    }
+    let total: f64 = mass.iter().sum();
+    let [p, q] = [a, b].map(|field| {
+        let mut mean = [0.0; 2];
+        field.iter().enumerate().for_each(|(k, x)| mean[k % 2] += mass[k / 2] * x / total);
+        mean
+    });
+    for (m, (a, b)) in mass.iter().zip(a.as_chunks::<2>().0.iter().zip(b.as_chunks::<2>().0)) {
+        let ([x, y], [u, v]) = ([a[0] - p[0], a[1] - p[1]], [b[0] - q[0], b[1] - q[1]]);
+        sums[0] += m * (x * v - y * u);
+        sums[1] += m * (x * u + y * v);
+    }
+    sums
 }

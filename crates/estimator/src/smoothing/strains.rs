@@ -12,7 +12,7 @@ use crate::field_lanes::FieldLanes;
 use crate::parallel::by_pieces;
 use crate::pool::Pool;
 use percute_core::ids::{ElementId, FaceId, NodeId};
-use percute_core::material::{Elastic, Law, green_strain};
+use percute_core::material::{Elastic, green_strain};
 use percute_core::problem::Problem;
 use percute_core::simd::Wide;
 use percute_core::simd::lanes::{Lanes, Value};
@@ -21,10 +21,6 @@ use rayon::prelude::*;
 
 /// Components of a strain: ε_xx, ε_yy, ε_xy.
 const COMPONENTS: usize = 3;
-
-/// J₀: below this part of its undeformed volume an element resists by itself. In impacts below 0.15 of the wave speed few
-/// elements come below it.
-const RESISTING: f64 = 0.5;
 
 /// The strains of which smoothed ones are made, of all elements at one level or some; Green strains of finite laws.
 #[derive(Clone, Debug, Default)]
@@ -148,16 +144,6 @@ impl<S: Copy> SmoothedStrains<S> {
                 smooth[c] += like.load(&patch[c]);
             }
         }
-        if law.is_finite() {
-            let strain = self.strains[element.index()].map(
-                #[inline(always)]
-                |x| like.load(&x),
-            );
-            let resisting = resistance(law, strain);
-            for c in 0..COMPONENTS {
-                smooth[c] += resisting[c];
-            }
-        }
         let share = like.load(&self.share);
         let blend = |c: usize| own[c] + share * (smooth[c] - own[c]);
         tensor([blend(0), blend(1), blend(2)])
@@ -215,22 +201,6 @@ fn tensor<T: Value, const D: usize>([x, y, xy]: [T; COMPONENTS]) -> [[T; D]; D] 
     let mut tensor = [[xy; D]; D];
     (tensor[0][0], tensor[D - 1][D - 1]) = (x, y);
     tensor
-}
-
-/// The stress at which an element resists its inversion, of which mean strains know nothing: S = κ ln(J/J₀) C⁻¹ of the
-/// energy ½κ ln²(J/J₀) below J₀, with κ = λ + 2μ.
-#[inline(always)]
-fn resistance<T: Value>(law: &Elastic, [x, y, xy]: [T; COMPONENTS]) -> [T; COMPONENTS] {
-    let one = x.fill(1.0);
-    let [a, b, ab] = [one + x * 2.0, one + y * 2.0, xy * 2.0];
-    let square = a * b - ab * ab;
-    if !square.any(|square| square < RESISTING * RESISTING) {
-        return [x.zero(); COMPONENTS];
-    }
-    let log = |square: f64| 0.5 * (square / (RESISTING * RESISTING)).max(f64::MIN_POSITIVE).ln();
-    let factor = x.zero().replaced_where(square, |square| square < RESISTING * RESISTING, log);
-    let stress = factor * law.wave_modulus() / square;
-    [b * stress, a * stress, -ab * stress]
 }
 
 /// (1 − β)/3 S of the mean strain of edges, of which the first has this number; those within a material.

@@ -314,6 +314,9 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         if !self.auxiliary.as_ref().is_some_and(Auxiliary::is_unstable) {
             return Ok(());
         }
+        if self.problem.is_finite() {
+            return Err(EstimateError::FiniteAuxiliarySolution { step: step.index, time: step.time });
+        }
         let longest_step = self.times.longest_step();
         Err(EstimateError::AuxiliarySolution { step: step.index, time: step.time, longest_step })
     }

@@ -37,8 +37,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// A motion whose kinetic energy is so many times the largest energy of the simulation is unstable: an element has been
-/// turned inside out, or nearly so.
-const UNSTABLE: f64 = 100.0;
+/// turned inside out, or nearly so. Its error would be more than twice the energy.
+const UNSTABLE: f64 = 4.0;
 
 /// From the first element on whose principal stretches differ by more from 1, strains are smoothed no more, and the lumped
 /// mass has the coefficients of plain strains: corners of rubber at 0.14 of the wave speed turned elements of smoothed
