@@ -125,9 +125,10 @@ def rubber_block(n: int = 2, *, speed: float = 10.0, law: str = "neo_hookean") -
 
 
 def test_the_estimate_falls_with_refinement() -> None:
-    """Refined runs find their own steps, and the estimate is near the true error against the finest."""
+    """Refined runs find their own steps, and the verdict's range holds against the finest."""
     verification = pc.verify(rubber_block(), end=1e-3, courant=0.9, levels=2, progress=None)
-    assert 0.8 < verification.effectivity_sup[0] < 1.6
+    low, high = verification.expected
+    assert low < verification.effectivity_sup[0] < high
     assert verification.error_sup[1] < 0.9 * verification.error_sup[0]
 
 
@@ -149,5 +150,5 @@ def test_a_history_of_another_program_has_the_same_estimate(law: str) -> None:
 def test_another_law_is_not_in_balance() -> None:
     """Displacements of another law leave forces inside the body, and this is told."""
     own = pc.simulate(rubber_block(speed=15.0), end=1e-3, courant=0.9, progress=None)
-    with pytest.raises(pc.InputError, match="not consistent"):
+    with pytest.raises(pc.InputError, match="not consistent"), pytest.warns(pc.InputWarning):
         pc.estimate(pc.History.from_arrays(rubber_block(speed=15.0, law="hencky"), own.time, own.displacement), progress=None)

@@ -10,9 +10,9 @@ import pytest
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "examples" / "finite"
 CASES = {
-    "rubber": "result    sup 40.7 % (7.805 (J/m)^½ at 0.0019973 s), mean 33.5 %",
-    "bracket": "result    sup 62.9 % (2.785 (J/m)^½ at 0.0058617 s), mean 42.4 %",
-    "cup": "result    sup 82.1 % (2.150 (J/m)^½ at 0.0025282 s), mean 65.8 %",
+    "rubber": "result    sup 41.7 % (7.998 (J/m)^½ at 0.0019771 s), mean 33.6 %",
+    "bracket": "result    sup 92.4 % (4.091 (J/m)^½ at 0.0056323 s), mean 59.9 %",
+    "cup": "result    sup 172 % (4.505 (J/m)^½ at 0.0022779 s), mean 117 %",
 }
 
 
@@ -31,7 +31,8 @@ def test_last_lines_and_pictures(name: str, tmp_path: Path) -> None:
     assert same, f"`percute run {name}.toml --picture {name}.svg --force` draws another picture"
 
 
-@pytest.mark.parametrize(("name", "known"), [("rubber", 1.148), ("bracket", 0.729)])
+@pytest.mark.parametrize(("name", "known"), [("rubber", 1.177), ("bracket", 1.070)])
+@pytest.mark.filterwarnings("ignore:contact gives the auxiliary solution")
 def test_as_far_from_the_truth_as_measured(name: str, known: float) -> None:
     """Estimated over true error, the largest over time, against the mesh that is refined twice."""
     estimate = pc.run(FOLDER / f"{name}.toml")
