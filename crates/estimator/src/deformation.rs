@@ -92,8 +92,8 @@ impl<const D: usize, T: Value> Deformation<D, T> {
     }
 }
 
-/// S of a law at a Green strain (Pa): that of the stretch U without a rotation, U − 1 = 2E(U + 1)⁻¹ without a difference
-/// of numbers near 1.
+/// S of a law at a Green strain (Pa): that of the stretch U without a rotation, U − 1 = 2E(U + 1)⁻¹ without a
+/// difference of numbers near 1.
 #[inline(always)]
 pub(crate) fn second_stress<T: Value, const D: usize>(law: &Elastic, strain: &[[T; D]; D]) -> [[T; D]; D] {
     let one = strain[0][0].fill(1.0);

@@ -87,9 +87,9 @@ pub enum EstimateError {
     AuxiliarySolution { step: usize, time: f64, longest_step: f64 },
     /// The same of a body that turns.
     #[error(
-        "the auxiliary solution of `corrected` became unstable at step {step}, t = {} s, or an element of it was turned \
-         inside out there: strains are too large for this mesh, or the steps of the history too long; take a finer mesh, \
-         shorter steps, an earlier end or a lower speed",
+        "the auxiliary solution of `corrected` became unstable at step {step}, t = {} s, or an element of it was \
+         turned inside out there: strains are too large for this mesh, or the steps of the history too long; take a \
+         finer mesh, shorter steps, an earlier end or a lower speed",
         trimmed(*.time, 7)
     )]
     FiniteAuxiliarySolution { step: usize, time: f64 },

@@ -26,8 +26,8 @@ use percute_core::mesh::{Star, Strips};
 use percute_core::observer::StopFlag;
 use percute_core::problem::Problem;
 use percute_core::simd::lanes::Value;
+pub(crate) use solve::BalancedStrains;
 use solve::StarFields;
-pub(crate) use solve::Strains;
 use star_solver::{Compatibility, Ends};
 
 /// Work on the elements of a part of the mesh, of which the tractions are final.

@@ -145,9 +145,9 @@ fn same(expected: &Estimate, found: &Estimate, named: &str) {
     }
 }
 
-/// At small speeds the estimate is that of small kinematics, whose auxiliary solution is another code: of all parts, and
-/// of what is left without that solution. The difference falls with the speed. Edges that turn away from the plane, which
-/// may touch in finite kinematics alone, are far from it.
+/// At small speeds the estimate is that of small kinematics, whose auxiliary solution is another code: of all parts,
+/// and of what is left without that solution. The difference falls with the speed. Edges that turn away from the plane,
+/// which may touch in finite kinematics alone, are far from it.
 #[test]
 fn small_motions_have_the_estimate_of_small_kinematics() {
     let plain = Options { ablation: Ablation::AuxiliarySolution, acceleration: Some(Acceleration::Weak), ..each() };

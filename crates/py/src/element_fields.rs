@@ -13,8 +13,8 @@ use pyo3::prelude::*;
 type Numbers = fn(&AnyProblem, ElementId, &[f64], &mut Vec<f64>);
 
 /// A quantity of each element at instants: (instants, elements), of one with components (instants, elements,
-/// dimension), of a tensor (instants, elements, dimension, dimension). `nodal` are velocities (m/s) for `kinetic_energy` and displacements (m) for the others, (instants,
-/// nodes, dimension).
+/// dimension), of a tensor (instants, elements, dimension, dimension). `nodal` are velocities (m/s) for
+/// `kinetic_energy` and displacements (m) for the others, (instants, nodes, dimension).
 #[pyfunction]
 pub(crate) fn element_field<'py>(
     py: Python<'py>,

@@ -240,8 +240,8 @@ fn present_rotation(problem: &AnyProblem, displacement: &[f64]) -> f64 {
     turned.atan2(along)
 }
 
-/// The angular momentum of a plane body of finite kinematics about its centre over its present moment of inertia (rad/s);
-/// 0 of a bar.
+/// The angular momentum of a plane body of finite kinematics about its centre over its present moment of inertia
+/// (rad/s); 0 of a bar.
 fn present_spin(problem: &AnyProblem, displacement: &[f64], velocity: &[f64]) -> f64 {
     let places = moved(problem, displacement);
     let [[turning, _], [_, inertia]] = [velocity, &places].map(|field| moments(problem, &places, field));

@@ -27,12 +27,13 @@ impl InternalForces {
     /// Subtracts the internal forces from `force` (N), both in rows, and returns the strain energy (J).
     pub fn subtract_from_rows(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
         match &self.0 {
-            OfDimension::One(kernel) => {
-                on_kernel!(kernel, kernel => kernel.subtract(vectors::<1>(displacement), &mut [], force.as_chunks_mut().0))
-            }
-            OfDimension::Two(kernel) => {
-                on_kernel!(kernel, kernel => kernel.subtract(vectors::<2>(displacement), &mut [], force.as_chunks_mut().0))
-            }
+            OfDimension::One(kernel) => subtract(kernel, displacement, force),
+            OfDimension::Two(kernel) => subtract(kernel, displacement, force),
         }
     }
+}
+
+fn subtract<const D: usize>(kernel: &ProblemKernel<D>, displacement: &[f64], force: &mut [f64]) -> f64 {
+    let (displacement, force) = (vectors::<D>(displacement), force.as_chunks_mut().0);
+    on_kernel!(kernel, kernel => kernel.subtract(displacement, &mut [], force))
 }

@@ -1,8 +1,8 @@
 //! Smoothed strains at one level, or at some side by side.
 //!
-//! Of bodies that turn the Green strains are averaged. S̄_E is the mean, with the same weights, of the stresses S of the
-//! mean strains of edges and nodes. F_E S̄_E is then the slope of an energy, that of the mean strains: the mean of the
-//! stresses of the elements would be no such slope, and give energy to rubber.
+//! Of bodies that turn the Green strains are averaged. S̄_E is the mean, with the same weights, of the stresses S of
+//! the mean strains of edges and nodes. F_E S̄_E is then the slope of an energy, that of the mean strains: the mean of
+//! the stresses of the elements would be no such slope, and give energy to rubber.
 
 use super::Smoothing;
 use crate::blocks::{BLOCK, ElementBlocks};
@@ -105,8 +105,8 @@ impl SmoothedStrains<f64> {
 }
 
 impl<S: Copy> SmoothedStrains<S> {
-    /// The strain of an element of which σ̄ is made: smoothed where it is, the plain one at other levels. S̄ of a finite
-    /// law.
+    /// The strain of an element of which σ̄ is made: smoothed where it is, the plain one at other levels. S̄ of a
+    /// finite law.
     #[inline(always)]
     pub(crate) fn of<T: Value<Stored = S>, const D: usize, const N: usize>(
         &self,

@@ -32,7 +32,7 @@ pub(super) struct StarFields<const D: usize> {
 }
 
 /// The strains of which the stress of some levels is made.
-pub(crate) type Strains<'a> = (&'a SmoothedStrains, &'a Smoothing);
+pub(crate) type BalancedStrains<'a> = (&'a SmoothedStrains, &'a Smoothing);
 
 impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
     /// Takes in the displacements of some levels (m), of which those whose strains are smoothed.
@@ -58,7 +58,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         &self,
         forces: Vec<ForcesKnown<D>>,
         levels: &mut EquilibratedLevels<D>,
-        strains: Option<Strains<'_>>,
+        strains: Option<BalancedStrains<'_>>,
         mut then: impl FnMut(&EquilibratedLevels<D>, &MeshPart),
     ) -> f64 {
         levels.force_scale = self.force_scale(&forces);
@@ -79,7 +79,12 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
     }
 
     /// Solves the stars of a part.
-    fn solve_part(&self, part: &MeshPart, levels: &mut EquilibratedLevels<D>, strains: Option<Strains<'_>>) -> f64 {
+    fn solve_part(
+        &self,
+        part: &MeshPart,
+        levels: &mut EquilibratedLevels<D>,
+        strains: Option<BalancedStrains<'_>>,
+    ) -> f64 {
         let EquilibratedLevels { forces, force_scale, moments, .. } = levels;
         let mut blocks = Vec::with_capacity(part.stars.len());
         let mut rest = &mut moments[self.links(&self.nodes(part))];
@@ -160,7 +165,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
     fn solve_block<R: Registers>(
         &self,
         like: Wide<R>,
-        (forces, strains): (&[ForcesKnown<D>], Option<Strains<'_>>),
+        (forces, strains): (&[ForcesKnown<D>], Option<BalancedStrains<'_>>),
         force_scale: &Lanes,
         block: usize,
         fields: &mut StarFields<D>,
@@ -293,7 +298,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
 struct SolveBlock<'b, 'p, const D: usize, const N: usize> {
     all: &'b Equilibration<'p, D, N>,
     forces: &'b [ForcesKnown<D>],
-    strains: Option<Strains<'b>>,
+    strains: Option<BalancedStrains<'b>>,
     force_scale: &'b Lanes,
     block: usize,
     fields: &'b mut StarFields<D>,
@@ -334,7 +339,7 @@ impl<const D: usize> StarFields<D> {
         &mut self,
         like: Wide<R>,
         all: &Equilibration<'_, D, N>,
-        (forces, strains): (&[ForcesKnown<D>], Option<Strains<'_>>),
+        (forces, strains): (&[ForcesKnown<D>], Option<BalancedStrains<'_>>),
         block: &StarBlock<'_, N>,
     ) -> bool {
         let finite = all.problem.is_finite();
@@ -351,7 +356,7 @@ impl<const D: usize> StarFields<D> {
         self.stress.clear();
         for (id, local) in block.cells() {
             let (element, law) = (&all.elements[id.index()], all.problem.material(id));
-            let mean = |(strains, smoothing): Strains<'_>| strains.of(like, all.smoothed(smoothing), id);
+            let mean = |(strains, smoothing): BalancedStrains<'_>| strains.of(like, all.smoothed(smoothing), id);
             let (gradient, mut stress) = match strains.map(mean) {
                 Some(strain) if !finite => (strain, law.respond(&strain, &mut []).0),
                 mean => {

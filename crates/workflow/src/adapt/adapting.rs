@@ -53,8 +53,8 @@ pub struct Adapting {
 }
 
 /// Why a body that turns is not adapted.
-const FINITE: &str = "runs on adapted meshes need kinematics = \"small\": with finite kinematics the error has no sources \
-                      to plan from; refine the mesh, and compare by `percute verify`";
+const FINITE: &str = "runs on adapted meshes need kinematics = \"small\": with finite kinematics the error has no \
+                      sources to plan from; refine the mesh, and compare by `percute verify`";
 
 impl Adapting {
     /// Begins with a problem on its mesh.

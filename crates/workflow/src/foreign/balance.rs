@@ -1,4 +1,5 @@
-//! The terms of the balance M a + K u = F + R at a step, eq. \[30\]; with finite kinematics K u are the internal forces.
+//! The terms of the balance M a + K u = F + R at a step, eq. \[30\]; with finite kinematics K u are the internal
+//! forces.
 
 use super::window::{Held, Window, vectors_of};
 use percute_core::border::Vector;

@@ -1,8 +1,8 @@
 //! A problem on its mesh and on nested refinements of it: estimates beside true errors against the finest.
 //!
-//! All meshes have the Courant number of the first; with finite kinematics the steps of refinements follow the stiffness.
-//! Each run is compared with all coarser ones as it goes, so that each
-//! is simulated once and a verification is complete after each mesh.
+//! All meshes have the Courant number of the first; with finite kinematics the steps of refinements follow the
+//! stiffness. Each run is compared with all coarser ones as it goes, so that each is simulated once and a verification
+//! is complete after each mesh.
 
 mod criterion;
 mod levels;

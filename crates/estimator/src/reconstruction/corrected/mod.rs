@@ -45,8 +45,8 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use traction_minimisation::TractionMinimisation;
 
-/// The strain of a star from which on its node has no contact of its own: at a corner of rubber with 25 %, such contacts
-/// gave a seventh of the energy.
+/// The strain of a star from which on its node has no contact of its own: at a corner of rubber with 25 %, such
+/// contacts gave a seventh of the energy.
 const STRAINED: f64 = 0.1;
 
 /// The reconstruction that drops no reaction, except at nodes with a contact of their own.
@@ -288,8 +288,8 @@ impl<const D: usize> SurfaceInstant<'_, D> {
         self.present.as_ref().map_or(*force, |present| present.pull_back(at, force))
     }
 
-    /// A vector at a node, turned back with its star. The compliance of an auxiliary contact is that of the undeformed star
-    /// for it: one that changed with the strain would give energy.
+    /// A vector at a node, turned back with its star. The compliance of an auxiliary contact is that of the undeformed
+    /// star for it: one that changed with the strain would give energy.
     fn unturned(&self, at: usize, vector: &[f64; D]) -> [f64; D] {
         self.present.as_ref().map_or(*vector, |present| present.turn_back(at, vector))
     }

@@ -1,13 +1,14 @@
 //! The auxiliary solution of bodies that turn.
 //!
-//! With f the internal forces, f̄ those of smoothed stresses, ã = M⁻¹(F + F_DA − f̄(u)), o = M⁻¹(M − M_c)ã and v at t_n,
+//! With f the internal forces, f̄ those of smoothed stresses, ã = M⁻¹(F + F_DA − f̄(u)), o = M⁻¹(M − M_c)ã and v at
+//! t_n,
 //!
 //! a = ã + p(M⁻¹(M − M_c))ã − (1/12) M⁻¹[f(u + Δt v + ½Δt²ã) + f(u − Δt v + ½Δt²ã) − 2 f(u)].
 //!
 //! The bracket is Δt² d²f/dt², without a tangent; of a linear law it is −Δt²Kã. It has the term of the changing
 //! stiffness, without which a spinning body would be far off. f̄ has the stress F_E S̄_E, with S̄_E the mean of the
-//! stresses of smoothed Green strains ([`crate::smoothing`]): symmetric in the present body, the slope of an energy, and
-//! that of small strains where the body does not turn.
+//! stresses of smoothed Green strains ([`crate::smoothing`]): symmetric in the present body, the slope of an energy,
+//! and that of small strains where the body does not turn.
 
 use super::approach::{ContactElements, Foreseen, FreeFlight};
 use super::balance::{EnergyBalance, half_work};
@@ -40,9 +41,9 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 /// turned inside out, or nearly so. Its error would be more than twice the energy.
 const UNSTABLE: f64 = 4.0;
 
-/// From the first element on whose principal stretches differ by more from 1, strains are smoothed no more, and the lumped
-/// mass has the coefficients of plain strains: corners of rubber at 0.14 of the wave speed turned elements of smoothed
-/// strains inside out.
+/// From the first element on whose principal stretches differ by more from 1, strains are smoothed no more, and the
+/// lumped mass has the coefficients of plain strains: corners of rubber at 0.14 of the wave speed turned elements of
+/// smoothed strains inside out.
 const LARGE: f64 = 0.25;
 
 /// c₁ to c₃ of plain strains: the leading error of the lumped mass, and what remains of it for waves along the axes.
@@ -422,8 +423,8 @@ mod tests {
     use percute_core::material::{Elastic, HyperelasticLaw, Kinematics};
     use percute_testkit::{Random, random_rectangle};
 
-    /// The forces of smoothed strains are the slope of an energy: their changes are symmetric, ∂f_i/∂u_j = ∂f_j/∂u_i. In
-    /// a body that has turned by 1 rad and strained by some per cent; differences with 1e-6 of the size leave 1e-8.
+    /// The forces of smoothed strains are the slope of an energy: their changes are symmetric, ∂f_i/∂u_j = ∂f_j/∂u_i.
+    /// In a body that has turned by 1 rad and strained by some per cent; differences with 1e-6 of the size leave 1e-8.
     #[test]
     fn smoothed_forces_have_an_energy() {
         for law in [HyperelasticLaw::NeoHookean, HyperelasticLaw::SaintVenantKirchhoff, HyperelasticLaw::Hencky] {

@@ -10,8 +10,8 @@
 //! a step by (Δt/τ)² of it, τ the time of the impulse smoothing. Steps as long as τ bring the node to its plane at
 //! once.
 //!
-//! Where the star of a node of a body that turns is strained much, the undeformed star says too little of its compliance:
-//! the force of the simulation stays, or comes back.
+//! Where the star of a node of a body that turns is strained much, the undeformed star says too little of its
+//! compliance: the force of the simulation stays, or comes back.
 //!
 //! A node goes back to the force of the simulation where it touches with a neighbour that has one: beside it, an own
 //! force would take back the work of a force that the auxiliary contact does not know.

@@ -27,7 +27,7 @@ use crate::options::Acceleration;
 use crate::pool::Pool;
 use crate::stress::EnergyForms;
 use crate::time_level::ForcesKnown;
-use crate::traction::{EquilibratedLevels, Equilibration, Strains, Then};
+use crate::traction::{BalancedStrains, EquilibratedLevels, Equilibration, Then};
 use chebyshev::{Arrays, ChebyshevSteps};
 use energy::{moment_slope, product_slope};
 use modes::{MOMENTS, Modes, ModesPart, Numbers};
@@ -134,7 +134,7 @@ impl TractionMinimisation {
     pub(in crate::reconstruction) fn equilibrate<const D: usize, const N: usize>(
         &self,
         of @ (problem, equilibration, _): (&Problem<D>, &Equilibration<'_, D, N>, Acceleration),
-        forces: (Vec<ForcesKnown<D>>, Option<Strains<'_>>),
+        forces: (Vec<ForcesKnown<D>>, Option<BalancedStrains<'_>>),
         levels: &mut EquilibratedLevels<D>,
         concentration: Option<&Concentration<D>>,
         then: Then<'_, D>,
@@ -159,7 +159,7 @@ impl TractionMinimisation {
     fn add_slopes<const D: usize, const N: usize>(
         &self,
         (problem, equilibration, choice): (&Problem<D>, &Equilibration<'_, D, N>, Acceleration),
-        (forces, strains): (Vec<ForcesKnown<D>>, Option<Strains<'_>>),
+        (forces, strains): (Vec<ForcesKnown<D>>, Option<BalancedStrains<'_>>),
         levels: &mut EquilibratedLevels<D>,
         (concentration, present): (Option<&Concentration<D>>, Option<&PresentPlaces>),
         all: &mut Modes,
