@@ -30,7 +30,7 @@ type Tensors<R, const D: usize> = [[Wide<R>; D]; D];
 
 /// Groups of one law that are swept together.
 #[derive(Clone, Debug)]
-struct Chunk {
+struct PointChunk {
     groups: Range<u32>,
     law: u32,
     reach: Reach,
@@ -38,7 +38,7 @@ struct Chunk {
 
 /// A chunk as the sweep needs it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ChunkData<'a, M, const D: usize> {
+pub(crate) struct PointChunkData<'a, M, const D: usize> {
     groups: &'a [Group<D>],
     /// Numbers of the elements in the strip.
     elements: &'a [[u32; LANES]],
@@ -52,7 +52,7 @@ pub(crate) struct PointKernel<M, const D: usize> {
     groups: Vec<Group<D>>,
     /// Their elements, apart from them: only laws with internal variables read these.
     elements: Vec<[u32; LANES]>,
-    chunks: Vec<Chunk>,
+    chunks: Vec<PointChunk>,
     /// Where the chunks of each strip begin.
     of_strip: Vec<usize>,
     laws: Vec<M>,
@@ -93,7 +93,7 @@ impl<M: PointLaw, const D: usize> PointKernel<M, D> {
             self.elements.push(elements);
         }
         let nodes = self.groups[from..].iter().flat_map(|group| group.nodes.into_iter().flatten());
-        self.chunks.push(Chunk { reach: Reach::of(nodes), groups: from as u32..self.groups.len() as u32, law });
+        self.chunks.push(PointChunk { reach: Reach::of(nodes), groups: from as u32..self.groups.len() as u32, law });
     }
 
     /// A stable step (s) at these displacements, Δt = 2/ω_max with the largest ω² of any element alone: some per cent
@@ -119,15 +119,15 @@ impl<M: PointLaw, const D: usize> PointKernel<M, D> {
     }
 
     #[inline(always)]
-    fn chunks_of(&self, strip: usize) -> &[Chunk] {
+    fn chunks_of(&self, strip: usize) -> &[PointChunk] {
         &self.chunks[self.of_strip[strip]..self.of_strip[strip + 1]]
     }
 
     #[inline(always)]
-    fn data(&self, chunk: &Chunk) -> ChunkData<'_, M, D> {
+    fn data(&self, chunk: &PointChunk) -> PointChunkData<'_, M, D> {
         let groups = chunk.groups.start as usize..chunk.groups.end as usize;
         let (elements, law) = (&self.elements[groups.clone()], &self.laws[chunk.law as usize]);
-        ChunkData { groups: &self.groups[groups], elements, law }
+        PointChunkData { groups: &self.groups[groups], elements, law }
     }
 }
 
@@ -289,7 +289,7 @@ impl<const D: usize> Group<D> {
 
 impl<M: PointLaw, const D: usize> Kernel<D> for PointKernel<M, D> {
     type Chunk<'a>
-        = ChunkData<'a, M, D>
+        = PointChunkData<'a, M, D>
     where
         M: 'a;
 
@@ -302,7 +302,7 @@ impl<M: PointLaw, const D: usize> Kernel<D> for PointKernel<M, D> {
     }
 
     #[inline(always)]
-    fn chunks(&self, strip: usize) -> impl Iterator<Item = (&Reach, ChunkData<'_, M, D>)> {
+    fn chunks(&self, strip: usize) -> impl Iterator<Item = (&Reach, PointChunkData<'_, M, D>)> {
         self.chunks_of(strip).iter().map(
             #[inline(always)]
             |chunk| (&chunk.reach, self.data(chunk)),
@@ -313,7 +313,7 @@ impl<M: PointLaw, const D: usize> Kernel<D> for PointKernel<M, D> {
     fn sweep<L: Registers>(
         &self,
         lanes: L,
-        chunk: &ChunkData<'_, M, D>,
+        chunk: &PointChunkData<'_, M, D>,
         displacement: &[[f64; D]],
         internal: &mut [f64],
         force: &mut [[f64; D]],
@@ -391,7 +391,7 @@ impl<M: PointLaw, const D: usize> Task for StripTest<'_, M, D> {
         let like = Wide::zeros(lanes);
         for chunk in self.kernel.chunks_of(self.strip) {
             let limit = self.limits[chunk.law as usize];
-            let ChunkData { groups, law, .. } = self.kernel.data(chunk);
+            let PointChunkData { groups, law, .. } = self.kernel.data(chunk);
             for group in groups {
                 let [slopes, gradient] = group.gradient(like, self.displacement);
                 let excess = law.stiffness_excess(&gradient, &square(&slopes), limit);
