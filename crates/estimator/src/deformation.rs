@@ -115,18 +115,6 @@ pub(crate) fn second_stress<T: Value, const D: usize>(law: &Elastic, strain: &[[
     Deformation::new(&stretch).second_stress(&law.respond(&stretch, &mut []).0)
 }
 
-/// P = F S (Pa).
-#[inline(always)]
-pub(crate) fn first_stress<T: Value, const D: usize>(gradient: &[[T; D]; D], second: &[[T; D]; D]) -> [[T; D]; D] {
-    let mut first = *second;
-    for a in 0..D {
-        for b in 0..D {
-            (0..D).for_each(|c| first[a][b] += gradient[a][c] * second[c][b]);
-        }
-    }
-    first
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

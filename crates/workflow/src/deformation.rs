@@ -235,8 +235,7 @@ impl StateSink for DeformationRecorder<'_> {
 
 /// The mean rotation of a plane body of finite kinematics, of Σ m (x − x̄)(X − X̄)ᵀ, from −π to π (rad); 0 of a bar.
 fn present_rotation(problem: &AnyProblem, displacement: &[f64]) -> f64 {
-    let undeformed = problem.mesh().points().to_vec();
-    let [turned, along] = moments(problem, &undeformed, &moved(problem, displacement));
+    let [turned, along] = moments(problem, problem.mesh().points(), &moved(problem, displacement));
     turned.atan2(along)
 }
 

@@ -169,13 +169,7 @@ fn saint_venant_kirchhoff<V: Value, const D: usize>(moduli: &Moduli, h: &[[V; D]
         second[a][a] += trace * (0.5 * moduli.lambda);
         (0..D).for_each(|b| work += second[a][b] * strain[a][b]);
     }
-    // P = F S.
-    let mut first = second;
-    for a in 0..D {
-        for b in 0..D {
-            (0..D).for_each(|c| first[a][b] += h[a][c] * second[c][b]);
-        }
-    }
+    let first = first_stress(h, &second);
     // This energy alone does not see whether the element is inside out.
     let (e, inside_out) = (dilatation(h), |e: f64| e < -1.0);
     let energy = work * 0.25;
@@ -223,6 +217,18 @@ fn metric_change<V: Value, const D: usize>(h: &[[V; D]; D]) -> [[V; D]; D] {
         }
     }
     change
+}
+
+/// P = F S of H = F − 1.
+#[inline(always)]
+pub fn first_stress<V: Value, const D: usize>(h: &[[V; D]; D], second: &[[V; D]; D]) -> [[V; D]; D] {
+    let mut first = *second;
+    for a in 0..D {
+        for b in 0..D {
+            (0..D).for_each(|c| first[a][b] += h[a][c] * second[c][b]);
+        }
+    }
+    first
 }
 
 /// The Green strain E = ½ (C − 1) of H = F − 1.

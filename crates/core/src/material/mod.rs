@@ -9,7 +9,7 @@ mod metric;
 mod stability;
 
 pub use elastic::{Elastic, Hypothesis};
-pub use hyperelastic::{HyperelasticLaw, Response, green_strain, volume_ratio};
+pub use hyperelastic::{HyperelasticLaw, Response, first_stress, green_strain, volume_ratio};
 pub use kinematics::Kinematics;
 pub use metric::StressMetric;
 

@@ -116,23 +116,23 @@ impl<S: Copy> SmoothedStrains<S> {
     ) -> [[T; D]; D] {
         let (mesh, volume) = (problem.mesh(), elements[element.index()].volume);
         let (law, first) = (problem.material(element), mesh.nodes_of::<N>()[element.index()][0]);
-        let mut own = self.strains[element.index()].map(
+        let own = self.strains[element.index()].map(
             #[inline(always)]
             |x| like.load(&x),
         );
-        if law.is_finite() {
-            own = components(&second_stress::<T, D>(law, &tensor(own)));
-        }
+        let plain = || if law.is_finite() { components(&second_stress::<T, D>(law, &tensor(own))) } else { own };
         let mut smooth = [like.zero(); COMPONENTS];
         for face in mesh.faces_of::<N>()[element.index()] {
             let other = Smoothing::beyond(problem, element, face);
             let beyond = elements[other.index()].volume;
             let weight = smoothing.edge_weight(first, volume + beyond);
             let (mine, beyond) = (weight * volume, weight * beyond);
+            // At a border the mean is that of the element alone.
+            let alone = if law.is_finite() && other == element { plain() } else { own };
             for c in 0..COMPONENTS {
                 smooth[c] += match law.is_finite() {
                     false => own[c] * mine + like.load(&self.strains[other.index()][c]) * beyond,
-                    true if other == element => own[c] * (mine + beyond),
+                    true if other == element => alone[c] * (mine + beyond),
                     true => like.load(&self.edges[face.index()][c]),
                 };
             }
@@ -145,6 +145,10 @@ impl<S: Copy> SmoothedStrains<S> {
             }
         }
         let share = like.load(&self.share);
+        if law.is_finite() && !share.any(|share| share != 1.0) {
+            return tensor(smooth);
+        }
+        let own = plain();
         let blend = |c: usize| own[c] + share * (smooth[c] - own[c]);
         tensor([blend(0), blend(1), blend(2)])
     }

@@ -3,7 +3,7 @@
 use super::star_solver::{Compatibility, StarSolver};
 use super::{EXPLAINED, EquilibratedLevel, EquilibratedLevels, Equilibration, MassTerm};
 use crate::blocks::{BLOCK, MeshPart, StarBlock};
-use crate::deformation::{Deformation, first_stress};
+use crate::deformation::Deformation;
 use crate::element::Element;
 use crate::field_lanes::FieldLanes;
 use crate::inertia::{add_lumping_stress, arms, lumping_stress};
@@ -11,7 +11,7 @@ use crate::residual::worse;
 use crate::smoothing::{Displacements, Smoothed, SmoothedStrains, Smoothing};
 use crate::time_level::{ForcesKnown, Side};
 use percute_core::ids::{ElementId, FaceId, NodeId};
-use percute_core::material::{Law, PointLaw};
+use percute_core::material::{Law, PointLaw, first_stress};
 use percute_core::simd::Wide;
 use percute_core::simd::lanes::{Lanes, Value, load};
 use percute_core::simd::{Registers, Task, run_task};

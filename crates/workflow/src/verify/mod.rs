@@ -21,7 +21,7 @@ use crate::quantity::{Probe, ProbeSink, Quantity};
 use crate::report::{Report, Subject};
 use crate::run::{Results, following, whole};
 use levels::Followed;
-use percute_core::dynamics::{critical_time_step, first_stable_step};
+use percute_core::dynamics::first_stable_step;
 use percute_core::mesh::room;
 use percute_core::observer::Observer;
 use percute_core::problem::AnyProblem;
@@ -38,6 +38,7 @@ pub struct Prepared {
     problem: AnyProblem,
     /// With finite kinematics those of a refinement have about as many steps as this, until they are found.
     times: TimeGrid,
+    /// The critical step, or with finite kinematics the stable one of the start (s).
     critical_step: f64,
     /// The Courant number of steps that are to be found.
     following: Option<f64>,
@@ -65,10 +66,9 @@ pub fn prepare(
     room(problem.mesh().element_count() << (problem.dimension() * levels))
         .map_err(|error| Failure::Memory(format!("{levels} refinements: {error}, or give fewer levels")))?;
     let stated = Source::new("the refined problem", statement(problem, None)?);
-    let critical_step = stable_step(problem);
+    let critical_step = first_stable_step(problem);
     let courant = times.longest_step() / critical_step;
-    let (following, stated_times) = (None, times.clone());
-    let mut all = vec![Prepared { problem: problem.clone(), times: stated_times, critical_step, following }];
+    let mut all = vec![Prepared { problem: problem.clone(), times: times.clone(), critical_step, following: None }];
     for _ in 0..levels {
         let coarse = &all[all.len() - 1].problem;
         let mesh = coarse.mesh();
@@ -76,18 +76,13 @@ pub fn prepare(
         let initial = [coarse.initial_displacement(), coarse.initial_velocity()].map(|field| mesh.prolonged(field));
         let [displacement, velocity] = initial;
         let (problem, _) = problem_from(&stated, &fine.into(), displacement, velocity)?;
-        let critical_step = stable_step(&problem);
+        let critical_step = first_stable_step(&problem);
         let times = TimeGrid::with_step(times.end(), courant * critical_step);
         let times = times.map_err(|error| Failure::Argument(error.to_string()))?;
         let following = problem.is_finite().then_some(courant);
         all.push(Prepared { problem, times, critical_step, following });
     }
     Ok(all)
-}
-
-/// The step of which the Courant number is a part (s).
-fn stable_step(problem: &AnyProblem) -> f64 {
-    if problem.is_finite() { first_stable_step(problem) } else { critical_time_step(problem) }
 }
 
 /// The work before it starts.

@@ -133,16 +133,16 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
     ) {
         let (problem, surface, length) = (self.problem, self.problem.surface(), self.times.step(n));
         let Some(concentration) = &self.concentration else { return };
-        let has_own = auxiliary.has_own_contacts();
-        let Some(foreseen) = auxiliary.foresee(n, around.present.as_ref()) else { return };
+        let Some(foreseen) = auxiliary.foresee(n, around.present.as_ref()) else {
+            return self.auxiliary_forces.release_all();
+        };
         let time = |at: usize| {
             let own = || self.impulse_smoothing.as_ref().map_or(length, |smoothing| smoothing.time(at));
             stopped.get(at).copied().flatten().map_or_else(own, |stopped| stopped.time)
         };
         let steps = |at: usize| length / time(at);
         let unturned = |at: usize, vector: &[f64; D]| around.unturned(at, vector);
-        let much = |at: usize| around.present.as_ref().is_some_and(|stars| stars.strain(at) > STRAINED);
-        let strained = |at: usize| !has_own || much(at);
+        let strained = |at: usize| around.present.as_ref().is_some_and(|stars| stars.strain(at) > STRAINED);
         let (gap, steps, unturned, strained) = (around.gap, &steps, &unturned, &strained);
         let mut known = Known { problem, concentration, gap, steps, strained, unturned, contact, arresting };
         self.auxiliary_forces.replace(

@@ -50,6 +50,11 @@ impl<'a, const D: usize> PresentStars<'a, D> {
         self.strains[at]
     }
 
+    /// R v.
+    pub(super) fn turn(&self, at: usize, vector: &[f64; D]) -> [f64; D] {
+        self.rotations[at].map(|row| row.iter().zip(vector).map(|(r, v)| r * v).sum())
+    }
+
     /// Rᵀ v.
     pub(super) fn turn_back(&self, at: usize, vector: &[f64; D]) -> [f64; D] {
         std::array::from_fn(|c| (0..D).map(|d| self.rotations[at][d][c] * vector[d]).sum())

@@ -199,21 +199,14 @@ impl<const D: usize> Foreseen<'_, D> {
     fn places(&self, at: usize, forces: &[[f64; D]], (by, without): (usize, &[f64; D])) -> [[f64; D]; 2] {
         let response = self.near.response(self.problem, self.operator, at);
         let [now, next] = self.displacements(at);
-        let moved = match self.turned.map(|stars| (stars, stars.rotation(at))) {
-            Some((stars, rotation)) => {
-                turned(rotation, &response.under(&self.factors, |by| stars.turn_back(at, &forces[by])))
-            }
+        let moved = match self.turned {
+            Some(stars) => stars.turn(at, &response.under(&self.factors, |by| stars.turn_back(at, &forces[by]))),
             None => response.under(&self.factors, |by| forces[by]),
         };
         let own = self.mobility(at, at).under(&forces[at]);
         let less = self.mobility(at, by).under(without);
         [now, from_fn(|c| next[c] + self.square * moved[c] + own[c] - less[c])]
     }
-}
-
-/// R v.
-fn turned<const D: usize>(rotation: &Tensor<D>, vector: &[f64; D]) -> [f64; D] {
-    from_fn(|c| dot(&rotation[c], vector))
 }
 
 /// The data of the level before its pass.

@@ -58,7 +58,7 @@ impl<'p, const D: usize, const N: usize> Auxiliary<'p, D, N> {
     }
 
     /// Foresees the motion at all contact nodes until t_{n+1}, after `begin`; of a body that turns from its stars at
-    /// t_n.
+    /// t_n. None where nodes have no contacts of their own.
     pub(in crate::reconstruction::corrected) fn foresee<'a>(
         &'a mut self,
         n: usize,
@@ -66,7 +66,7 @@ impl<'p, const D: usize, const N: usize> Auxiliary<'p, D, N> {
     ) -> Option<Foreseen<'a, D>> {
         match self {
             Self::Small(own) => Some(own.foresee(n)),
-            Self::Finite(own) => stars.map(|stars| own.foresee(n, stars)),
+            Self::Finite(own) => own.foresee(n, stars?),
         }
     }
 
@@ -110,14 +110,6 @@ impl<'p, const D: usize, const N: usize> Auxiliary<'p, D, N> {
     /// Whether strains are smoothed at the level that has begun.
     pub(in crate::reconstruction::corrected) fn smooths(&self) -> bool {
         of_either!(self, own => own.smooths())
-    }
-
-    /// Whether nodes may have contacts of their own.
-    pub(in crate::reconstruction::corrected) fn has_own_contacts(&self) -> bool {
-        match self {
-            Self::Small(_) => true,
-            Self::Finite(own) => own.has_own_contacts(),
-        }
     }
 
     /// Whether it has become unstable.

@@ -19,7 +19,6 @@ use super::surface::SurfaceForces;
 use super::weights::{Shares, Weights, shares};
 use super::{AuxiliaryLevel, SimulatedLevel, SplitLevel};
 use crate::acceleration::accelerate;
-use crate::deformation::first_stress;
 use crate::element::Element;
 use crate::parallel::by_pieces;
 use crate::reconstruction::corrected::present_stars::PresentStars;
@@ -29,7 +28,7 @@ use percute_core::contact::ContactNode;
 use percute_core::dynamics::{self, Dynamics};
 use percute_core::element_state::stretches;
 use percute_core::ids::{ElementId, NodeId};
-use percute_core::material::{PointLaw, Tensor, volume_ratio};
+use percute_core::material::{PointLaw, Tensor, first_stress, volume_ratio};
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::array::from_fn;
@@ -128,11 +127,6 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
         self.smooths
     }
 
-    /// Whether nodes may have contacts of their own.
-    pub(super) fn has_own_contacts(&self) -> bool {
-        !self.large
-    }
-
     /// The coefficients of the lumping difference at the level that has begun.
     fn mass(&self) -> [f64; 3] {
         if self.large && !self.smooths && self.weights.corrects() { PLAIN } else { self.weights.mass(0) }
@@ -190,8 +184,11 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
     }
 
     /// Foresees the motion at all contact nodes until t_{n+1}, after `begin`: without contact forces that of the whole
-    /// correction; under them that of the undeformed body, turned with the stars.
-    pub(super) fn foresee<'a>(&'a mut self, n: usize, stars: &'a PresentStars<'_, D>) -> Foreseen<'a, D> {
+    /// correction; under them that of the undeformed body, turned with the stars. None once strains are large.
+    pub(super) fn foresee<'a>(&'a mut self, n: usize, stars: &'a PresentStars<'_, D>) -> Option<Foreseen<'a, D>> {
+        if self.large {
+            return None;
+        }
         let (problem, times) = (self.problem, self.times);
         let steps = [times.step(n), times.velocity_step(n)];
         let (plain, [_, lumped]) = (&self.plain, &self.lumping);
@@ -210,7 +207,7 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
         let factors = Factors::new(&self.weights.at(times, n));
         let operator = PatchOperator { laws: &self.pairs.laws, weights: &self.weights };
         let square = steps[0] * steps[1];
-        Foreseen { problem, near: &self.near, operator, factors, square, turned: Some(stars) }
+        Some(Foreseen { problem, near: &self.near, operator, factors, square, turned: Some(stars) })
     }
 
     /// Takes in a level under forces on the nodes of the contact surface (N), and goes on to the next one.

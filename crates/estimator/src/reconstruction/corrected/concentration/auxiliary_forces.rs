@@ -77,6 +77,11 @@ impl<const D: usize> AuxiliaryForces<D> {
         self.contacts[at] = None;
     }
 
+    /// The same of all nodes.
+    pub(in crate::reconstruction::corrected) fn release_all(&mut self) {
+        self.contacts.fill(None);
+    }
+
     /// Replaces the forces of nodes that touch alone, from then on until the auxiliary contact force is 0. Those of
     /// non-matching interfaces stay.
     pub(in crate::reconstruction::corrected) fn replace(
@@ -86,11 +91,9 @@ impl<const D: usize> AuxiliaryForces<D> {
         approach: impl FnMut(usize, &[[f64; D]]) -> Approach<D>,
     ) {
         let surface = known.problem.surface();
-        (0..self.contacts.len()).filter(|&at| (known.strained)(at)).for_each(|at| self.contacts[at] = None);
-        let stands = |at: usize| {
-            let node = surface.nodes()[at].free && surface.leads(at) && surface.non_matching_of(at).is_none();
-            node && !(known.strained)(at)
-        };
+        (0..self.contacts.len()).filter(|&at| (known.strained)(at)).for_each(|at| self.release(at));
+        let free = |at: usize| surface.nodes()[at].free && surface.leads(at) && surface.non_matching_of(at).is_none();
+        let stands = |at: usize| free(at) && !(known.strained)(at);
         let touches = |at: usize| self.contacts[at].is_some() || known.contact[at] != [0.0; D] || free_gap(at) < 0.0;
         let nodes = (0..surface.nodes().len()).filter(|&at| stands(at) && touches(at));
         self.replace_in_turn(nodes.map(|at| (at, Faced::WHOLE)).collect(), known, approach);
