@@ -58,15 +58,13 @@ pub(crate) struct PointKernel<M, const D: usize> {
     laws: Vec<M>,
 }
 
-impl<const D: usize> PointKernel<Elastic, D> {
-    /// That of a problem, with its materials.
-    pub(crate) fn new(problem: &Problem<D>) -> Self {
-        Self::with_laws(problem, Strips::new(problem.mesh()), problem.materials().to_vec())
-    }
-}
-
 impl<M: PointLaw, const D: usize> PointKernel<M, D> {
-    /// The same with a law for each material.
+    /// That of a problem, with a law for each material.
+    pub(crate) fn new(problem: &Problem<D>, law: impl Fn(&Elastic) -> M) -> Self {
+        Self::with_laws(problem, Strips::new(problem.mesh()), problem.materials().iter().map(law).collect())
+    }
+
+    /// The same with these strips.
     fn with_laws(problem: &Problem<D>, strips: Strips, laws: Vec<M>) -> Self {
         let (groups, elements, chunks) = (Vec::new(), Vec::new(), Vec::new());
         let mut all = Self { strips, groups, elements, chunks, of_strip: vec![0], laws };
@@ -263,8 +261,8 @@ impl<const D: usize> Group<D> {
         internal: &[f64],
     ) -> [Wide<R>; MOST_VARIABLES] {
         let mut found = [like; MOST_VARIABLES];
-        for k in 0..M::VARIABLES {
-            let of_element = |lane: usize| internal[M::VARIABLES * elements[lane] as usize + k];
+        for k in 0..M::variables::<D>() {
+            let of_element = |lane: usize| internal[M::variables::<D>() * elements[lane] as usize + k];
             found[k] = like.load(&Lanes::at_levels(of_element));
         }
         found
@@ -278,10 +276,10 @@ impl<const D: usize> Group<D> {
         elements: &[u32; LANES],
         internal: &mut [f64],
     ) {
-        for k in 0..M::VARIABLES {
+        for k in 0..M::variables::<D>() {
             let stored = variables[k].store();
             for lane in (0..LANES).filter(|lane| self.volume.0[*lane] > 0.0) {
-                internal[M::VARIABLES * elements[lane] as usize + k] = stored.0[lane];
+                internal[M::variables::<D>() * elements[lane] as usize + k] = stored.0[lane];
             }
         }
     }
@@ -298,7 +296,7 @@ impl<M: PointLaw, const D: usize> Kernel<D> for PointKernel<M, D> {
     }
 
     fn variables(&self) -> usize {
-        M::VARIABLES
+        M::variables::<D>()
     }
 
     #[inline(always)]
@@ -333,7 +331,7 @@ impl<M: PointLaw, const D: usize> Kernel<D> for PointKernel<M, D> {
             let mut gradient = [[like; D]; D];
             (0..D).for_each(|a| gradient[a] = load(like, &tensor[a]));
             let mut variables = Group::<D>::variables::<M, L>(like, elements, internal);
-            let (stress, density) = chunk.law.respond(&gradient, &mut variables[..M::VARIABLES]);
+            let (stress, density) = chunk.law.respond(&gradient, &mut variables[..M::variables::<D>()]);
             group.store::<M, L>(&variables, elements, internal);
             let volume = like.load(&group.volume);
             total += density * volume;
@@ -532,7 +530,9 @@ mod tests {
     struct Softening(Elastic);
 
     impl PointLaw for Softening {
-        const VARIABLES: usize = 2;
+        fn variables<const D: usize>() -> usize {
+            2
+        }
 
         fn respond<V: Value, const D: usize>(&self, gradient: &[[V; D]; D], internal: &mut [V]) -> Response<V, D> {
             let (stress, energy) = self.0.respond(gradient, &mut []);

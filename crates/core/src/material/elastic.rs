@@ -2,7 +2,8 @@
 
 use super::hyperelastic::{HyperelasticLaw, Moduli, Response, dilatation, green_strain, present_stress, volume_ratio};
 use super::stability::{bound, excess};
-use super::{Kinematics, Law, LinearLaw, MaterialError, PointLaw, Tensor, contract};
+use super::von_mises::Hardening;
+use super::{Kinematics, Law, LinearLaw, MaterialError, PointLaw, Tensor, contract, require, symmetric};
 use crate::simd::lanes::Value;
 
 /// What the dimensions that the mesh leaves out do.
@@ -30,18 +31,8 @@ pub struct Elastic {
     density: f64,
     extent: f64,
     yield_stress: Option<f64>,
+    hardening: Option<Hardening>,
     kinematics: Kinematics,
-}
-
-/// Checks one parameter; NaN fails every test.
-fn require(
-    ok: bool,
-    name: &'static str,
-    value: f64,
-    unit: &'static str,
-    allowed: &'static str,
-) -> Result<(), MaterialError> {
-    if ok && value.is_finite() { Ok(()) } else { Err(MaterialError { name, value, unit, allowed }) }
 }
 
 impl Elastic {
@@ -63,6 +54,7 @@ impl Elastic {
             density,
             extent,
             yield_stress: None,
+            hardening: None,
             kinematics: Kinematics::Small,
         })
     }
@@ -90,8 +82,9 @@ impl Elastic {
         Self::checked(young, poisson, density)?;
         require(thickness > 0.0, "thickness", thickness, "m", "positive")?;
         let shear = young / (2.0 * (1.0 + poisson));
-        let (extent, yield_stress, kinematics) = (thickness, None, Kinematics::Small);
-        Ok(Self { hypothesis, young, poisson, lambda, shear, density, extent, yield_stress, kinematics })
+        let (extent, kinematics) = (thickness, Kinematics::Small);
+        let (yield_stress, hardening) = (None, None);
+        Ok(Self { hypothesis, young, poisson, lambda, shear, density, extent, yield_stress, hardening, kinematics })
     }
 
     fn checked(young: f64, poisson: f64, density: f64) -> Result<(), MaterialError> {
@@ -118,14 +111,31 @@ impl Elastic {
         self.young
     }
 
-    /// The same law with a yield stress (Pa), which it does not use: results say where the von Mises stress is above
-    /// it.
+    /// The same law with a yield stress (Pa). Without hardening the law does not use it: results say where the von
+    /// Mises stress is above it.
     ///
     /// # Errors
     /// A value that is not positive and finite.
     pub fn with_yield_stress(self, yield_stress: f64) -> Result<Self, MaterialError> {
         require(yield_stress > 0.0, "yield_stress", yield_stress, "Pa", "positive")?;
         Ok(Self { yield_stress: Some(yield_stress), ..self })
+    }
+
+    /// The same material that yields at its yield stress, von Mises, and hardens: [`VonMises`](super::VonMises) is its
+    /// law. [`Law`] of this material gives the stress of its elastic strain.
+    ///
+    /// # Errors
+    /// No yield stress, or finite kinematics.
+    pub fn with_hardening(self, hardening: Hardening) -> Result<Self, MaterialError> {
+        let missing = "given: a material that hardens has a yield stress";
+        require(self.yield_stress.is_some(), "yield_stress", 0.0, "Pa", missing)?;
+        Ok(Self { hardening: Some(hardening), ..self })
+    }
+
+    /// The hardening of a material that yields.
+    #[must_use]
+    pub fn hardening(&self) -> Option<Hardening> {
+        self.hardening
     }
 
     /// The same material with other kinematics. A bar has the laws for ν = 0.
@@ -216,9 +226,7 @@ impl Law for Elastic {
 
     fn strain<const D: usize>(&self, gradient: &Tensor<D>) -> Tensor<D> {
         match self.kinematics {
-            Kinematics::Small => {
-                std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * (gradient[a][b] + gradient[b][a])))
-            }
+            Kinematics::Small => symmetric(gradient),
             Kinematics::Finite(_) => green_strain(gradient),
         }
     }
@@ -257,7 +265,9 @@ impl Law for Elastic {
 }
 
 impl PointLaw for Elastic {
-    const VARIABLES: usize = 0;
+    fn variables<const D: usize>() -> usize {
+        0
+    }
 
     #[inline(always)]
     fn respond<V: Value, const D: usize>(&self, gradient: &[[V; D]; D], _: &mut [V]) -> Response<V, D> {

@@ -7,11 +7,13 @@ mod hyperelastic;
 mod kinematics;
 mod metric;
 mod stability;
+mod von_mises;
 
 pub use elastic::{Elastic, Hypothesis};
 pub use hyperelastic::{HyperelasticLaw, Response, first_stress, green_strain, volume_ratio};
 pub use kinematics::Kinematics;
 pub use metric::StressMetric;
+pub use von_mises::{FlowForces, FourComponents, Hardening, PlasticState, VonMises};
 
 use crate::simd::lanes::Value;
 use thiserror::Error;
@@ -28,6 +30,17 @@ pub struct MaterialError {
     pub unit: &'static str,
     /// What is allowed.
     pub allowed: &'static str,
+}
+
+/// Checks one parameter; NaN fails every test.
+fn require(
+    ok: bool,
+    name: &'static str,
+    value: f64,
+    unit: &'static str,
+    allowed: &'static str,
+) -> Result<(), MaterialError> {
+    if ok && value.is_finite() { Ok(()) } else { Err(MaterialError { name, value, unit, allowed }) }
 }
 
 /// A tensor of second order in `D` dimensions.
@@ -66,8 +79,8 @@ pub trait Law {
 
 /// A law as the points of a body obey it, at one or at eight of them.
 pub trait PointLaw: Copy + Send + Sync {
-    /// Internal variables of a point, at most [`MOST_VARIABLES`].
-    const VARIABLES: usize;
+    /// Number of internal variables of a point of a body with this dimension, at most [`MOST_VARIABLES`].
+    fn variables<const D: usize>() -> usize;
 
     /// First Piola–Kirchhoff stress P (Pa) of H = ∂u_a/∂X_b, with the work of P in dH, and the strain energy per
     /// reference volume (J/m³). Takes the internal variables from the last instant to this one.
@@ -98,6 +111,11 @@ pub trait LinearLaw: Law {
 
     /// Lamé's moduli λ and G of σ = λ tr ε 1 + 2G ε, in the dimension of the mesh (Pa).
     fn moduli(&self) -> (f64, f64);
+}
+
+/// ½(H + Hᵀ).
+pub(crate) fn symmetric<const D: usize>(gradient: &Tensor<D>) -> Tensor<D> {
+    std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * (gradient[a][b] + gradient[b][a])))
 }
 
 /// The sum of products of entries, a:b.
