@@ -22,7 +22,7 @@ from percute.balance import Balance
 from percute.bodies import Body, Interface
 from percute.contact import Contact
 from percute.contact_results import ContactStatus, Resultants
-from percute.deformation import BodyDeformation, ContactPeak, Deformation, Extreme, MaterialStress, Nearest, PoorElement, Yielding
+from percute.deformation import BodyDeformation, ContactPeak, Deformation, Extreme, MaterialStress, Nearest, PlasticFlow, PoorElement, Yielding
 from percute.errors import (
     EstimateError,
     ExistingFileError,
@@ -91,6 +91,7 @@ __all__ = [
     "Parts",
     "PercuteError",
     "Plane",
+    "PlasticFlow",
     "PoorElement",
     "Problem",
     "Progress",

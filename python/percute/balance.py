@@ -21,6 +21,7 @@ __all__ = ["Balance"]
 QUANTITIES = {
     "kinetic": ("J", "kinetic energy"),
     "strain": ("J", "strain energy"),
+    "plastic_work": ("J", "work of plastic flow"),
     "work_of_loads": ("J", "work of tractions and body forces"),
     "work_of_supports": ("J", "work of support reactions"),
     "work_of_contact": ("J", "work of contact reactions, including friction"),
@@ -39,7 +40,9 @@ class Balance:
     kinetic: NDArray[np.float64]
     """Kinetic energy."""
     strain: NDArray[np.float64]
-    """Strain energy."""
+    """Strain energy; of materials that yield that of their elastic strain."""
+    plastic_work: NDArray[np.float64]
+    """What hardening has stored and plastic flow has dissipated; 0 where no material yields."""
     work_of_loads: NDArray[np.float64]
     """Work of tractions and body forces."""
     work_of_supports: NDArray[np.float64]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["BodyDeformation", "ContactPeak", "Deformation", "Extreme", "MaterialStress", "Nearest", "PoorElement", "Yielding"]
+__all__ = ["BodyDeformation", "ContactPeak", "Deformation", "Extreme", "MaterialStress", "Nearest", "PlasticFlow", "PoorElement", "Yielding"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,15 +36,27 @@ class BodyDeformation:
 
 
 @dataclass(frozen=True, kw_only=True)
+class PlasticFlow:
+    """What plastic flow did in a material."""
+
+    tangent_ratio: float
+    """The slope of the uniaxial curve beyond the yield stress over Young's modulus."""
+    equivalent_strain: Extreme
+    """The largest equivalent plastic strain p of an element."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Yielding:
-    """Where and when the von Mises stress was above the yield stress."""
+    """Where and when a material yielded or, if its law is elastic, the von Mises stress was above the yield stress."""
 
     yield_stress: float
     """The yield stress (Pa)."""
     share: float
-    """The part of the volume of the material in which the stress was above it at some instant."""
+    """The part of the volume of the material that yielded, or in which the stress was above it at some instant."""
     first: float | None
     """The first of these instants (s)."""
+    plastic: PlasticFlow | None = None
+    """The plastic flow, of a law with plasticity."""
 
 
 @dataclass(frozen=True, kw_only=True)

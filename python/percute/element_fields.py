@@ -21,8 +21,10 @@ Floats = NDArray[np.float64]
 Step = int | slice | ArrayLike
 
 NODAL = ("displacement", "velocity", "acceleration")
-OF_ELEMENTS = ("strain", "stress", "von_mises", "pressure", "strain_energy", "kinetic_energy")
-MEANS = OF_ELEMENTS[:4]
+OF_ELEMENTS = (
+    "strain", "stress", "von_mises", "pressure", "plastic_strain", "equivalent_plastic_strain", "strain_energy", "plastic_work", "kinetic_energy",
+)
+MEANS = OF_ELEMENTS[:6]
 """Quantities of elements of which a mean is meant: energies are sums."""
 AT_ONCE = 1_000_000
 """Elements times instants that are computed at once for a group."""
@@ -58,8 +60,13 @@ def element_field(history: Steps, quantity: str, step: Step) -> Floats:
     """Give a quantity of all elements at one instant, or at several along the first axis."""
     chosen, one = rows(history, step)
     motion = history.velocity[chosen] if quantity == "kinetic_energy" else history._displacement_at(chosen)
-    values = _percute.element_field(history.problem._data, quantity, np.ascontiguousarray(motion))
+    values = _percute.element_field(history.problem._data, quantity, np.ascontiguousarray(motion), internal(history, chosen))
     return values[0] if one else values
+
+
+def internal(history: Steps, chosen: NDArray[np.intp]) -> Floats | None:
+    """Give the internal variables at these instants, (instants, elements, variables); None where no material yields."""
+    return history._data.internal(chosen.tolist()) if history._data.variables else None
 
 
 class Place(NamedTuple):
@@ -91,7 +98,9 @@ def _of_elements(history: Steps, quantity: str, elements: NDArray[np.int64]) -> 
     """Read a quantity of some elements at all instants."""
     if len(elements) == 1:
         problem, nodes = _alone(history.problem, int(elements[0]))
-        return _percute.element_field(problem._data, quantity, np.ascontiguousarray(history.displacement[:, nodes]))
+        variables = internal(history, np.arange(len(history)))
+        own = None if variables is None else np.ascontiguousarray(variables[:, elements])
+        return _percute.element_field(problem._data, quantity, np.ascontiguousarray(history.displacement[:, nodes]), own)
     # The quantity of all elements at some instants at once, so that memory stays small.
     count = max(AT_ONCE // len(history.problem.mesh.cells), 1)
     parts = [slice(start, start + count) for start in range(0, len(history), count)]

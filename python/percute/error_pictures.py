@@ -33,7 +33,7 @@ from percute.pictures.curves import draw_curve, mark_of_range
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-PARTS = ("kinetic", "elastic", "contact")
+PARTS = ("kinetic", "elastic", "dissipation", "contact")
 SOURCES = ("surface", "front", "dispersion", "mesh")
 
 
@@ -106,7 +106,8 @@ def plot_over_time(estimate: ErrorResults, by: str, axes: Axes | None, save: obj
     time = samples.time / (seconds := over_time(axes, samples.time))
     bands = [draw_curve(axes, time, np.sqrt(np.maximum(samples.total, 0.0)), colour=COLOURS["total"], width=1.6, label="error √η")]
     values = samples if by == "parts" else estimate.sources.over_time  # type: ignore[union-attr]
-    for name in PARTS if by == "parts" else SOURCES:
+    names = [name for name in PARTS if name != "dissipation" or np.any(samples.dissipation)]
+    for name in names if by == "parts" else SOURCES:
         # A part may be below zero by rounding, a source a little more.
         part = np.sqrt(np.maximum(getattr(values, name), 0.0))
         label = f"{name} part" if by == "parts" else name

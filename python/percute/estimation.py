@@ -32,6 +32,7 @@ __all__ = ["Estimate"]
 SAMPLES = {
     "kinetic": ("J", "kinetic part of eta"),
     "elastic": ("J", "elastic part of eta"),
+    "dissipation": ("J", "plastic part of eta"),
     "contact": ("J", "contact part of eta"),
     "total": ("J", "eta, the square of the error"),
     "reference": ("J", "the square of the reference"),
@@ -39,6 +40,7 @@ SAMPLES = {
 MAPS = {
     "kinetic": (("instant", "element"), "element_kinetic", "J", "kinetic part of eta of the element"),
     "elastic": (("instant", "element"), "element_elastic", "J", "elastic part of eta of the element"),
+    "dissipation": (("instant", "element"), "element_dissipation", "J", "plastic part of eta of the element"),
     "contact": (("instant", "element"), "element_contact", "J", "contact part of eta of the element"),
     "total": (("instant", "element"), "element_total", "J", "eta of the element"),
     "error": (("instant", "element"), "accumulated", "J^0.5", "contribution of the element up to here"),

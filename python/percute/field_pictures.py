@@ -107,12 +107,13 @@ def plot_energies(values: Mapping[str, Any], axes: Axes | None, save: object, ov
     """Draw energies and works over time; ``values`` are those of a `Balance`, by name."""
     file = writable("save", save, overwrite)
     axes = new_axes(axes, (7.2, 4.0))
-    total = values["kinetic"] + values["strain"]
+    total = values["kinetic"] + values["strain"] + values["plastic_work"]
     factor, prefix = prefixed(np.concatenate([total, *(values[name] for name in WORKS)]))
     time = values["time"] / over_time(axes, values["time"])
-    axes.plot(time, total / factor, color=COLOURS["total"], linewidth=1.6, label="kinetic + strain")
-    for name in ("kinetic", "strain"):
-        axes.plot(time, values[name] / factor, color=COLOURS[name], linewidth=1.3, label=name)
+    yields = bool(np.any(values["plastic_work"]))
+    axes.plot(time, total / factor, color=COLOURS["total"], linewidth=1.6, label="kinetic + strain" + (" + plastic work" if yields else ""))
+    for name in ("kinetic", "strain", *(["plastic_work"] if yields else [])):
+        axes.plot(time, values[name] / factor, color=COLOURS[name], linewidth=1.3, label=name.replace("_", " "))
     # Works that are zero to rounding would only fill the legend.
     least = 1e-9 * float(np.abs(total).max(initial=0.0))
     for name, label in WORKS.items():

@@ -135,8 +135,20 @@ class History(Steps, Views):
         """Give −⅓ tr σ of each element (Pa), shape (elements,), positive in compression; ``step`` as for `strain`."""
         return element_fields.element_field(self, "pressure", step)
 
+    def plastic_strain(self, step: Step) -> NDArray[np.float64]:
+        """Give ε_p of each element, shape (elements, dimension, dimension); 0 where the material does not yield. ``step`` as for `strain`."""
+        return element_fields.element_field(self, "plastic_strain", step)
+
+    def equivalent_plastic_strain(self, step: Step) -> NDArray[np.float64]:
+        """Give p = ∫√(⅔ ε̇_p:ε̇_p) dt of each element, shape (elements,); ``step`` as for `strain`."""
+        return element_fields.element_field(self, "equivalent_plastic_strain", step)
+
+    def plastic_work(self, step: Step) -> NDArray[np.float64]:
+        """Give ∫σ:ε̇_p dt of each element (J), shape (elements,); the sum is that of ``balance``. ``step`` as for `strain`."""
+        return element_fields.element_field(self, "plastic_work", step)
+
     def strain_energy(self, step: Step) -> NDArray[np.float64]:
-        """Give the strain energy of each element (J), shape (elements,); the sum is that of ``balance``. ``step`` as for `strain`."""
+        """Give the strain energy of each element of its elastic strain (J), shape (elements,); the sum is that of ``balance``. ``step`` as for `strain`."""
         return element_fields.element_field(self, "strain_energy", step)
 
     def kinetic_energy(self, step: Step) -> NDArray[np.float64]:

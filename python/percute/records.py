@@ -24,13 +24,15 @@ class Parts:
     """Kinetic: the misfit of the law of inertia, ½∫ρ(u̇_DA − u̇_CA)²."""
     elastic: float
     """From stress: ½∫(σ_DA − σ_CA):K⁻¹(σ_DA − σ_CA)."""
+    dissipation: float
+    """Of materials that yield, else 0: the misfit of hardening, ∫⅓C|Δε_p|² + ½H_i Δp², and of dissipation, ∫₀ᵗ∫φ(Ė_CA) − Σ_DA·Ė_CA."""
     contact: float
     """From the contact law: 2∫∫[b(−w_CA, F_DA) + w_CA·F_DA]; with ``corrected`` its tangential part, ∫F_n gap and ∫∫F_n|w_n| dt."""
 
     @property
     def total(self) -> float:
         """η (J)."""
-        return self.kinetic + self.elastic + self.contact
+        return self.kinetic + self.elastic + self.dissipation + self.contact
 
 
 @dataclass(frozen=True)
@@ -121,6 +123,8 @@ class OverTime:
     """Kinetic part of η (J), eq. [14]."""
     elastic: NDArray[np.float64]
     """Elastic part of η (J)."""
+    dissipation: NDArray[np.float64]
+    """Plastic part of η (J); 0 where no material yields."""
     contact: NDArray[np.float64]
     """Contact part of η (J)."""
     total: NDArray[np.float64]
@@ -154,6 +158,8 @@ class ElementMap:
     """Kinetic part of η_E (J), shape (elements,)."""
     elastic: NDArray[np.float64]
     """Elastic part of η_E (J), shape (elements,)."""
+    dissipation: NDArray[np.float64]
+    """Plastic part of η_E (J), shape (elements,)."""
     contact: NDArray[np.float64]
     """Contact part of η_E (J), shape (elements,)."""
     total: NDArray[np.float64]

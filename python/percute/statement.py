@@ -63,7 +63,7 @@ def _table(name: str, value: object, time: object, columns: tuple[str, ...] | No
 
 @dataclass(frozen=True, kw_only=True)
 class Elastic:
-    """An isotropic elastic material: Hooke's law, eq. [9], or a hyperelastic law for large strains and rotations.
+    """An isotropic material: Hooke's law, eq. [9], with von Mises plasticity, or a hyperelastic law for large strains and rotations.
 
     Parameters
     ----------
@@ -80,7 +80,14 @@ class Elastic:
     section : float, optional
         Section of a bar (m²). Bars need it, plane bodies have none.
     yield_stress : float, optional
-        Yield stress (Pa). The simulation does not use it; the verdict says where the von Mises stress is above it.
+        Yield stress (Pa). With ``tangent`` or ``hardening`` the material yields there (von Mises); without, the verdict says where the
+        von Mises stress is above it.
+    tangent : float, optional
+        Slope of the uniaxial stress over the strain beyond the yield stress (Pa), below ``young``.
+    hardening : float, optional
+        Instead of it, the slope over the plastic strain (Pa): E E_t/(E − E_t).
+    kinematic : float, optional
+        The share of the hardening that is kinematic, 0 by default; the rest is isotropic.
     kinematics : {"small", "finite"}, default: "small"
         Small strains and rotations, or any.
     law : {"neo_hookean", "svk", "hencky"}, optional
@@ -95,11 +102,15 @@ class Elastic:
     thickness: float = 1.0
     section: float | None = None
     yield_stress: float | None = None
+    tangent: float | None = None
+    hardening: float | None = None
+    kinematic: float | None = None
     kinematics: Literal["small", "finite"] = "small"
     law: Literal["neo_hookean", "svk", "hencky"] | None = None
 
     def __post_init__(self) -> None:
-        units = {"young": "Pa", "density": "kg/m³", "thickness": "m", "poisson": "", "section": "m²", "yield_stress": "Pa"}
+        units = {"young": "Pa", "density": "kg/m³", "thickness": "m", "poisson": "", "section": "m²"} | dict.fromkeys(("yield_stress", "tangent", "hardening"), "Pa")
+        units["kinematic"] = ""
         for name, unit in units.items():
             if getattr(self, name) is not None or name in ("young", "density", "thickness"):
                 object.__setattr__(self, name, number(name, getattr(self, name), unit=unit))

@@ -79,7 +79,8 @@ class StoredEstimate:
         self._measures["steps"] = report.of(int, "steps")
         none = report.part("impulse_ratio") is None
         self._measures["impulse_ratio"] = None if none else report.number("impulse_ratio")
-        self._parts = report.number("parts", "kinetic"), report.number("parts", "elastic"), report.number("parts", "contact")
+        kinetic, elastic, dissipation, contact = (report.number("parts", name) for name in ("kinetic", "elastic", "dissipation", "contact"))
+        self._parts = kinetic, elastic, dissipation, contact
         self._sources = self._read_sources(report)
         self._residuals = {name: report.number("residuals", name) for name in report.of(dict, "residuals")}
         self._supplied: tuple[bool, bool] = report.of(bool, "supplied", "velocity"), report.of(bool, "supplied", "acceleration")

@@ -26,6 +26,8 @@ class TrueError:
     """Kinetic part of e² (J), shape (instants,)."""
     elastic: NDArray[np.float64]
     """Elastic part of e² (J), shape (instants,)."""
+    dissipation: NDArray[np.float64]
+    """Plastic part of e² (J), shape (instants,): the distance of hardening and the misfit of either flow under the forces of the other."""
     total: NDArray[np.float64]
     """e² (J), shape (instants,)."""
     nested: bool = True
@@ -36,7 +38,8 @@ class TrueError:
         """Give the error with these parts of e² at the t_n; the mean is by the trapezoidal rule."""
         total = kinetic + elastic
         mean = np.sum(np.diff(time) * (total[1:] + total[:-1])) / (2 * time[-1])
-        return cls(sup=float(np.sqrt(total.max())), mean=float(np.sqrt(mean)), time=time, kinetic=kinetic, elastic=elastic, total=total)
+        sup, none = float(np.sqrt(total.max())), np.zeros_like(total)
+        return cls(sup=sup, mean=float(np.sqrt(mean)), time=time, kinetic=kinetic, elastic=elastic, dissipation=none, total=total)
 
     def __repr__(self) -> str:
         return f"<percute.TrueError: sup {self.sup:.4g} J^½, mean {self.mean:.4g} J^½, {counted(len(self.time), 'instant')}{'' if self.nested else ', by location'}>"

@@ -2,7 +2,7 @@
 
 use crate::border::vectors;
 use crate::ids::ElementId;
-use crate::material::{Law, PointLaw, Tensor};
+use crate::material::{Law, PointLaw, Tensor, VonMises, symmetric};
 use crate::mesh::Mesh;
 use crate::on_problem;
 use crate::problem::{Problem, ProblemRef};
@@ -18,29 +18,70 @@ pub struct ElementState {
     pub stress: Tensor<3>,
     /// σ_zz (Pa), 0 in plane stress and in a bar.
     pub stress_across: f64,
-    /// ½∫σ:ε, or that of a finite law (J), over the element with its section or thickness.
+    /// ½∫σ:ε, or that of a finite law (J), over the element with its section or thickness. Of a material that yields
+    /// ½∫σ:(ε − ε_p).
     pub strain_energy: f64,
+    /// ε_p as xx, yy, zz and xy; 0 where the material does not yield.
+    pub plastic_strain: [f64; 4],
+    /// p = ∫√(⅔ ε̇_p:ε̇_p) dt.
+    pub equivalent_plastic_strain: f64,
+    /// ∫σ:ε̇_p dt over the element (J).
+    pub plastic_work: f64,
 }
 
 impl ElementState {
-    /// The state of an element for these displacements of all nodes (m), in rows.
+    /// The state of an element for these displacements of all nodes (m) and internal variables of all elements, in
+    /// rows; without internal variables that of a body that has not yielded.
     #[must_use]
-    pub fn new<'p>(problem: impl Into<ProblemRef<'p>>, element: ElementId, displacement: &[f64]) -> Self {
-        fn of(problem: ProblemRef<'_>, element: ElementId, displacement: &[f64]) -> ElementState {
-            on_problem!(problem, problem => ElementState::of(problem, element, vectors(displacement)))
+    pub fn new<'p>(
+        problem: impl Into<ProblemRef<'p>>,
+        element: ElementId,
+        displacement: &[f64],
+        internal: &[f64],
+    ) -> Self {
+        fn of(problem: ProblemRef<'_>, element: ElementId, displacement: &[f64], internal: &[f64]) -> ElementState {
+            on_problem!(problem, problem => ElementState::of(problem, element, vectors(displacement), internal))
         }
-        of(problem.into(), element, displacement)
+        of(problem.into(), element, displacement, internal)
     }
 
-    fn of<const D: usize>(problem: &Problem<D>, element: ElementId, displacement: &[[f64; D]]) -> Self {
+    fn of<const D: usize>(
+        problem: &Problem<D>,
+        element: ElementId,
+        displacement: &[[f64; D]],
+        internal: &[f64],
+    ) -> Self {
         let law = problem.material(element);
         let gradient = displacement_gradient(problem.mesh(), element, displacement);
+        let count = problem.variables();
+        if law.hardening().is_some() && !internal.is_empty() {
+            let variables = &internal[count * element.index()..][..count];
+            return Self::of_yielding(&VonMises::new(law), problem.volume(element), &gradient, variables);
+        }
         Self {
             dimension: D,
+            plastic_strain: [0.0; 4],
+            equivalent_plastic_strain: 0.0,
+            plastic_work: 0.0,
             strain: in_space::<D>(&law.strain(&gradient)),
             stress: in_space(&law.stress(&gradient)),
             stress_across: law.stress_across(&gradient),
             strain_energy: problem.volume(element) * law.strain_energy(&gradient),
+        }
+    }
+
+    fn of_yielding<const D: usize>(law: &VonMises, volume: f64, gradient: &Tensor<D>, internal: &[f64]) -> Self {
+        let state = law.state::<f64, D>(gradient, internal);
+        let [stored, dissipated] = law.plastic_energies::<f64, D>(internal);
+        Self {
+            dimension: D,
+            strain: in_space::<D>(&symmetric(gradient)),
+            stress: in_space(&state.stress),
+            stress_across: state.stress_across,
+            strain_energy: volume * state.elastic_energy,
+            plastic_strain: state.plastic_strain.0,
+            equivalent_plastic_strain: state.equivalent,
+            plastic_work: volume * (stored + dissipated),
         }
     }
 

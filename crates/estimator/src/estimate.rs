@@ -13,6 +13,10 @@ pub struct Parts {
     pub kinetic: f64,
     /// ½∫(σ_DA − σ_CA) : K⁻¹ (σ_DA − σ_CA).
     pub elastic: f64,
+    /// Of materials that yield, else 0: the distance of the hardening of both fields, ∫⅓C|Δε_p|² + ½H_i Δp², and the
+    /// misfit of the dissipation, ∫₀ᵗ∫φ(Ė_CA) − Σ_DA·Ė_CA.
+    #[serde(default)]
+    pub dissipation: f64,
     /// 2∫₀ᵗ∫[b(−w_CA, F_DA) + w_CA·F_DA]; with `corrected` its tangential part, ∫F_n gap and ∫∫F_n|w_n| dt.
     pub contact: f64,
 }
@@ -21,7 +25,7 @@ impl Parts {
     /// η (J).
     #[must_use]
     pub fn total(&self) -> f64 {
-        self.kinetic + self.elastic + self.contact
+        self.kinetic + self.elastic + self.dissipation + self.contact
     }
 
     /// The mean of two.
@@ -30,13 +34,16 @@ impl Parts {
         Self {
             kinetic: mean(a.kinetic, b.kinetic),
             elastic: mean(a.elastic, b.elastic),
+            dissipation: mean(a.dissipation, b.dissipation),
             contact: mean(a.contact, b.contact),
         }
     }
 
     /// Each part times a factor.
     pub(crate) fn scaled(&self, factor: f64) -> Self {
-        Self { kinetic: factor * self.kinetic, elastic: factor * self.elastic, contact: factor * self.contact }
+        let [kinetic, elastic, dissipation, contact] =
+            [self.kinetic, self.elastic, self.dissipation, self.contact].map(|part| factor * part);
+        Self { kinetic, elastic, dissipation, contact }
     }
 }
 

@@ -33,6 +33,7 @@ mod options;
 mod parallel;
 mod partition;
 mod pipeline;
+mod plastic;
 mod pool;
 mod reconstruction;
 pub mod reference;

@@ -14,6 +14,9 @@ pub struct ElementMap {
     pub kinetic: Vec<f64>,
     /// Its elastic part (J).
     pub elastic: Vec<f64>,
+    /// Its plastic part (J), of materials that yield: 0 for others.
+    #[serde(default)]
+    pub dissipation: Vec<f64>,
     /// Its contact part (J), an integral from 0 to t_n, in the element that owns the face.
     pub contact: Vec<f64>,
     /// ∫η_E dt of each element from 0 to t_n (J s). The quantity of the paper's figure 9 follows from it, see
@@ -42,8 +45,8 @@ impl ElementMap {
     /// η_E(t_n) of each element (J), eq. \[21\].
     #[must_use]
     pub fn total(&self) -> Vec<f64> {
-        let parts = self.kinetic.iter().zip(&self.elastic).zip(&self.contact);
-        parts.map(|((kinetic, elastic), contact)| kinetic + elastic + contact).collect()
+        let parts = self.kinetic.iter().zip(&self.elastic).zip(&self.dissipation).zip(&self.contact);
+        parts.map(|(((kinetic, elastic), dissipation), contact)| kinetic + elastic + dissipation + contact).collect()
     }
 
     /// The error accumulated so far, e_E(t_n) = √((1/T)∫η_E dt) from 0 to t_n, of each element (J^½), where

@@ -16,7 +16,7 @@ use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
 use std::ops::Range;
-pub(crate) use strains::{Displacements, Smoothed, SmoothedStrains};
+pub(crate) use strains::{Smoothed, SmoothedStrains, StrainLevel};
 
 /// How the strains and the mass of a body are corrected.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,6 +9,7 @@ use crate::contact_density::{CornerSliding, Densities, LevelDensities, OffContac
 use crate::increment::Increment;
 use crate::kinematic::NodalMotion;
 use crate::nodal_field::NodalField;
+use crate::plastic::EigenStrains;
 
 /// Which value at an instant where contact changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,8 +49,10 @@ pub(crate) struct TimeLevel<const D: usize> {
     pub(crate) split: Option<SplitFields<D>>,
     /// Whether its stress is that of smoothed strains.
     pub(crate) smoothed: bool,
-    /// Strain energy of the simulation (J).
-    pub(crate) strain_energy: f64,
+    /// ε* of the balanced stress, where a material yields.
+    pub(crate) plastic: Option<EigenStrains>,
+    /// Strain energy of the simulation and its plastic work (J).
+    pub(crate) energies: [f64; 2],
 }
 
 /// The fields of a split mass term beside a_c (m/s²): M ã = M_c a_c + (M − M_c) w.

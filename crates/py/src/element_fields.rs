@@ -9,18 +9,20 @@ use percute_core::ids::ElementId;
 use percute_core::problem::AnyProblem;
 use pyo3::prelude::*;
 
-/// Numbers of one element, from the rows of all nodes at an instant.
-type Numbers = fn(&AnyProblem, ElementId, &[f64], &mut Vec<f64>);
+/// Numbers of one element, from the rows of all nodes at an instant and the internal variables of all elements.
+type Numbers = fn(&AnyProblem, ElementId, [&[f64]; 2], &mut Vec<f64>);
 
 /// A quantity of each element at instants: (instants, elements), of one with components (instants, elements,
 /// dimension), of a tensor (instants, elements, dimension, dimension). `nodal` are velocities (m/s) for
-/// `kinetic_energy` and displacements (m) for the others, (instants, nodes, dimension).
+/// `kinetic_energy` and displacements (m) for the others, (instants, nodes, dimension); `internal` the internal variables
+/// of materials that yield, (instants, elements, variables).
 #[pyfunction]
 pub(crate) fn element_field<'py>(
     py: Python<'py>,
     problem: &ProblemData,
     quantity: &str,
     nodal: PyReadonlyArray3<'py, f64>,
+    internal: Option<PyReadonlyArray3<'py, f64>>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let problem = &problem.problem;
     let shape = nodal.shape().to_vec();
@@ -37,7 +39,8 @@ pub(crate) fn element_field<'py>(
         ));
     }
     let (problem, rows) = (problem.clone(), nodal.as_slice()?.to_vec());
-    let work = move |watch: Watch| over_time(&problem, &rows, numbers, watch);
+    let internal = internal.map_or_else(|| Ok(Vec::new()), |internal| internal.as_slice().map(<[f64]>::to_vec))?;
+    let work = move |watch: Watch| over_time(&problem, [&rows, &internal], numbers, watch);
     let values = bridge::blocking(py, None, work)?;
     let shape = [&[shape[0], elements], &[dimension; 2][..order]].concat();
     let array = values.into_pyarray(py).reshape(shape)?;
@@ -46,14 +49,15 @@ pub(crate) fn element_field<'py>(
 }
 
 /// The numbers of all elements at all instants, until `watch` asks for a stop.
-fn over_time(problem: &AnyProblem, rows: &[f64], numbers: Numbers, watch: Watch) -> Vec<f64> {
-    let mut values = Vec::new();
-    for instant in rows.chunks_exact(problem.dimension() * problem.mesh().node_count()) {
+fn over_time(problem: &AnyProblem, [rows, internal]: [&[f64]; 2], numbers: Numbers, watch: Watch) -> Vec<f64> {
+    let (mut values, count) = (Vec::new(), problem.variables() * problem.mesh().element_count());
+    for (k, instant) in rows.chunks_exact(problem.dimension() * problem.mesh().node_count()).enumerate() {
         if watch.0.stopped() {
             break;
         }
         let elements = (0..problem.mesh().element_count()).map(ElementId::new);
-        elements.for_each(|element| numbers(problem, element, instant, &mut values));
+        let internal = internal.get(k * count..(k + 1) * count).unwrap_or_default();
+        elements.for_each(|element| numbers(problem, element, [instant, internal], &mut values));
     }
     values
 }
@@ -61,19 +65,38 @@ fn over_time(problem: &AnyProblem, rows: &[f64], numbers: Numbers, watch: Watch)
 /// The numbers of a quantity, and the order of its tensor.
 fn quantity_of(quantity: &str) -> Option<(Numbers, usize)> {
     Some(match quantity {
-        "strain" => (|p, e, u, to| to.extend(tensor(p, &ElementState::new(p, e, u).strain)), 2),
-        "stress" => (|p, e, u, to| to.extend(tensor(p, &ElementState::new(p, e, u).stress)), 2),
-        "first_piola" => (|p, e, u, to| to.extend(tensor(p, &first_piola_stress(p, e, u))), 2),
+        "strain" => (|p, e, at, to| to.extend(tensor(p, &state(p, e, at).strain)), 2),
+        "stress" => (|p, e, at, to| to.extend(tensor(p, &state(p, e, at).stress)), 2),
+        "first_piola" => (
+            |p, e, at, to| match p.yields() {
+                true => to.extend(tensor(p, &state(p, e, at).stress)),
+                false => to.extend(tensor(p, &first_piola_stress(p, e, at[0]))),
+            },
+            2,
+        ),
         "principal_stretches" => {
-            (|p, e, u, to| to.extend(principal_stretches(p, e, u).into_iter().take(p.dimension())), 1)
+            (|p, e, [u, _], to| to.extend(principal_stretches(p, e, u).into_iter().take(p.dimension())), 1)
         }
-        "stress_across" => (|p, e, u, to| to.push(ElementState::new(p, e, u).stress_across), 0),
-        "von_mises" => (|p, e, u, to| to.push(ElementState::new(p, e, u).von_mises()), 0),
-        "pressure" => (|p, e, u, to| to.push(ElementState::new(p, e, u).pressure()), 0),
-        "strain_energy" => (|p, e, u, to| to.push(ElementState::new(p, e, u).strain_energy), 0),
-        "kinetic_energy" => (|p, e, v, to| to.push(kinetic_energy(p, e, v)), 0),
+        "stress_across" => (|p, e, at, to| to.push(state(p, e, at).stress_across), 0),
+        "von_mises" => (|p, e, at, to| to.push(state(p, e, at).von_mises()), 0),
+        "pressure" => (|p, e, at, to| to.push(state(p, e, at).pressure()), 0),
+        "strain_energy" => (|p, e, at, to| to.push(state(p, e, at).strain_energy), 0),
+        "plastic_strain" => (|p, e, at, to| to.extend(tensor(p, &plastic_strain(&state(p, e, at)))), 2),
+        "equivalent_plastic_strain" => (|p, e, at, to| to.push(state(p, e, at).equivalent_plastic_strain), 0),
+        "plastic_work" => (|p, e, at, to| to.push(state(p, e, at).plastic_work), 0),
+        "kinetic_energy" => (|p, e, [v, _], to| to.push(kinetic_energy(p, e, v)), 0),
         _ => return None,
     })
+}
+
+fn state(problem: &AnyProblem, element: ElementId, [displacement, internal]: [&[f64]; 2]) -> ElementState {
+    ElementState::new(problem, element, displacement, internal)
+}
+
+/// ε_p as a tensor.
+fn plastic_strain(state: &ElementState) -> [[f64; 3]; 3] {
+    let [xx, yy, zz, xy] = state.plastic_strain;
+    [[xx, xy, 0.0], [xy, yy, 0.0], [0.0, 0.0, zz]]
 }
 
 /// The components of a tensor in the dimension of a problem.

@@ -126,10 +126,10 @@ impl EstimateData {
         Ok(numbers)
     }
 
-    /// Parts of η at the time of the sup: kinetic, elastic, contact (J).
-    fn parts(&self) -> (f64, f64, f64) {
+    /// Parts of η at the time of the sup: kinetic, elastic, dissipation, contact (J).
+    fn parts(&self) -> (f64, f64, f64, f64) {
         let parts = &self.built.estimate.parts;
-        (parts.kinetic, parts.elastic, parts.contact)
+        (parts.kinetic, parts.elastic, parts.dissipation, parts.contact)
     }
 
     /// η, its parts and d at all samples, an array each.
@@ -234,8 +234,12 @@ fn one_map<'py>(py: Python<'py>, built: &Arc<BuiltEstimate>, at: usize) -> PyRes
     arguments.set_item("step", map.step)?;
     arguments.set_item("time", map.time)?;
     let elements = map.kinetic.len();
-    let parts: [(&str, MapNumbers); 3] =
-        [("kinetic", |m| &m.kinetic), ("elastic", |m| &m.elastic), ("contact", |m| &m.contact)];
+    let parts: [(&str, MapNumbers); 4] = [
+        ("kinetic", |m| &m.kinetic),
+        ("elastic", |m| &m.elastic),
+        ("dissipation", |m| &m.dissipation),
+        ("contact", |m| &m.contact),
+    ];
     for (name, part) in parts {
         arguments.set_item(name, view::view(py, built, |m| part(&m.estimate.maps[at]), &[elements])?)?;
     }

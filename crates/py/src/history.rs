@@ -1,5 +1,6 @@
 //! Histories: simulated, shown as arrays, put together again.
 
+use crate::bridge::Watch;
 use crate::history_arrays::{HistoryArrays, slice};
 use crate::options::Stated;
 use crate::problem::ProblemData;
@@ -11,8 +12,8 @@ use percute_core::history::History;
 use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::Options;
-use percute_io::Overwrite;
 use percute_io::history::HistoryFile;
+use percute_io::{FileError, Overwrite};
 use percute_workflow::foreign::{Derived, Origin};
 use percute_workflow::history::lacks;
 use pyo3::prelude::*;
@@ -221,6 +222,32 @@ impl HistoryData {
             Some(_) => view::view(py, &self.run, |r| r.memory().map_or(&[], History::touching), &shape),
             None => view::view(py, &read(py, &self.run, HistoryFile::touching)?, Vec::as_slice, &shape),
         }
+    }
+
+    /// Number of internal variables of an element; 0 where no material yields.
+    #[getter]
+    fn variables(&self) -> usize {
+        self.run.problem.variables()
+    }
+
+    /// Internal variables at some instants, (instants, elements, variables); a copy.
+    fn internal<'py>(&self, py: Python<'py>, steps: Vec<usize>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let (elements, count) = (self.run.problem.mesh().element_count(), self.run.problem.variables());
+        let (run, row, shape) = (self.run.clone(), elements * count, [steps.len(), elements, count]);
+        let work = move |watch: Watch| {
+            let mut all = Vec::with_capacity(row * steps.len());
+            for &n in &steps {
+                match (run.memory(), run.file()) {
+                    _ if watch.0.stopped() => break,
+                    (Some(history), _) => all.extend_from_slice(&history.internal()[n * row..(n + 1) * row]),
+                    (None, Some(file)) => all.extend(file.plastic(n..n + 1)?),
+                    (None, None) => {}
+                }
+            }
+            Ok::<_, FileError>(all)
+        };
+        let all = bridge::blocking(py, None, work)?.map_err(|error| errors::file(py, &error))?;
+        view::view(py, &Arc::new(all), Vec::as_slice, &shape)
     }
 
     /// The number of each instant in the run of a thinned history; none for one with all steps.

@@ -3,6 +3,7 @@
 use crate::errors;
 use crate::run::Run;
 use numpy::PyReadonlyArray3;
+use percute_core::dynamics::Evaluation;
 use percute_core::history::{History, SinkError, Step, StepSource};
 use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
@@ -55,7 +56,7 @@ impl HistoryArrays<'_> {
     }
 
     fn history(&self, py: Python<'_>, problem: &AnyProblem, times: &TimeGrid) -> PyResult<History> {
-        let mut history = History::new(times);
+        let (mut history, mut evaluation) = (History::new(times), Evaluation::new(problem, times));
         let (nodes, contact) = (problem.mesh().node_count(), problem.contact_nodes().len());
         let dimension = problem.dimension();
         let (in_body, in_contact) = (dimension * nodes, dimension * contact);
@@ -67,9 +68,16 @@ impl HistoryArrays<'_> {
                 displacement: rows(self.displacement, index, in_body),
                 reaction: self.reaction.map_or(&no_force, |r| rows(r, index, in_contact)),
                 touching: self.touching.map_or(&no_touch, |t| rows(t, index, contact)),
+                internal: &[],
                 velocity: self.motion[0].map(|a| rows(a, index, in_body)),
                 acceleration: self.motion[1].map(|a| rows(a, index, in_body)),
             };
+            if problem.yields() {
+                // Plastic strains follow from the displacements of all steps.
+                let state = evaluation.advance(&step).map_err(|error| errors::input(py, error))?;
+                history.push(state.step()).map_err(|error| errors::input(py, error))?;
+                continue;
+            }
             history.push(&step).map_err(|error| errors::input(py, error))?;
         }
         Ok(history)

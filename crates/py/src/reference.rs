@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// Sup, mean, and time, kinetic and elastic part and their sum at each instant.
+/// Sup, mean, and time, kinetic, elastic and plastic part and their sum at each instant.
 pub(crate) type TrueErrorColumns<'py> = (f64, f64, Bound<'py, PyDict>);
 
 /// The true errors of histories against one history, with `nested` on a mesh in which theirs are nested.
@@ -84,8 +84,13 @@ fn compared<'py>(
 
 /// A true error as Python takes it.
 pub(crate) fn told<'py>(py: Python<'py>, error: &TrueError) -> PyResult<TrueErrorColumns<'py>> {
-    let numbers: [Named<TrueErrorSample>; 4] =
-        [("time", |s| s.time), ("kinetic", |s| s.kinetic), ("elastic", |s| s.elastic), ("total", |s| s.total())];
+    let numbers: [Named<TrueErrorSample>; 5] = [
+        ("time", |s| s.time),
+        ("kinetic", |s| s.kinetic),
+        ("elastic", |s| s.elastic),
+        ("dissipation", |s| s.dissipation),
+        ("total", |s| s.total()),
+    ];
     let columns = view::columns(py, &error.over_time, &numbers)?;
     Ok((error.sup, error.mean, columns))
 }

@@ -4,7 +4,7 @@ use crate::errors;
 use percute_core::border::{Vector, row};
 use percute_core::contact::{AnyObstacle, Interface, ObstacleError, PlaneAt};
 use percute_core::load::{BodyForce, Profile, Support, Table, TableError, Traction};
-use percute_core::material::{Elastic, Hypothesis, Kinematics, Law, MaterialError};
+use percute_core::material::{Elastic, Hardening, Hypothesis, Kinematics, Law, MaterialError};
 use percute_core::problem::{Between, Contact};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -49,9 +49,13 @@ pub(crate) fn material(name: &str, given: &Bound<'_, PyAny>, dimension: usize) -
     let kinematics: (Option<String>, Option<String>) = (attribute(given, "kinematics")?, attribute(given, "law")?);
     let kinematics = Kinematics::from_names(kinematics.0.as_deref(), kinematics.1.as_deref());
     let kinematics = kinematics.map_err(|(key, told)| bad(key, told))?;
+    let stated: [Option<f64>; 3] =
+        [attribute(given, "tangent")?, attribute(given, "hardening")?, attribute(given, "kinematic")?];
     let yielding = |law: Elastic| {
+        let hardening = Hardening::stated(young, yield_stress, stated)?;
         let law = law.with_kinematics(kinematics)?;
-        yield_stress.map_or(Ok(law), |stress| law.with_yield_stress(stress))
+        let law = yield_stress.map_or(Ok(law), |stress| law.with_yield_stress(stress))?;
+        hardening.map_or(Ok(law), |hardening| law.with_hardening(hardening))
     };
     if dimension == 1 {
         for (key, there) in
@@ -185,6 +189,8 @@ pub(crate) fn material_arguments<'py>(py: Python<'py>, law: &Elastic) -> PyResul
     arguments.set_item("young", law.young())?;
     arguments.set_item("density", law.density())?;
     arguments.set_item("yield_stress", law.yield_stress())?;
+    arguments.set_item("hardening", law.hardening().map(|hardening| hardening.modulus()))?;
+    arguments.set_item("kinematic", law.hardening().map(|hardening| hardening.kinematic()))?;
     let (kinematics, finite) = law.kinematics().names();
     arguments.set_item("kinematics", kinematics)?;
     arguments.set_item("law", finite)?;

@@ -3,7 +3,7 @@
 
 use crate::flight::{NextTouch, next_touch};
 use percute_core::element_state::ElementState;
-use percute_core::history::{SinkError, State, StateSink};
+use percute_core::history::{SinkError, State, StateSink, Step};
 use percute_core::ids::ElementId;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
@@ -55,15 +55,26 @@ pub struct MaterialStress {
     pub yielding: Option<Yielding>,
 }
 
-/// Where and when the von Mises stress was above the yield stress.
+/// Where and when a material yielded or, if its law is elastic, the von Mises stress was above the yield stress.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Yielding {
     /// The yield stress (Pa).
     pub yield_stress: f64,
-    /// The part of the volume of the material in which the stress was above it at some instant.
+    /// The part of the volume of the material that yielded, or in which the stress was above it at some instant.
     pub share: f64,
     /// The first of these instants (s).
     pub first: Option<f64>,
+    /// Of a law with plasticity.
+    pub plastic: Option<PlasticFlow>,
+}
+
+/// What plastic flow did in a material.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PlasticFlow {
+    /// E_t/E, the slope of the uniaxial curve beyond the yield stress over Young's modulus.
+    pub tangent_ratio: f64,
+    /// The largest equivalent plastic strain p of an element.
+    pub equivalent_strain: Extreme,
 }
 
 /// A largest value with its place.
@@ -126,7 +137,15 @@ impl<'p> DeformationRecorder<'p> {
             group: stated.get(at).and_then(|(group, _)| group.clone()),
             young: law.young(),
             von_mises: Extreme::default(),
-            yielding: law.yield_stress().map(|yield_stress| Yielding { yield_stress, share: 0.0, first: None }),
+            yielding: law.yield_stress().map(|yield_stress| Yielding {
+                yield_stress,
+                share: 0.0,
+                first: None,
+                plastic: law.hardening().map(|hardening| PlasticFlow {
+                    tangent_ratio: hardening.tangent(law.young()) / law.young(),
+                    equivalent_strain: Extreme::default(),
+                }),
+            }),
         };
         let found = Deformation {
             bodies: mesh.part_names().into_iter().map(body).collect(),
@@ -155,6 +174,9 @@ impl<'p> DeformationRecorder<'p> {
         }
         for (material, [all, above]) in self.found.materials.iter_mut().zip(volumes) {
             material.von_mises.element = number(material.von_mises.element);
+            if let Some(plastic) = material.yielding.as_mut().and_then(|yielding| yielding.plastic.as_mut()) {
+                plastic.equivalent_strain.element = number(plastic.equivalent_strain.element);
+            }
             if let Some(yielding) = material.yielding.as_mut().filter(|_| all > 0.0) {
                 yielding.share = above / all;
             }
@@ -204,16 +226,24 @@ impl<'p> DeformationRecorder<'p> {
         }
     }
 
-    fn elements(&mut self, displacement: &[f64], time: f64) {
+    fn elements(&mut self, &Step { displacement, internal, time, .. }: &Step<'_>) {
         let materials = self.problem.element_material();
         for element in 0..self.body_of_element.len() {
-            let state = ElementState::new(self.problem, ElementId::new(element), displacement);
+            let state = ElementState::new(self.problem, ElementId::new(element), displacement, internal);
             let body = &mut self.found.bodies[self.body_of_element[element]];
             body.strain.take(state.principal_strain(), element, time);
             let material = &mut self.found.materials[usize::from(materials[element])];
             let von_mises = state.von_mises();
             material.von_mises.take(von_mises, element, time);
-            if let Some(yielding) = material.yielding.as_mut().filter(|yielding| von_mises > yielding.yield_stress) {
+            let Some(yielding) = &mut material.yielding else { continue };
+            let beyond = match &mut yielding.plastic {
+                Some(plastic) => {
+                    plastic.equivalent_strain.take(state.equivalent_plastic_strain, element, time);
+                    state.equivalent_plastic_strain > 0.0
+                }
+                None => von_mises > yielding.yield_stress,
+            };
+            if beyond {
                 yielding.first = yielding.first.or(Some(time));
                 self.yielded[element] = true;
             }
@@ -226,7 +256,7 @@ impl StateSink for DeformationRecorder<'_> {
         let step = state.step();
         if step.index.is_multiple_of(EVERY) || step.index == self.last {
             self.rotations(step.displacement, step.time);
-            self.elements(step.displacement, step.time);
+            self.elements(step);
             self.turning(state);
         }
         Ok(())

@@ -13,7 +13,7 @@ use percute_core::mesh::Numbering;
 use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::reference::ReferenceError;
-use percute_estimator::{Estimate, EstimateError, RunError};
+use percute_estimator::{ElementMap, Estimate, EstimateError, RunError};
 
 /// Takes steps in the numbers of the problem that was stated.
 pub type TakeStep<'s> = dyn FnMut(&Step<'_>) -> Result<(), SinkError> + Send + 's;
@@ -53,13 +53,17 @@ impl<'p> Ordered<'p> {
     /// A step in the numbers of the user.
     pub(crate) fn stated_step<'s>(&self, step: &Step<'s>, fields: &'s mut Fields) -> Step<'s> {
         let Some(numbering) = self.numbering() else { return *step };
-        fields.reordered(step, |new, old| numbering.restore_nodal(new, old))
+        let nodal = |new: &[f64], old: &mut Vec<f64>| numbering.restore_nodal(new, old);
+        fields.reordered(step, nodal, |new| numbering.restore_elemental(new))
     }
 
     /// A checkpoint in the numbers of the user.
     pub(crate) fn stated(&self, checkpoint: Checkpoint) -> Checkpoint {
-        let Checkpoint { displacement, half_step, .. } = checkpoint;
-        Checkpoint { displacement: self.nodal(displacement), half_step: self.nodal(half_step), ..checkpoint }
+        let Checkpoint { displacement, half_step, mut internal, .. } = checkpoint;
+        if let Some(numbering) = self.numbering() {
+            internal = numbering.restore_elemental(&internal);
+        }
+        Checkpoint { displacement: self.nodal(displacement), half_step: self.nodal(half_step), internal, ..checkpoint }
     }
 
     /// A checkpoint in the numbers of the problem to be solved.
@@ -70,6 +74,7 @@ impl<'p> Ordered<'p> {
             numbering.order_nodal(field, &mut local);
             *field = local;
         }
+        checkpoint.internal = numbering.order_elemental(&checkpoint.internal);
         checkpoint
     }
 
@@ -86,7 +91,8 @@ impl<'p> Ordered<'p> {
         let Some(numbering) = self.numbering() else { return estimate };
         estimate.by_element = numbering.restore_elemental(&estimate.by_element);
         for map in &mut estimate.maps {
-            for part in [&mut map.kinetic, &mut map.elastic, &mut map.contact, &mut map.accumulated] {
+            let ElementMap { kinetic, elastic, dissipation, contact, accumulated, .. } = map;
+            for part in [kinetic, elastic, dissipation, contact, accumulated] {
                 *part = numbering.restore_elemental(part);
             }
             let Some(fields) = &mut map.fields else { continue };
@@ -185,13 +191,22 @@ pub(crate) struct Fields {
     displacement: Vec<f64>,
     velocity: Vec<f64>,
     acceleration: Vec<f64>,
+    internal: Vec<f64>,
 }
 
 impl Fields {
-    /// A step whose fields `order` has reordered.
-    fn reordered<'s>(&'s mut self, step: &Step<'s>, order: impl Fn(&[f64], &mut Vec<f64>)) -> Step<'s> {
-        let Self { displacement, velocity, acceleration } = self;
+    /// A step whose nodal fields `order` has reordered, and those of elements `elemental`.
+    fn reordered<'s>(
+        &'s mut self,
+        step: &Step<'s>,
+        order: impl Fn(&[f64], &mut Vec<f64>),
+        elemental: impl Fn(&[f64]) -> Vec<f64>,
+    ) -> Step<'s> {
+        let Self { displacement, velocity, acceleration, internal } = self;
         order(step.displacement, displacement);
+        if !step.internal.is_empty() {
+            *internal = elemental(step.internal);
+        }
         let given = |field: Option<&[f64]>, to: &'s mut Vec<f64>| {
             field.map(|field| {
                 order(field, to);
@@ -200,6 +215,7 @@ impl Fields {
         };
         Step {
             displacement,
+            internal: if step.internal.is_empty() { &[] } else { internal },
             velocity: given(step.velocity, velocity),
             acceleration: given(step.acceleration, acceleration),
             ..*step
@@ -229,7 +245,8 @@ impl StepSource for OrderedSource<'_> {
         let fits = |field: &[f64]| field.len() == self.dimension * numbering.nodes().len();
         self.source.replay(&mut |step| {
             if fits(step.displacement) && step.velocity.is_none_or(fits) && step.acceleration.is_none_or(fits) {
-                take(&fields.reordered(step, |old, new| numbering.order_nodal(old, new)))
+                let nodal = |old: &[f64], new: &mut Vec<f64>| numbering.order_nodal(old, new);
+                take(&fields.reordered(step, nodal, |old| numbering.order_elemental(old)))
             } else {
                 // It is refused for its length.
                 take(step)

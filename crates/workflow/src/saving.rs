@@ -94,7 +94,16 @@ mod tests {
         fn replay(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError> {
             let (displacement, reaction, touching) = (&vec![0.0; self.1][..], &[0.0][..], &[false][..]);
             self.0.instants().iter().enumerate().take(self.count()).try_for_each(|(index, &time)| {
-                take(&Step { index, time, displacement, reaction, touching, velocity: None, acceleration: None })
+                take(&Step {
+                    index,
+                    time,
+                    displacement,
+                    reaction,
+                    touching,
+                    internal: &[],
+                    velocity: None,
+                    acceleration: None,
+                })
             })
         }
     }

@@ -30,6 +30,8 @@ COLOURS = {
     "elastic": "#da6228",
     "strain": "#da6228",
     "contact": "#24966e",
+    "dissipation": "#8a5fbf",
+    "plastic_work": "#8a5fbf",
     "surface": "#2f79c8",
     "front": "#da6228",
     "dispersion": "#24966e",

@@ -14,9 +14,11 @@ use serde::Serialize;
 pub struct Balance {
     /// Kinetic energy ½ v_n·M v_n.
     pub kinetic: f64,
-    /// Strain energy ½ u_n·K u_n.
+    /// Strain energy ½ u_n·K u_n; of materials that yield that of their elastic strain.
     pub strain: f64,
-    /// Kinetic plus strain energy at t_0.
+    /// ∫∫σ:ε̇_p dt of materials that yield: what hardening has stored and plastic flow has dissipated.
+    pub plastic_work: f64,
+    /// Kinetic plus strain energy, and plastic work, at t_0.
     pub initial: f64,
     /// Work of tractions and body forces.
     pub work_of_loads: f64,
@@ -106,6 +108,7 @@ impl<const D: usize> BalanceKeeper<D> {
         let Balance {
             kinetic,
             strain,
+            plastic_work,
             initial,
             work_of_loads,
             work_of_supports,
@@ -146,6 +149,7 @@ impl<const D: usize> BalanceKeeper<D> {
             impulse_z,
             energy_put_in,
             kick,
+            plastic_work,
         ]
     }
 
@@ -160,9 +164,10 @@ impl<const D: usize> BalanceKeeper<D> {
         let total_force = self.advance_works(problem, times, now);
         let b = &mut self.balance;
         let (kinetic, momentum) = now.energies::<D>(problem.mass());
-        (b.kinetic, b.strain) = (kinetic, now.strain());
+        b.plastic_work = problem.plastic_work(now.step().internal);
+        (b.kinetic, b.strain) = (kinetic, now.strain() - b.plastic_work);
         b.momentum[..D].copy_from_slice(&momentum);
-        let energy = b.kinetic + b.strain;
+        let energy = b.kinetic + b.strain + b.plastic_work;
         if now.step().index == 0 {
             b.initial = energy;
             self.initial_momentum = b.momentum;

@@ -76,6 +76,7 @@ fn run<const D: usize>(
             displacement: body.displacement.as_flattened(),
             reaction: contact.reaction.as_flattened(),
             touching: &contact.touching,
+            internal: &body.internal,
             velocity: None,
             acceleration: None,
         };

@@ -68,6 +68,9 @@ impl<const D: usize> Evaluate for Evaluator<'_, D> {
             advance_velocity(times, n - 1, &mut body.velocity, vectors(given).iter().copied());
             h = None;
         }
+        if !step.internal.is_empty() {
+            body.internal.copy_from_slice(step.internal);
+        }
         body.step(dynamics, n, NodeMotion::Follow { h, displacement: step.displacement() });
         for (contact, reaction) in problem.surface().nodes().iter().zip(step.reaction::<D>()) {
             (0..D).for_each(|c| body.forces.total[contact.node.index()][c] += reaction[c]);
@@ -84,7 +87,13 @@ impl<const D: usize> Evaluate for Evaluator<'_, D> {
                 *v = std::array::from_fn(|c| velocity[i][c] - back * a[c]);
             }
         }
-        Ok(State::new(*step, times, &body.forces, &body.velocity, &dynamics.inverse_mass))
+        Ok(State::new(
+            Step { internal: &body.internal, ..*step },
+            times,
+            &body.forces,
+            &body.velocity,
+            &dynamics.inverse_mass,
+        ))
     }
 }
 

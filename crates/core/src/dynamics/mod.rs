@@ -89,9 +89,11 @@ impl<'p, const D: usize> Dynamics<'p, D> {
         self.subtract_internal_forces(displacement, force)
     }
 
-    /// Subtracts the internal forces (N) from `force` and returns the strain energy (J).
+    /// Subtracts the internal forces (N) from `force` and returns the strain energy (J). Of materials that yield those
+    /// of a body that had no strain before.
     pub fn subtract_internal_forces(&self, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
-        on_kernel!(&self.kernel, kernel => kernel.subtract(displacement, &mut [], force))
+        let mut internal = vec![0.0; self.problem.variables() * self.problem.mesh().element_count()];
+        on_kernel!(&self.kernel, kernel => kernel.subtract(displacement, &mut internal, force))
     }
 
     /// The forces M a_n of all nodes (N) but for contact, supports included. Returns the strain

@@ -17,7 +17,7 @@ pub(super) struct MovingBody<const D: usize> {
     pub(super) forces: StepForces<D>,
     external: Vec<[f64; D]>,
     /// Internal variables of the elements, in rows.
-    internal: Vec<f64>,
+    pub(super) internal: Vec<f64>,
     sums: Vec<StripSums<D>>,
     total: StripSums<D>,
 }

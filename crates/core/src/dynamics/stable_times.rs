@@ -63,7 +63,7 @@ pub fn stable_times<'p>(
 pub fn first_stable_step<'p>(problem: impl Into<ProblemRef<'p>>) -> f64 {
     fn of(problem: ProblemRef<'_>) -> f64 {
         on_problem!(problem, problem => {
-            let stable = problem.is_finite().then(|| of_start(problem, &PointKernel::new(problem)));
+            let stable = problem.is_finite().then(|| of_start(problem, &PointKernel::new(problem, |law| *law)));
             stable.filter(|step| step.is_finite()).unwrap_or_else(|| critical_time_step(problem))
         })
     }
@@ -83,7 +83,7 @@ fn find<const D: usize>(
     sink: &mut dyn StateSink,
     observer: &mut dyn Observer,
 ) -> Result<StableTimes, SimulationError> {
-    let kernel = PointKernel::new(problem);
+    let kernel = PointKernel::new(problem, |law| *law);
     let start = problem.initial_displacement();
     if let Some((element, ratio)) = inside_out(problem, start) {
         return Err(SimulationError::InsideOut { step: 0, time: 0.0, element, ratio });

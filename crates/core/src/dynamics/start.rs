@@ -30,16 +30,18 @@ pub(super) fn restart<const D: usize>(
     contact: &mut StepContact<D>,
 ) -> BalanceKeeper<D> {
     let Dynamics { problem, times, .. } = *dynamics;
-    let Checkpoint { step: n, displacement, half_step, sums } = checkpoint;
+    let Checkpoint { step: n, displacement, half_step, internal, sums } = checkpoint;
     let motion = [vectors(displacement), vectors(half_step)];
     body.displacement.copy_from_slice(motion[0]);
     body.velocity.copy_from_slice(motion[1]);
+    // Those at t_n: the same strain once more changes none of them.
+    body.internal.copy_from_slice(internal);
     body.step(dynamics, *n, NodeMotion::Start);
     contact.react(dynamics, *n, motion[0], motion[1], &mut body.forces.total);
     body.sum_up(dynamics, *n);
     let (index, time) = (*n, times.instants()[*n]);
     let (reaction, touching) = (contact.reaction.as_flattened(), &contact.touching[..]);
-    let step = Step { index, time, displacement, reaction, touching, velocity: None, acceleration: None };
+    let step = Step { index, time, displacement, reaction, touching, internal, velocity: None, acceleration: None };
     let state = State::new(step, times, &body.forces, &body.velocity, &dynamics.inverse_mass);
     BalanceKeeper::resumed(problem, times, &state, sums)
 }

@@ -101,6 +101,12 @@ impl StepCheck {
             }
         }
         length(n, "touching", step.touching.len(), surface)?;
+        if !step.internal.is_empty() {
+            length(n, "internal", step.internal.len(), problem.variables() * problem.mesh().element_count())?;
+            if let Some(position) = step.internal.iter().position(|x| !x.is_finite()) {
+                return Err(StepError::NotFinite { step: n, field: "internal", position });
+            }
+        }
         for (was, (field, is)) in self.given.into_iter().zip(optional(step)) {
             if n > 0 && was != is {
                 return Err(StepError::Partly { step: n, field, there: is });

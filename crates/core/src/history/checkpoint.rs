@@ -4,7 +4,7 @@
 pub type Sums = [f64; SUMS];
 
 /// Count of the numbers in [`Sums`].
-pub const SUMS: usize = 24;
+pub const SUMS: usize = 25;
 
 /// All that the scheme needs to go on from t_n; forces and contact at t_n follow from it, bit by bit.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub struct Checkpoint {
     pub displacement: Vec<f64>,
     /// v_{n−½} at the nodes (m/s), at the start v₀, in rows.
     pub half_step: Vec<f64>,
+    /// Internal variables of the elements at t_n, in rows; empty where no law has any.
+    pub internal: Vec<f64>,
     /// Sums of the balance.
     pub sums: Sums,
 }

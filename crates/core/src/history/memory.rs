@@ -16,6 +16,8 @@ pub struct History {
     displacement: Vec<f64>,
     reaction: Vec<f64>,
     touching: Vec<bool>,
+    internal_row: usize,
+    internal: Vec<f64>,
     velocity: Option<Vec<f64>>,
     acceleration: Option<Vec<f64>>,
 }
@@ -63,6 +65,8 @@ impl History {
             displacement: Vec::new(),
             reaction: Vec::new(),
             touching: Vec::new(),
+            internal_row: 0,
+            internal: Vec::new(),
             velocity: None,
             acceleration: None,
         }
@@ -98,6 +102,12 @@ impl History {
         &self.touching
     }
 
+    /// Internal variables of the elements, element by element and step after step; empty where no law has any.
+    #[must_use]
+    pub fn internal(&self) -> &[f64] {
+        &self.internal
+    }
+
     /// The step n.
     #[must_use]
     pub fn step(&self, n: usize) -> Option<Step<'_>> {
@@ -112,6 +122,7 @@ impl History {
             displacement: &self.displacement[nodes.clone()],
             reaction: &self.reaction[rows(self.contact_row)],
             touching: &self.touching[rows(self.contact_nodes)],
+            internal: &self.internal[rows(self.internal_row)],
             velocity: self.velocity.as_ref().map(|v| &v[nodes.clone()]),
             acceleration: self.acceleration.as_ref().map(|a| &a[nodes]),
         })
@@ -120,15 +131,17 @@ impl History {
     /// Takes the sizes from the first step and makes room for all: what is not used is never touched.
     fn begin(&mut self, first: &Step<'_>) -> Result<(), MemoryError> {
         (self.row, self.contact_row) = (first.displacement.len(), first.reaction.len());
-        self.contact_nodes = first.touching.len();
+        (self.contact_nodes, self.internal_row) = (first.touching.len(), first.internal.len());
         let steps = self.times.step_count() + 1;
-        let [nodal, contact, touching] =
-            [self.row, self.contact_row, self.contact_nodes].map(|row| row.saturating_mul(steps));
-        let bytes = size_of::<f64>().saturating_mul(nodal.saturating_add(contact)).saturating_add(touching);
+        let [nodal, contact, touching, internal] =
+            [self.row, self.contact_row, self.contact_nodes, self.internal_row].map(|row| row.saturating_mul(steps));
+        let numbers = nodal.saturating_add(contact).saturating_add(internal);
+        let bytes = size_of::<f64>().saturating_mul(numbers).saturating_add(touching);
         let full = |_| MemoryError::Full { bytes, steps, numbers: self.row };
         self.displacement.try_reserve_exact(nodal).map_err(full)?;
         self.reaction.try_reserve_exact(contact).map_err(full)?;
         self.touching.try_reserve_exact(touching).map_err(full)?;
+        self.internal.try_reserve_exact(internal).map_err(full)?;
         self.velocity = first.velocity.map(|_| Vec::new());
         self.acceleration = first.acceleration.map(|_| Vec::new());
         Ok(())
@@ -141,6 +154,7 @@ impl History {
             ("displacement", step.displacement.len(), self.row),
             ("reaction", step.reaction.len(), self.contact_row),
             ("touching", step.touching.len(), self.contact_nodes),
+            ("internal", step.internal.len(), self.internal_row),
             ("velocity", optional(step.velocity), expected(self.velocity.is_some())),
             ("acceleration", optional(step.acceleration), expected(self.acceleration.is_some())),
         ];
@@ -164,6 +178,7 @@ impl History {
         self.displacement.extend_from_slice(step.displacement);
         self.reaction.extend_from_slice(step.reaction);
         self.touching.extend_from_slice(step.touching);
+        self.internal.extend_from_slice(step.internal);
         for (kept, given) in [(&mut self.velocity, step.velocity), (&mut self.acceleration, step.acceleration)] {
             if let (Some(kept), Some(given)) = (kept, given) {
                 kept.extend_from_slice(given);
@@ -207,6 +222,7 @@ mod tests {
             displacement: &U,
             reaction: &U[..2],
             touching: &[true],
+            internal: &[],
             velocity: None,
             acceleration: Some(&U),
         }

@@ -30,6 +30,9 @@ pub struct Step<'a> {
     pub reaction: &'a [f64],
     /// Touching status at t_n of the nodes of the contact surface.
     pub touching: &'a [bool],
+    /// Internal variables of the elements at t_n, in rows; empty where no law has any, or where the history does not
+    /// hold them: they then follow from the displacements of all steps.
+    pub internal: &'a [f64],
     /// v_n at the nodes (m/s), if the history holds it.
     pub velocity: Option<&'a [f64]>,
     /// a_n at the nodes (m/s²), if the history holds it.

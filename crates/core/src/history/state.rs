@@ -84,11 +84,12 @@ impl<'a> State<'a> {
     /// balance.
     #[must_use]
     pub fn checkpoint(&self) -> Option<Checkpoint> {
-        let Step { index: step, displacement, .. } = self.step;
+        let Step { index: step, displacement, internal, .. } = self.step;
         self.sums.map(|sums| Checkpoint {
             step,
             displacement: displacement.to_vec(),
             half_step: self.half_step.to_vec(),
+            internal: internal.to_vec(),
             sums: *sums,
         })
     }
@@ -99,7 +100,7 @@ impl<'a> State<'a> {
         &self.step
     }
 
-    /// Strain energy ½ u_n·K u_n (J).
+    /// Strain energy ½ u_n·K u_n (J); of materials that yield, with what they have stored and dissipated.
     #[must_use]
     pub fn strain(&self) -> f64 {
         self.strain

@@ -4,7 +4,8 @@ use super::{Kernel, ProblemKernel, on_kernel};
 use crate::border::vectors;
 use crate::problem::ProblemRef;
 
-/// The internal forces of all elements of a problem, of small strains or a finite law.
+/// The internal forces of all elements of a problem, of small strains or a finite law; of materials that yield those
+/// of a body that had no strain before.
 #[derive(Clone, Debug)]
 pub struct InternalForces(OfDimension);
 
@@ -35,5 +36,8 @@ impl InternalForces {
 
 fn subtract<const D: usize>(kernel: &ProblemKernel<D>, displacement: &[f64], force: &mut [f64]) -> f64 {
     let (displacement, force) = (vectors::<D>(displacement), force.as_chunks_mut().0);
-    on_kernel!(kernel, kernel => kernel.subtract(displacement, &mut [], force))
+    on_kernel!(kernel, kernel => {
+        let elements = Kernel::<D>::strips(kernel).elements(Kernel::<D>::strips(kernel).count() - 1).end;
+        kernel.subtract(displacement, &mut vec![0.0; Kernel::<D>::variables(kernel) * elements], force)
+    })
 }

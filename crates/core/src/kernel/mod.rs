@@ -14,7 +14,7 @@ pub use linear::Stiffness;
 pub(crate) use points::PointKernel;
 pub(crate) use reach::Reach;
 
-use crate::material::Elastic;
+use crate::material::{Elastic, VonMises};
 use crate::mesh::Strips;
 use crate::problem::Problem;
 use crate::simd::{Eight, Registers, Task, run_task};
@@ -75,15 +75,18 @@ pub(crate) trait Kernel<const D: usize>: Sync {
 pub(crate) enum ProblemKernel<const D: usize> {
     /// All laws are linear.
     Linear(Stiffness),
-    /// Some are not.
+    /// Those of bodies that may turn.
     Points(PointKernel<Elastic, D>),
+    /// Some materials yield.
+    Yielding(PointKernel<VonMises, D>),
 }
 
 impl<const D: usize> ProblemKernel<D> {
     pub(crate) fn new(problem: &Problem<D>) -> Self {
-        match problem.is_finite() {
-            false => Self::Linear(Stiffness::new(problem)),
-            true => Self::Points(PointKernel::new(problem)),
+        match (problem.is_finite(), problem.yields()) {
+            (false, false) => Self::Linear(Stiffness::new(problem)),
+            (true, _) => Self::Points(PointKernel::new(problem, |law| *law)),
+            (false, true) => Self::Yielding(PointKernel::new(problem, VonMises::new)),
         }
     }
 }
@@ -94,6 +97,7 @@ macro_rules! on_kernel {
         match $of {
             $crate::kernel::ProblemKernel::Linear($kernel) => $result,
             $crate::kernel::ProblemKernel::Points($kernel) => $result,
+            $crate::kernel::ProblemKernel::Yielding($kernel) => $result,
         }
     };
 }

@@ -60,6 +60,13 @@ impl Numbering {
         }
     }
 
+    /// Values of old elements, in rows, in the new numbers.
+    #[must_use]
+    pub fn order_elemental(&self, old: &[f64]) -> Vec<f64> {
+        let width = old.len() / self.elements.len();
+        self.elements.iter().flat_map(|element| &old[row(element.index(), width)]).copied().collect()
+    }
+
     /// Values of new elements, in rows, in the old numbers.
     #[must_use]
     pub fn restore_elemental(&self, new: &[f64]) -> Vec<f64> {

@@ -247,6 +247,9 @@ fn check_finite<const D: usize>(
     bodies: usize,
 ) -> Result<(), InputError> {
     let Some(first) = materials.iter().position(Elastic::is_finite) else { return Ok(()) };
+    if let Some(yields) = materials.iter().position(|material| material.hardening().is_some()) {
+        return Err(Cause::FiniteYielding.at("material", Some(yields), "kinematics"));
+    }
     if bodies > 1 {
         return Err(Cause::FiniteBodies { bodies }.at("material", Some(first), "kinematics"));
     }

@@ -75,6 +75,12 @@ pub enum Cause {
         short(*.density), short(*.young), short(*.speed)
     )]
     FasterThanLight { density: f64, young: f64, speed: f64 },
+    /// A material that yields in a body that may turn.
+    #[error(
+        "cannot be \"finite\" where a material yields: plasticity is for small strains and rotations, up to some per \
+         cent and some degrees; leave it out, or leave out `tangent` and `hardening`"
+    )]
+    FiniteYielding,
     /// Several bodies that may turn.
     #[error(
         "cannot be \"finite\" for {bodies} bodies: contact between bodies has the normals of the undeformed surfaces; \

@@ -39,8 +39,9 @@ pub use rigid_motion::RigidMotion;
 pub use statement::Statement;
 
 use crate::contact::{ContactConfiguration, ContactSurface, Interface, Obstacle};
-use crate::ids::{FaceId, NodeId};
+use crate::ids::{ElementId, FaceId, NodeId};
 use crate::load::Table;
+use crate::material::VonMises;
 use crate::mesh::Mesh;
 use std::ops::Deref;
 use std::sync::Arc;
@@ -147,6 +148,21 @@ impl<const D: usize> Problem<D> {
             total
         };
         self.element_body_loads.iter().map(sum).collect()
+    }
+
+    /// ∫∫σ:ε̇_p dt (J) until these internal variables of all elements, in rows; 0 where no material yields.
+    #[must_use]
+    pub fn plastic_work(&self, internal: &[f64]) -> f64 {
+        if internal.is_empty() {
+            return 0.0;
+        }
+        let laws: Vec<VonMises> = self.materials().iter().map(VonMises::new).collect();
+        let rows = internal.chunks_exact(VonMises::count(D)).zip(self.element_material());
+        let each = rows.enumerate().map(|(e, (row, &law))| {
+            let [stored, dissipated] = laws[usize::from(law)].plastic_energies::<f64, D>(row);
+            self.volume(ElementId::new(e)) * (stored + dissipated)
+        });
+        each.sum()
     }
 
     /// Forces of the tractions and body forces at an instant (N).

@@ -3,7 +3,7 @@
 use super::{BodyLoad, Conditions, MovedPlane, Place, PrescribedComponent};
 use crate::ids::{ElementId, FaceId};
 use crate::load::Table;
-use crate::material::{Elastic, Law};
+use crate::material::{Elastic, Law, VonMises};
 use crate::mesh::Mesh;
 use crate::units::Units;
 use std::sync::{Arc, OnceLock};
@@ -52,6 +52,18 @@ impl Model {
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.materials.iter().any(Elastic::is_finite)
+    }
+
+    /// Whether a material yields.
+    #[must_use]
+    pub fn yields(&self) -> bool {
+        self.materials.iter().any(|material| material.hardening().is_some())
+    }
+
+    /// Internal variables of an element.
+    #[must_use]
+    pub fn variables(&self) -> usize {
+        if self.yields() { VonMises::count(self.mesh.dimension()) } else { 0 }
     }
 
     /// All materials.

@@ -60,7 +60,7 @@ fn a_linear_field_has_the_stress_of_three_dimensions() {
         let (von_mises, pressure) = invariants(&expected);
         let tolerance = ROUNDING * von_mises;
         for element in elements(&problem) {
-            let state = ElementState::new(&problem, element, linear(&mesh).as_flattened());
+            let state = ElementState::new(&problem, element, linear(&mesh).as_flattened(), &[]);
             for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 assert!((state.stress[a][b] - expected[a][b]).abs() < tolerance, "{element:?}: {state:?}");
                 let symmetric = 0.5 * (GRADIENT[a][b] + GRADIENT[b][a]);
@@ -84,7 +84,7 @@ fn a_bar_has_stress_along_it_alone() {
     let problem = problem.material(Elastic::bar(2e11, 7800.0, 1e-4).unwrap()).build().unwrap();
     let displacement: Vec<f64> = problem.mesh().points_in::<1>().iter().map(|p| -1e-3 * p[0]).collect();
     for element in elements(&problem) {
-        let state = ElementState::new(&problem, element, &displacement);
+        let state = ElementState::new(&problem, element, &displacement, &[]);
         assert!((state.stress[0][0] + 2e8).abs() < 1e-6);
         assert!((state.von_mises() - 2e8).abs() < 1e-6 && (state.pressure() - 2e8 / 3.0).abs() < 1e-6);
         assert!((state.strain_energy - 0.5 * 2e8 * 1e-3 * 1e-5).abs() < 1e-12);
@@ -128,7 +128,7 @@ fn energies_of_the_elements_sum_to_those_of_the_balance() {
     let mut last = Last::default();
     let balance = simulate(&problem, &times, &mut last, &mut Unobserved).unwrap().balance;
     let strain: f64 =
-        elements(&problem).map(|e| ElementState::new(&problem, e, &last.displacement).strain_energy).sum();
+        elements(&problem).map(|e| ElementState::new(&problem, e, &last.displacement, &[]).strain_energy).sum();
     let kinetic: f64 = elements(&problem).map(|e| kinetic_energy(&problem, e, &last.velocity)).sum();
     assert!(balance.strain > 1e-3 * balance.kinetic, "there was no impact");
     assert!((strain - balance.strain).abs() < 1e-12 * balance.strain, "{strain} against {}", balance.strain);

@@ -8,6 +8,8 @@ use percute_core::simd::lanes::{LANES, Lanes, Value};
 pub(crate) struct ElementError<T = f64> {
     pub(crate) kinetic: T,
     pub(crate) elastic: T,
+    /// The distance of the hardening of both fields and the misfit of the flow, where a material yields.
+    pub(crate) plastic: T,
     pub(crate) reference: T,
 }
 
@@ -15,18 +17,19 @@ impl<T: Value> ElementError<T> {
     /// The same number in all parts.
     #[inline(always)]
     pub(crate) fn filled(number: T) -> Self {
-        Self { kinetic: number, elastic: number, reference: number }
+        Self { kinetic: number, elastic: number, plastic: number, reference: number }
     }
 
     #[inline(always)]
     pub(crate) fn total(&self) -> T {
-        self.kinetic + self.elastic
+        self.kinetic + self.elastic + self.plastic
     }
 
     #[inline(always)]
     pub(crate) fn add(&mut self, other: &Self) {
         self.kinetic += other.kinetic;
         self.elastic += other.elastic;
+        self.plastic += other.plastic;
         self.reference += other.reference;
     }
 }
@@ -53,16 +56,18 @@ impl<T: Value<Stored = Lanes>> ElementError<T> {
     /// To memory.
     #[inline(always)]
     pub(crate) fn store(&self) -> ElementError<Lanes> {
-        let Self { kinetic, elastic, reference } = *self;
-        ElementError { kinetic: kinetic.store(), elastic: elastic.store(), reference: reference.store() }
+        let Self { kinetic, elastic, plastic, reference } = *self;
+        let [kinetic, elastic, plastic, reference] = [kinetic, elastic, plastic, reference].map(T::store);
+        ElementError { kinetic, elastic, plastic, reference }
     }
 
     /// At these levels, 0 at the others.
     #[inline(always)]
     pub(crate) fn only(&self, wanted: &[bool; LANES]) -> Self {
-        let (like, ElementError { kinetic, elastic, reference }) = (self.kinetic, self.store());
-        let [kinetic, elastic, reference] = [kinetic, elastic, reference].map(|number| number.only(wanted));
-        Self { kinetic: like.load(&kinetic), elastic: like.load(&elastic), reference: like.load(&reference) }
+        let (like, ElementError { kinetic, elastic, plastic, reference }) = (self.kinetic, self.store());
+        let parts = [kinetic, elastic, plastic, reference].map(|number| number.only(wanted));
+        let [kinetic, elastic, plastic, reference] = parts.map(|number| like.load(&number));
+        Self { kinetic, elastic, plastic, reference }
     }
 }
 
@@ -70,8 +75,9 @@ impl ElementError<Lanes> {
     /// At one level.
     #[inline(always)]
     pub(crate) fn lane(&self, lane: usize) -> ElementError {
-        let Self { kinetic, elastic, reference } = self;
-        ElementError { kinetic: kinetic.0[lane], elastic: elastic.0[lane], reference: reference.0[lane] }
+        let [kinetic, elastic, plastic, reference] =
+            [&self.kinetic, &self.elastic, &self.plastic, &self.reference].map(|number| number.0[lane]);
+        ElementError { kinetic, elastic, plastic, reference }
     }
 }
 

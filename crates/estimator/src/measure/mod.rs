@@ -12,6 +12,7 @@ use crate::element::Element;
 use crate::inertia::{Inertia, arms, mass_product};
 use crate::kinematic::ElementMotion;
 use crate::options::Acceleration;
+use crate::plastic::PlasticPart;
 use crate::stress::{FluctuationForm, LOADS, Loading, StressMap, face_node};
 use crate::time_level::{Side, Velocities};
 use crate::traction::{EquilibratedLevel, Equilibration};
@@ -216,27 +217,28 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         AdmissibleStress { mean, fluctuation: form.fluctuation(&balanced.loading) }
     }
 
-    /// The error at one sample, with ∫Γ_DA/ρ dt there; `beside` is the energy of other stresses beside σ_DA (J per unit
-    /// of section or thickness).
+    /// The error at one sample, with ∫Γ_DA/ρ dt there and the plastic part of a material that yields.
     #[inline(always)]
     pub(crate) fn error<T: Value>(
         &self,
         stress: &AdmissibleStress<D, N, T>,
         increment: &[[T; D]; N],
         motion: &ElementMotion<D, N, T>,
-        beside: T,
+        plastic: Option<&PlasticPart<D, T>>,
     ) -> ElementError<T> {
-        self.error_of((&stress.mean, stress.fluctuation.energy()), increment, motion, beside)
+        let beside = increment[0][0].zero();
+        self.error_of((&stress.mean, stress.fluctuation.energy()), increment, motion, (beside, plastic))
     }
 
-    /// The same, from the mean of σ_DA and the energy of its fluctuation (J per unit of section or thickness).
+    /// The same, from the mean of σ_DA and the energies of its fluctuation and of other stresses `beside` it (J per unit
+    /// of section or thickness).
     #[inline(always)]
     pub(crate) fn error_of<T: Value>(
         &self,
         (admissible, fluctuation): (&[[T; D]; D], T),
         increment: &[[T; D]; N],
         motion: &ElementMotion<D, N, T>,
-        beside: T,
+        (beside, plastic): (T, Option<&PlasticPart<D, T>>),
     ) -> ElementError<T> {
         let mass = N as f64 * self.element.nodal_mass;
         let (mut dynamic, mut misfit) = (*increment, *increment);
@@ -249,7 +251,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         let kinetic = mass_product(mass, &misfit, &misfit) * 0.5;
 
         // σ_CA is constant.
-        let gradient = self.element.gradient(motion.displacement());
+        let gradient = self.elastic_gradient(motion, plastic);
         let [stress, strain] = self.stress_and_strain(&gradient);
         let (mut mean, mut work) = (stress, beside.zero());
         for a in 0..D {
@@ -268,7 +270,29 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         let elastic = product(&mean, &misfit) * (0.5 * self.element.volume) + rest * self.law.extent();
         // |a + b|² = |a − b|² + 4 a·b.
         let products = mass_product(mass, &dynamic, motion.velocity()) + work * self.element.volume;
-        ElementError { kinetic, elastic, reference: (kinetic + elastic) * 2.0 + products * 4.0 }
+        let plastic = plastic.map_or(beside.zero(), |part| part.energy);
+        ElementError { kinetic, elastic, plastic, reference: (kinetic + elastic + plastic) * 2.0 + products * 4.0 }
+    }
+
+    /// ∂u_CA/∂x less ε* of a material that yields.
+    #[inline(always)]
+    pub(crate) fn elastic_gradient<T: Value>(
+        &self,
+        motion: &ElementMotion<D, N, T>,
+        plastic: Option<&PlasticPart<D, T>>,
+    ) -> [[T; D]; D] {
+        let mut gradient = self.element.gradient(motion.displacement());
+        if let Some(part) = plastic {
+            for a in 0..D {
+                (0..D).for_each(|b| gradient[a][b] -= part.eigenstrain[a][b]);
+            }
+        }
+        gradient
+    }
+
+    /// The law and the volume (m³), where the material yields.
+    pub(crate) fn yielding(&self) -> Option<(&'a Elastic, f64)> {
+        self.law.hardening().map(|_| (self.law, self.element.volume))
     }
 
     /// The stress at a displacement gradient that an admissible one is compared with, σ or S, and K⁻¹ of it with small
@@ -307,8 +331,13 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
 
     /// The loading of the stress beside which other stresses stand: that of σ_DA less the tractions of the constant
     /// σ_CA.
-    pub(crate) fn difference(&self, loading: &Loading<D, N>, motion: &ElementMotion<D, N>) -> Loading<D, N> {
-        let [stress, _] = self.stress_and_strain(&self.element.gradient(motion.displacement()));
+    pub(crate) fn difference(
+        &self,
+        loading: &Loading<D, N>,
+        motion: &ElementMotion<D, N>,
+        plastic: Option<&PlasticPart<D>>,
+    ) -> Loading<D, N> {
+        let [stress, _] = self.stress_and_strain(&self.elastic_gradient(motion, plastic));
         let mut difference = *loading;
         self.subtract_tractions(&stress, &mut difference);
         difference

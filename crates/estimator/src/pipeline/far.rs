@@ -8,6 +8,7 @@ use super::sampled_levels::SampledLevels;
 use super::sampling::{Course, SharedData};
 use crate::blocks::BLOCK;
 use crate::measure::{AdmissibleStress, BalanceNode, ElementError, ElementMeasure};
+use crate::plastic::PlasticMemory;
 use crate::pool::Pool;
 use crate::residual::{Residuals, worse};
 use crate::stress::EnergyForms;
@@ -41,12 +42,14 @@ impl FarSums {
 }
 
 /// η_E of a far element so far, and its σ_DA at the last level.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct FarCourse<const D: usize, const N: usize> {
     pub(super) course: Course,
     /// The integral before the levels at work.
     before: f64,
     stress: AdmissibleStress<D, N>,
+    /// Of a material that yields.
+    plastic: Option<Box<PlasticMemory<D>>>,
 }
 
 /// The results of a block of far elements.

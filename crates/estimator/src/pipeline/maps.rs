@@ -73,6 +73,7 @@ impl Maps {
                 step: level.index(),
                 time: instants[level.index()],
                 kinetic: zeros.clone(),
+                dissipation: zeros.clone(),
                 elastic: zeros.clone(),
                 contact: zeros.clone(),
                 accumulated: zeros.clone(),
@@ -88,6 +89,7 @@ impl Maps {
             if let Ok(k) = self.made.binary_search_by_key(&contribution.step, |map| map.step) {
                 let map = &mut self.made[k];
                 (map.kinetic[e], map.elastic[e]) = (contribution.error.kinetic, contribution.error.elastic);
+                map.dissipation[e] = contribution.error.plastic;
                 (map.contact[e], map.accumulated[e]) = (contribution.contact, contribution.accumulated);
             }
         }

@@ -7,7 +7,8 @@ mod side_by_side;
 use super::maps::Contribution;
 use super::non_matching::NonMatchingMisfit;
 use super::sampling::{
-    ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, SharedData, trapezoid,
+    ContactPart, Course, ElementInterval, ElementSample, ElementSampler, ElementVelocities, SampledFields, SharedData,
+    trapezoid,
 };
 use super::waiting::{ContactInstant, Waiting};
 use crate::concentrated::HatStress;
@@ -16,6 +17,7 @@ use crate::element::Element;
 use crate::kinematic::ContactMotion;
 use crate::measure::Balanced;
 use crate::numbers::Reader;
+use crate::plastic::{PlasticMemory, PlasticPart};
 use crate::reconstruction::ReconstructionMethod;
 use crate::residual::{Residuals, worse};
 use crate::stress::ElementForm;
@@ -56,6 +58,7 @@ pub(super) struct NearElement<const D: usize, const N: usize> {
     checks: usize,
     /// The fields that balance at the last level, unless the contact force jumps there.
     reached: Option<Balanced<D, N>>,
+    plastic: PlasticMemory<D>,
     pub(super) course: Course,
     /// Its contributions at the steps requested.
     pub(super) kept: Vec<Contribution>,
@@ -93,6 +96,7 @@ pub(super) fn near_elements<const D: usize, const N: usize>(problem: &Problem<D>
             residual: ResidualShare::default(),
             checks: 0,
             reached: None,
+            plastic: PlasticMemory::default(),
             course: Course::default(),
             kept: Vec::new(),
             residuals: Residuals::default(),
@@ -150,6 +154,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         self.check_contact(context, &waiting.stop.at.velocities, &waiting.touching[1], stop);
         let [from, to] = &waiting.hats;
         let hats = [from, &NarrowHat::mean(from, to), to].map(|hats| self.hat_stress(context, hats));
+        let plastic = self.yield_further(&sampler, (&waiting.stop.stress, &waiting.stop.at.velocities), &hats[2]);
         let [before, after] = waiting.residual;
         let interval = ElementInterval {
             steps,
@@ -159,6 +164,7 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
             contact: self.contact_part(context, &waiting, (steps, start.friction)),
             residual: [before, ResidualStress::mean(&before, &after), after],
             hats: [&hats[0], &hats[1], &hats[2]],
+            plastic,
         };
         let (samples, [begin, middle, end]) = sampler.sample(&interval, &mut self.course, &mut self.kept);
         let begin = if interval.start.is_some() { begin } else { self.residual.last };
@@ -167,6 +173,23 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         self.residual.last = end;
         self.start = Some(waiting.stop.at);
         samples
+    }
+
+    /// The plastic parts at the beginning, the middle and the end of an interval, at which these fields are.
+    fn yield_further(
+        &mut self,
+        sampler: &ElementSampler<'_, '_, D, N>,
+        (stress, at): SampledFields<'_, D, N>,
+        hats: &[HatStress<'_>],
+    ) -> Option<[PlasticPart<D>; 3]> {
+        let (law, volume) = sampler.measure.yielding()?;
+        let (before, mut mean) = (self.plastic.last, stress.mean);
+        for hat in hats {
+            let of_hat = sampler.measure.mean_of_hats(hat);
+            (0..D).for_each(|a| (0..D).for_each(|b| mean[a][b] += of_hat[a][b]));
+        }
+        self.plastic.advance(law, volume, &sampler.measure.elastic_gradient(&at.motion, None), &mean);
+        Some([before, PlasticPart::middle(&before, &self.plastic.last), self.plastic.last])
     }
 
     /// The non-matching interfaces, by their index, to which the element belongs.

@@ -243,10 +243,11 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         } else if self.reconstruction.differences().is_some() {
             self.unmeasured = Some(self.pool.copy(step.displacement()));
         }
-        let BalancedFields { displacement, inertia, contact, densities, split, smoothed } = balanced;
+        let BalancedFields { displacement, inertia, contact, densities, split, smoothed, plastic } = balanced;
         if let Some(densities) = &densities {
             self.non_matching.push(problem, n, densities)?;
         }
+        let plastic_work = problem.plastic_work(step.internal);
         let level = TimeLevel {
             index: n,
             displacement,
@@ -261,7 +262,8 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             },
             split,
             smoothed,
-            strain_energy: state.strain(),
+            plastic,
+            energies: [state.strain() - plastic_work, plastic_work],
         };
         let motion = MotionKnown { level, now, mid_velocity, inertia };
         if n == 0 {
@@ -300,7 +302,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             if self.schedule.is_sampled(level.level.index) {
                 level.off_contact = std::mem::take(&mut self.off_contact);
                 level.corner_sliding = std::mem::take(&mut self.corner_sliding);
-                self.vibration.take(level.level.strain_energy, level.now.motion.velocity().as_flattened());
+                self.vibration.take(level.level.energies, level.now.motion.velocity().as_flattened());
                 return Some(level);
             }
         }

@@ -24,7 +24,12 @@ pub(super) struct SampledInterval {
 impl SampledInterval {
     /// An interval between these steps, with the sums over far elements at its beginning, middle and end.
     pub(super) fn new(times: &TimeGrid, levels: [usize; 2], far: [ElementError; 3]) -> Self {
-        let parts = |far: ElementError| Parts { kinetic: far.kinetic, elastic: far.elastic, contact: 0.0 };
+        let parts = |far: ElementError| Parts {
+            kinetic: far.kinetic,
+            elastic: far.elastic,
+            dissipation: far.plastic,
+            contact: 0.0,
+        };
         Self {
             times: levels.map(|n| times.instants()[n]),
             levels,
@@ -39,6 +44,7 @@ impl SampledInterval {
         for (((parts, reference), near), sample) in self.samples.iter_mut().zip(&mut self.near).zip(samples) {
             parts.kinetic += sample.error.kinetic;
             parts.elastic += sample.error.elastic;
+            parts.dissipation += sample.error.plastic;
             *reference += sample.error.reference;
             parts.contact += sample.contact.total;
             near.misfit += sample.error.total();

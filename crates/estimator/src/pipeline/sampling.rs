@@ -9,6 +9,7 @@ use crate::kinematic::{ElementMotion, gather_common};
 use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, hat_energy, work};
 use crate::numbers::Reader;
 use crate::options::Acceleration;
+use crate::plastic::PlasticPart;
 use crate::residual::{Residuals, worse};
 use crate::stress::{ElementForm, Loading};
 use crate::time_level::{Side, Velocities};
@@ -161,6 +162,8 @@ pub(super) struct ElementInterval<'i, const D: usize, const N: usize> {
     pub(super) residual: [ResidualStress; 3],
     /// The stress of hats at its beginning, middle and end.
     pub(super) hats: [&'i [HatStress<'i>]; 3],
+    /// The plastic parts there, of a material that yields.
+    pub(super) plastic: Option<[PlasticPart<D>; 3]>,
 }
 
 /// The data that all elements share.
@@ -285,10 +288,16 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
         let mut changes = [0.0; 3];
         let mut at = |(stress, at): SampledFields<'_, D, N>, k: usize| {
             let (hats, residual) = (interval.hats[k], &interval.residual[k]);
-            let misfit = stress.loading.as_ref().map(|loading| self.measure.difference(loading, &at.motion));
+            let plastic = interval.plastic.as_ref().map(|parts| &parts[k]);
+            let misfit = stress.loading.as_ref().map(|loading| self.measure.difference(loading, &at.motion, plastic));
             let of_misfit = |work: &dyn Fn(&Loading<D, N>) -> f64| misfit.as_ref().map_or(0.0, work);
             let of_hats = of_misfit(&|misfit| hat_energy(misfit, hats));
-            let alone = self.measure.error_of((&stress.mean, stress.fluctuation), &at.increment, &at.motion, of_hats);
+            let alone = self.measure.error_of(
+                (&stress.mean, stress.fluctuation),
+                &at.increment,
+                &at.motion,
+                (of_hats, plastic),
+            );
             let error = if residual.is_none() {
                 alone
             } else {

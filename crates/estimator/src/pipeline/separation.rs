@@ -18,7 +18,11 @@ pub(super) fn separation(
         let differences = [first, first.mean(&last), last];
         let sources: [Sources; 3] = std::array::from_fn(|k| {
             let (parts, _) = &interval.samples[k];
-            Sources::new([parts.kinetic + parts.elastic, parts.contact], &interval.near[k], &differences[k])
+            Sources::new(
+                [parts.kinetic + parts.elastic + parts.dissipation, parts.contact],
+                &interval.near[k],
+                &differences[k],
+            )
         });
         let (times, weights) = (interval.instants(), interval.weights());
         for k in 0..3 {

@@ -18,6 +18,7 @@ use crate::error::EstimateError;
 use crate::kinematic::ContactMotion;
 use crate::nodal_field::{FieldPool, NodalField};
 use crate::options::{Acceleration, Options, Reconstruction};
+use crate::plastic::{EigenStrains, eigenstrains};
 use crate::time_level::{ForcesKnown, KnownInertia, MotionKnown, SplitFields, SurfaceStep};
 use crate::traction::{EquilibratedLevels, Equilibration, Then};
 pub(crate) use admissibility::check;
@@ -73,6 +74,8 @@ pub(crate) struct BalancedFields<const D: usize> {
     pub(crate) split: Option<SplitFields<D>>,
     /// Whether the stress is that of smoothed strains.
     pub(crate) smoothed: bool,
+    /// ε* of the stress, where a material yields.
+    pub(crate) plastic: Option<EigenStrains>,
 }
 
 /// A way to build dynamically admissible fields.
@@ -101,7 +104,8 @@ pub(crate) trait ReconstructionMethod<const D: usize, const N: usize>: Debug + S
             (pool.copy(step.displacement()), step.reaction().to_vec(), pool.take());
         state.write_force_without_contact(dynamics.problem().surface(), &mut force);
         let inertia = KnownInertia::Forces(force);
-        BalancedFields { displacement, inertia, contact, densities: None, split: None, smoothed: false }
+        let plastic = eigenstrains(dynamics.problem(), step.internal);
+        BalancedFields { displacement, inertia, contact, densities: None, split: None, smoothed: false, plastic }
     }
 
     /// Measures the difference of the simulation and the auxiliary solution at the level that `advance` has taken in

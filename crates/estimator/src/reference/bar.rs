@@ -118,7 +118,8 @@ mod tests {
     #[test]
     fn an_element_cut_by_the_front_is_split() {
         let zero = vec![0.0; 4];
-        let motion = Motion { times: vec![1.5], displacement: vec![zero.clone()], velocity: vec![zero] };
+        let motion =
+            Motion { times: vec![1.5], displacement: vec![zero.clone()], velocity: vec![zero], ..Motion::default() };
         let error = bar_impact_error(&problem(0.1), &motion, &BAR).unwrap();
         let sample = error.over_time[0];
         // Rounding of a few products.
@@ -130,14 +131,24 @@ mod tests {
     #[test]
     fn velocities_are_linear() {
         let velocity = vec![-2.0, -2.0, 1.0, 1.0];
-        let motion = Motion { times: vec![0.0], displacement: vec![vec![0.0; 4]], velocity: vec![velocity] };
+        let motion = Motion {
+            times: vec![0.0],
+            displacement: vec![vec![0.0; 4]],
+            velocity: vec![velocity],
+            ..Motion::default()
+        };
         let error = bar_impact_error(&problem(0.1), &motion, &BAR).unwrap();
         assert!((error.over_time[0].kinetic - 0.5 * 0.2 * 24.0).abs() < 1e-14);
     }
 
     #[test]
     fn another_bar_is_refused() {
-        let motion = Motion { times: vec![0.0], displacement: vec![vec![0.0; 4]], velocity: vec![vec![0.0; 4]] };
+        let motion = Motion {
+            times: vec![0.0],
+            displacement: vec![vec![0.0; 4]],
+            velocity: vec![vec![0.0; 4]],
+            ..Motion::default()
+        };
         let error = bar_impact_error(&problem(0.2), &motion, &BAR);
         assert!(matches!(error, Err(ReferenceError::AnotherBar { name: "section", .. })), "{error:?}");
         let short = Motion { displacement: vec![vec![0.0; 3]], ..motion };

@@ -9,7 +9,7 @@ use percute_core::border::vectors;
 use percute_core::element_state::displacement_gradient;
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::ids::ElementId;
-use percute_core::material::{Law, PointLaw, Tensor};
+use percute_core::material::{FlowForces, Law, PointLaw, Tensor, VonMises};
 use percute_core::mesh::Mesh;
 use percute_core::on_problem;
 use percute_core::problem::{Problem, ProblemRef};
@@ -94,7 +94,17 @@ struct Coarse<'p, const D: usize> {
     problem: &'p Problem<D>,
     motion: &'p Motion,
     transfer: Transfer,
+    /// Of the elements of the reference, where a material yields.
+    flows: Vec<Flows>,
     samples: Vec<TrueErrorSample>,
+}
+
+/// The flow of the reference and of the simulation in an element so far.
+#[derive(Clone, Debug, Default)]
+struct Flows {
+    last: Option<[(Vec<f64>, FlowForces); 2]>,
+    /// φ(Ė_p) − Σ·Ė_p of each under the forces of the other (J/m³).
+    misfit: f64,
 }
 
 /// The reference at one of its instants.
@@ -103,6 +113,7 @@ struct Instant<const D: usize> {
     time: f64,
     displacement: Vec<[f64; D]>,
     velocity: Vec<[f64; D]>,
+    internal: Vec<f64>,
 }
 
 impl<'p, const D: usize> Compare<'p> for Finer<'p, D> {
@@ -119,7 +130,9 @@ impl<'p, const D: usize> Compare<'p> for Finer<'p, D> {
                 return Err(ReferenceError::Length { field, given: values.len(), needed });
             }
         }
-        self.coarse.push(Coarse { problem, motion, transfer, samples: Vec::new() });
+        let flows =
+            if problem.yields() { vec![Flows::default(); self.problem.mesh().element_count()] } else { Vec::new() };
+        self.coarse.push(Coarse { problem, motion, transfer, flows, samples: Vec::new() });
         Ok(())
     }
 
@@ -139,7 +152,8 @@ impl<'p, const D: usize> Compare<'p> for Finer<'p, D> {
 impl<const D: usize> StateSink for Finer<'_, D> {
     fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         let displacement = state.step().displacement().to_vec();
-        let now = Instant { time: state.step().time, displacement, velocity: vectors(&state.velocity()).to_vec() };
+        let (time, internal) = (state.step().time, state.step().internal.to_vec());
+        let now = Instant { time, displacement, velocity: vectors(&state.velocity()).to_vec(), internal };
         let before = self.before.replace(now.clone());
         let before = before.as_ref().unwrap_or(&now);
         for coarse in &mut self.coarse {
@@ -160,7 +174,7 @@ impl<const D: usize> StateSink for Finer<'_, D> {
 impl<const D: usize> Coarse<'_, D> {
     /// The energies of the difference at the next instant; `weight` is that of `now` in the
     /// reference.
-    fn sample(&self, fine: &Problem<D>, before: &Instant<D>, now: &Instant<D>, weight: f64) -> TrueErrorSample {
+    fn sample(&mut self, fine: &Problem<D>, before: &Instant<D>, now: &Instant<D>, weight: f64) -> TrueErrorSample {
         let (n, mesh) = (self.samples.len(), self.problem.mesh());
         let between = |a: &[f64; D], b: &[f64; D]| std::array::from_fn(|c| (1.0 - weight) * a[c] + weight * b[c]);
         let mut velocity = self.transfer.at_nodes(mesh, vectors(&self.motion.velocity[n]));
@@ -173,11 +187,21 @@ impl<const D: usize> Coarse<'_, D> {
         let own = gradients::<D>(mesh, vectors(&self.motion.displacement[n]));
         let mut sample = TrueErrorSample { time: self.motion.times[n], ..Default::default() };
         let mut nodal: Vec<[f64; D]> = Vec::new();
+        let mix = |a: f64, b: f64| (1.0 - weight) * a + weight * b;
+        let internal: Vec<f64> = before.internal.iter().zip(&now.internal).map(|(a, b)| mix(*a, *b)).collect();
+        let count = fine.variables();
         for (e, coarse) in self.transfer.elements().iter().enumerate() {
             let (id, law) = (ElementId::new(e), fine.material(ElementId::new(e)));
             let mut gradient = displacement_gradient(fine.mesh(), id, &reference);
             let own = &own[coarse.index()];
-            let energy = if law.is_finite() {
+            let energy = if law.hardening().is_some() {
+                let (row, coarse) =
+                    (&internal[count * e..][..count], &self.motion.internal[n][count * coarse.index()..]);
+                let states = [(&gradient, row), (own, &coarse[..count])];
+                let [elastic, plastic] = self.flows[e].advance(&VonMises::new(law), states);
+                sample.dissipation += fine.volume(id) * plastic;
+                elastic
+            } else if law.is_finite() {
                 let stress = [&gradient, own].map(|h| Deformation::new(h).second_stress(&law.respond(h, &mut []).0));
                 let entry = |a: usize, b: usize| stress[0][a][b] - stress[1][a][b];
                 let misfit: Tensor<D> = std::array::from_fn(|a| std::array::from_fn(|b| entry(a, b)));
@@ -194,6 +218,28 @@ impl<const D: usize> Coarse<'_, D> {
             sample.elastic += volume * energy;
         }
         sample
+    }
+}
+
+impl Flows {
+    /// Goes on to the gradients and internal variables of both. Gives the energies of their difference (J/m³), elastic
+    /// and plastic; forces on the flow are the means of both ends of the step.
+    fn advance<const D: usize>(&mut self, law: &VonMises, states: [(&Tensor<D>, &[f64]); 2]) -> [f64; 2] {
+        let now = states.map(|(gradient, internal)| {
+            (internal.to_vec(), law.forces::<D>(&law.state::<f64, D>(gradient, internal), internal))
+        });
+        if let Some(last) = &self.last {
+            for (flow, other) in [(0, 1), (1, 0)] {
+                let [start, end] = [last, &now].map(|at| at[other].1.misfit::<D>(&last[flow].0, &now[flow].0));
+                self.misfit += 0.5 * (start + end);
+            }
+        }
+        let [a, b] = states;
+        let gradient = std::array::from_fn(|i| std::array::from_fn(|j| a.0[i][j] - b.0[i][j]));
+        let internal: Vec<f64> = a.1.iter().zip(b.1).map(|(a, b)| a - b).collect();
+        self.last = Some(now);
+        let elastic = law.state::<f64, D>(&gradient, &internal).elastic_energy;
+        [elastic, law.hardening_distance::<D>(a.1, b.1) + self.misfit]
     }
 }
 

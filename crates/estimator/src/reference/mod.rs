@@ -28,15 +28,18 @@ pub struct TrueErrorSample {
     pub time: f64,
     /// ½∫ρ|Δv|² (J).
     pub kinetic: f64,
-    /// ½∫Δε : K : Δε (J).
+    /// ½∫Δε : K : Δε (J), of materials that yield ½∫Δσ : K⁻¹ : Δσ.
     pub elastic: f64,
+    /// Of materials that yield (J): the distance ∫⅓C|Δε_p|² + ½H_i Δp² of the hardening, and the misfit of either flow
+    /// under the forces of the other, ∫∫φ(Ė_p) − Σ'·Ė_p dt, so far.
+    pub dissipation: f64,
 }
 
 impl TrueErrorSample {
     /// e² (J).
     #[must_use]
     pub fn total(&self) -> f64 {
-        self.kinetic + self.elastic
+        self.kinetic + self.elastic + self.dissipation
     }
 }
 
@@ -71,7 +74,7 @@ mod tests {
     /// e² = 1, 4, 0 at 0, 1, 3: the largest is 4, the integral 2.5 + 4 over 3.
     #[test]
     fn sup_and_mean() {
-        let sample = |time, kinetic, elastic| TrueErrorSample { time, kinetic, elastic };
+        let sample = |time, kinetic, elastic| TrueErrorSample { time, kinetic, elastic, dissipation: 0.0 };
         let error = TrueError::new(vec![sample(0.0, 0.5, 0.5), sample(1.0, 3.0, 1.0), sample(3.0, 0.0, 0.0)]);
         assert_eq!(error.sup, 2.0);
         // Rounding of one division and one root.

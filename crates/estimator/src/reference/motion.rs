@@ -11,6 +11,8 @@ pub struct Motion {
     pub displacement: Vec<Vec<f64>>,
     /// v_n (m/s), in rows.
     pub velocity: Vec<Vec<f64>>,
+    /// Internal variables of the elements at t_n, in rows; empty where no material yields.
+    pub internal: Vec<Vec<f64>>,
 }
 
 impl StateSink for Motion {
@@ -18,6 +20,7 @@ impl StateSink for Motion {
         self.times.push(state.step().time);
         self.displacement.push(state.step().displacement.to_vec());
         self.velocity.push(state.velocity());
+        self.internal.push(state.step().internal.to_vec());
         Ok(())
     }
 }

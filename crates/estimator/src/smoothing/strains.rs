@@ -10,6 +10,7 @@ use crate::deformation::second_stress;
 use crate::element::Element;
 use crate::field_lanes::FieldLanes;
 use crate::parallel::by_pieces;
+use crate::plastic::{EigenStrains, take_off};
 use crate::pool::Pool;
 use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::material::{Elastic, green_strain};
@@ -35,8 +36,15 @@ pub(crate) struct SmoothedStrains<S = Lanes> {
     share: S,
 }
 
-/// Displacements of some levels, and whether the strains of each are smoothed.
-pub(crate) type Displacements<'a, const D: usize> = [(&'a [[f64; D]], bool)];
+/// A level whose strains may be smoothed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StrainLevel<'a, const D: usize> {
+    /// u (m).
+    pub(crate) displacement: &'a [[f64; D]],
+    /// ε* of the elements, where a material yields: strains are those of u less these.
+    pub(crate) plastic: Option<&'a EigenStrains>,
+    pub(crate) smoothed: bool,
+}
 
 /// The data of the elements.
 #[derive(Clone, Copy, Debug)]
@@ -52,15 +60,15 @@ impl SmoothedStrains {
         &mut self,
         of: Smoothed<'_, D, N>,
         blocks: &ElementBlocks<N>,
-        displacements: &Displacements<'_, D>,
+        levels: &[StrainLevel<'_, D>],
     ) {
-        self.share = Lanes::at_levels(|k| if displacements.get(k).is_some_and(|level| level.1) { 1.0 } else { 0.0 });
+        self.share = Lanes::at_levels(|k| if levels.get(k).is_some_and(|level| level.smoothed) { 1.0 } else { 0.0 });
         self.strains.resize(of.elements.len(), [Lanes::ZERO; COMPONENTS]);
         self.patches.resize(of.smoothing.patch_count(), [Lanes::ZERO; COMPONENTS]);
         let room = Pool::new();
         self.strains.par_chunks_mut(BLOCK).enumerate().for_each(|(block, strains)| {
             room.lend(FieldLanes::default, |fields| {
-                run_task(StrainsOfBlock { of, blocks, displacements, block, fields, strains });
+                run_task(StrainsOfBlock { of, blocks, levels, block, fields, strains });
             });
         });
         let strains = &self.strains;
@@ -81,15 +89,30 @@ impl SmoothedStrains<f64> {
         of: Smoothed<'_, D, N>,
         displacement: &[[f64; D]],
     ) {
-        self.share = 1.0;
         self.strains.resize(of.elements.len(), [0.0; COMPONENTS]);
-        self.patches.resize(of.smoothing.patch_count(), [0.0; COMPONENTS]);
         by_pieces((&mut self.strains[..], of.elements), &|first, (strains, elements)| {
             for (k, (strain, element)) in strains.iter_mut().zip(elements).enumerate() {
                 let gradient = element.gradient(&element.gather(displacement));
                 *strain = averaged(of.problem.material(ElementId::new(first + k)), &gradient);
             }
         });
+        self.complete(of);
+    }
+
+    /// Takes in the strains of the elements of one level, which are smoothed.
+    pub(crate) fn fill_strains<const D: usize, const N: usize>(
+        &mut self,
+        of: Smoothed<'_, D, N>,
+        strains: &EigenStrains,
+    ) {
+        self.strains.clone_from(strains);
+        self.complete(of);
+    }
+
+    /// The sums at patches and edges.
+    fn complete<const D: usize, const N: usize>(&mut self, of: Smoothed<'_, D, N>) {
+        self.share = 1.0;
+        self.patches.resize(of.smoothing.patch_count(), [0.0; COMPONENTS]);
         let (strains, parts) = (&self.strains, patches_of_nodes(of.smoothing, &mut self.patches));
         let sum = |part: OfNodes<'_, f64>| sum_patches(0.0, of, strains, part);
         // Without a pool, rayon would start one of its own.
@@ -158,7 +181,7 @@ impl<S: Copy> SmoothedStrains<S> {
 struct StrainsOfBlock<'b, 'a, const D: usize, const N: usize> {
     of: Smoothed<'a, D, N>,
     blocks: &'b ElementBlocks<N>,
-    displacements: &'b Displacements<'b, D>,
+    levels: &'b [StrainLevel<'b, D>],
     block: usize,
     fields: &'b mut FieldLanes<D>,
     strains: &'b mut [[Lanes; COMPONENTS]],
@@ -169,13 +192,14 @@ impl<const D: usize, const N: usize> Task for StrainsOfBlock<'_, '_, D, N> {
 
     #[inline(always)]
     fn run<R: Registers>(self, r: R) {
-        let Self { of, blocks, displacements, block, fields, strains } = self;
+        let Self { of, blocks, levels, block, fields, strains } = self;
         let (like, own) = (Wide::zeros(r), blocks.block(block));
-        fields.gather(like, own.nodes, displacements.iter().map(|level| Some(level.0)));
+        fields.gather(like, own.nodes, levels.iter().map(|level| Some(level.displacement)));
         let range = blocks.elements(block);
         let elements = &of.elements[range.clone()];
         for (((element, local), strain), e) in elements.iter().zip(own.local).zip(strains).zip(range) {
-            let gradient = element.gradient(&fields.of(like, local));
+            let mut gradient = element.gradient(&fields.of(like, local));
+            take_off(&mut gradient, levels.iter().map(|level| level.plastic), e);
             *strain = averaged(of.problem.material(ElementId::new(e)), &gradient).map(
                 #[inline(always)]
                 |x| x.store(),

@@ -7,9 +7,10 @@ use crate::deformation::Deformation;
 use crate::element::Element;
 use crate::field_lanes::FieldLanes;
 use crate::inertia::{add_lumping_stress, arms, lumping_stress};
+use crate::plastic::{EigenStrains, take_off, tensor};
 use crate::residual::worse;
-use crate::smoothing::{Displacements, Smoothed, SmoothedStrains, Smoothing};
-use crate::time_level::{ForcesKnown, Side};
+use crate::smoothing::{Smoothed, SmoothedStrains, Smoothing, StrainLevel};
+use crate::time_level::{ForcesKnown, Side, TimeLevel};
 use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::material::{Law, PointLaw, first_stress};
 use percute_core::simd::Wide;
@@ -35,14 +36,14 @@ pub(super) struct StarFields<const D: usize> {
 pub(crate) type BalancedStrains<'a> = (&'a SmoothedStrains, &'a Smoothing);
 
 impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
-    /// Takes in the displacements of some levels (m), of which those whose strains are smoothed.
-    pub(crate) fn fill_strains(
-        &self,
-        smoothing: &Smoothing,
-        displacements: &Displacements<'_, D>,
-        strains: &mut SmoothedStrains,
-    ) {
-        strains.fill(self.smoothed(smoothing), &self.blocks, displacements);
+    /// Takes in the strains of some levels, smoothed where they are.
+    pub(crate) fn fill_strains(&self, smoothing: &Smoothing, forces: &[ForcesKnown<D>], strains: &mut SmoothedStrains) {
+        fn level<const D: usize>(level: &TimeLevel<D>) -> StrainLevel<'_, D> {
+            let TimeLevel { displacement, plastic, smoothed, .. } = level;
+            StrainLevel { displacement, plastic: plastic.as_ref(), smoothed: *smoothed }
+        }
+        let levels: Vec<_> = forces.iter().map(|forces| level(&forces.level)).collect();
+        strains.fill(self.smoothed(smoothing), &self.blocks, &levels);
     }
 
     /// The elements with the data of their smoothing.
@@ -154,7 +155,9 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         let mut largest = like.zero();
         for (e, local) in range.zip(block.local) {
             let (element, law) = (&self.elements[e], self.problem.material(ElementId::new(e)));
-            let (stress, _) = law.respond(&element.gradient(&fields.displacement.of(like, local)), &mut []);
+            let mut gradient = element.gradient(&fields.displacement.of(like, local));
+            take_off(&mut gradient, eigenstrains(forces), e);
+            let (stress, _) = law.respond(&gradient, &mut []);
             largest = largest.max(largest_force(element, &stress, &fields.acceleration.of(like, local)));
         }
         largest
@@ -268,7 +271,11 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
     /// σ_h of one element (Pa).
     pub(crate) fn stress_of(&self, forces: &ForcesKnown<D>, element: ElementId) -> [[f64; D]; D] {
         let data = &self.elements[element.index()];
-        let gradient = data.gradient(&data.gather(&forces.level.displacement));
+        let mut gradient = data.gradient(&data.gather(&forces.level.displacement));
+        if let Some(strains) = &forces.level.plastic {
+            let eigen = tensor::<D>(strains[element.index()]);
+            (0..D).for_each(|a| (0..D).for_each(|b| gradient[a][b] -= eigen[a][b]));
+        }
         self.problem.material(element).respond(&gradient, &mut []).0
     }
 
@@ -360,7 +367,8 @@ impl<const D: usize> StarFields<D> {
             let (gradient, mut stress) = match strains.map(mean) {
                 Some(strain) if !finite => (strain, law.respond(&strain, &mut []).0),
                 mean => {
-                    let gradient = element.gradient(&self.displacement.of(like, local));
+                    let mut gradient = element.gradient(&self.displacement.of(like, local));
+                    take_off(&mut gradient, eigenstrains(forces), id.index());
                     let plain = || law.respond(&gradient, &mut []).0;
                     (gradient, mean.map_or_else(plain, |second| first_stress(&gradient, &second)))
                 }
@@ -392,6 +400,11 @@ impl<const D: usize> StarFields<D> {
         }
         split
     }
+}
+
+/// ε* at each level.
+fn eigenstrains<const D: usize>(forces: &[ForcesKnown<D>]) -> impl Iterator<Item = Option<&EigenStrains>> {
+    forces.iter().map(|forces| forces.level.plastic.as_ref())
 }
 
 /// Largest |Vσ∇φ_i| and lumped inertia force of an element (N).

@@ -22,9 +22,9 @@ fn of_sources(Separation { at_sup, mean, halved_elements, halved_step, over_time
 
 /// Every number of a map.
 fn of_map(map: &ElementMap, numbers: &mut Vec<f64>) {
-    let ElementMap { step, time, kinetic, elastic, contact, accumulated, fields } = map;
+    let ElementMap { step, time, kinetic, elastic, dissipation, contact, accumulated, fields } = map;
     numbers.extend([*step as f64, *time]);
-    [kinetic, elastic, contact, accumulated].into_iter().for_each(|row| numbers.extend(row));
+    [kinetic, elastic, dissipation, contact, accumulated].into_iter().for_each(|row| numbers.extend(row));
     let Some(AdmissibleFields { displacement, velocity, stress, compatible_stress, acceleration }) = fields else {
         return;
     };

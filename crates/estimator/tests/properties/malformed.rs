@@ -29,7 +29,7 @@ impl Raw {
     fn step(&self) -> Step<'_> {
         let Self { index, time, displacement, reaction, touching } = self;
         let (index, time) = (*index, *time);
-        Step { index, time, displacement, reaction, touching, velocity: None, acceleration: None }
+        Step { index, time, displacement, reaction, touching, internal: &[], velocity: None, acceleration: None }
     }
 }
 

@@ -78,7 +78,7 @@ pub(super) fn fields<'f>(vtk: &Part<'f>, size: Size, instants: usize) -> Result<
         all.push(found(part, name, [instants, rows, components])?);
         Ok(())
     };
-    for name in ["kinetic", "elastic", "contact", "total", "accumulated"] {
+    for name in ["kinetic", "elastic", "dissipation", "contact", "total", "accumulated"] {
         add(&cells, name, elements, 1)?;
     }
     if has_admissible(vtk)? {

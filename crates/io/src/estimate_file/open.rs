@@ -99,11 +99,13 @@ fn finite(data: &Data<'_>) -> Result<Vec<f64>, FileCause> {
 fn over_time(group: &Part<'_>) -> Result<Vec<Sample>, FileCause> {
     let time = column(group, "time", None)?;
     let of = |name| column(group, name, Some(time.len()));
-    let (kinetic, elastic, contact, reference) = (of("kinetic")?, of("elastic")?, of("contact")?, of("reference")?);
+    let [kinetic, elastic, dissipation] = [of("kinetic")?, of("elastic")?, of("dissipation")?];
+    let [contact, reference] = [of("contact")?, of("reference")?];
     // The sum of the parts is computed again.
     of("total")?;
     let sample = |k: usize| {
-        let parts = Parts { kinetic: kinetic[k], elastic: elastic[k], contact: contact[k] };
+        let [kinetic, elastic, dissipation, contact] = [&kinetic, &elastic, &dissipation, &contact].map(|part| part[k]);
+        let parts = Parts { kinetic, elastic, dissipation, contact };
         Sample { time: time[k], parts, reference: reference[k] }
     };
     Ok((0..time.len()).map(sample).collect())

@@ -182,6 +182,7 @@ impl EstimateContents<'_> {
         let mut fields: Vec<WrittenField<'_>> = vec![
             ("kinetic", "J", 1, Box::new(|map| map.kinetic.clone())),
             ("elastic", "J", 1, Box::new(|map| map.elastic.clone())),
+            ("dissipation", "J", 1, Box::new(|map| map.dissipation.clone())),
             ("contact", "J", 1, Box::new(|map| map.contact.clone())),
             ("total", "J", 1, Box::new(ElementMap::total)),
             ("accumulated", "J^(1/2)", 1, Box::new(move |map| map.error(end))),
@@ -202,6 +203,7 @@ impl EstimateContents<'_> {
             ("time", "s", column(|s| s.time)),
             ("kinetic", "J", column(|s| s.parts.kinetic)),
             ("elastic", "J", column(|s| s.parts.elastic)),
+            ("dissipation", "J", column(|s| s.parts.dissipation)),
             ("contact", "J", column(|s| s.parts.contact)),
             ("total", "J", column(|s| s.parts.total())),
             ("reference", "J", column(|s| s.reference)),

@@ -1,6 +1,6 @@
 //! The checkpoints of a history: the two newest states from which its run can go on.
 //!
-//! They are rows of numbers: the step, the sums of the balance, u_n and v_{n−½}. A row that was being written when the
+//! They are rows of numbers: the step, the sums of the balance, u_n, v_{n−½} and the internal variables. A row that was being written when the
 //! run was killed does not have its checksum; the other one does.
 
 use super::native::bytes;
@@ -39,25 +39,21 @@ pub(super) fn is_due(step: usize) -> bool {
 }
 
 /// Bytes of all of them in a run of so many steps.
-pub(super) fn size(steps: usize, nodes: usize, dimension: usize) -> u64 {
-    if steps < EVERY { 0 } else { (8 * ROWS * (row(nodes, dimension) + 1)) as u64 }
+pub(super) fn size(steps: usize, fields: [usize; 3]) -> u64 {
+    if steps < EVERY { 0 } else { (8 * ROWS * (row(fields) + 1)) as u64 }
 }
 
-fn row(nodes: usize, dimension: usize) -> usize {
-    HEAD + 2 * nodes * dimension
+/// Numbers of a row of a body with so many nodes, its dimension, and so many internal variables.
+fn row([nodes, dimension, internal]: [usize; 3]) -> usize {
+    HEAD + 2 * nodes * dimension + internal
 }
 
 /// Makes room for them. A run that ends before the first one needs none.
-pub(super) fn make_room(
-    ours: &Group,
-    steps: usize,
-    nodes: usize,
-    dimension: usize,
-) -> Result<Option<CheckpointPlaces>, FileCause> {
+pub(super) fn make_room(ours: &Group, steps: usize, fields: [usize; 3]) -> Result<Option<CheckpointPlaces>, FileCause> {
     if steps < EVERY {
         return Ok(None);
     }
-    let row = row(nodes, dimension);
+    let row = row(fields);
     let numbers = offset(&room::<f64>(ours, NUMBERS, &[ROWS, row])?)?;
     let checksums = offset(&room::<i64>(ours, CHECKSUMS, &[ROWS])?)?;
     Ok(Some(CheckpointPlaces { numbers, checksums, row: row as u64 }))
@@ -74,9 +70,9 @@ pub(super) fn places(ours: &Part<'_>) -> Result<Option<CheckpointPlaces>, FileCa
 impl CheckpointPlaces {
     /// Writes a checkpoint over the older one.
     pub(super) fn write(&self, file: &File, checkpoint: &Checkpoint) -> io::Result<()> {
-        let Checkpoint { step, displacement, half_step, sums } = checkpoint;
+        let Checkpoint { step, displacement, half_step, internal, sums } = checkpoint;
         let head = std::iter::once(*step as f64).chain(*sums);
-        let fields = displacement.iter().chain(half_step).copied();
+        let fields = displacement.iter().chain(half_step).chain(internal).copied();
         let numbers: Vec<f64> = head.chain(fields).collect();
         let at = (step / EVERY % ROWS) as u64;
         write_all_at(file, &bytes(&numbers), self.numbers + 8 * self.row * at)?;
@@ -97,26 +93,27 @@ fn sum(numbers: &[f64]) -> i64 {
 /// The newest whole checkpoint that `fits`; none if the run was killed before the first one.
 pub(super) fn newest(
     ours: &Part<'_>,
-    nodes: usize,
-    dimension: usize,
+    fields @ [nodes, dimension, _]: [usize; 3],
     fits: impl Fn(usize) -> bool,
 ) -> Result<Option<Checkpoint>, FileCause> {
     let Some(stored) = ours.optional(NUMBERS)? else { return Ok(None) };
-    let row = row(nodes, dimension);
-    stored.expect(&[ROWS, row], "step, sums, displacement and half-step velocity in each row")?;
+    let row = row(fields);
+    stored.expect(&[ROWS, row], "step, sums, displacement, half-step velocity and internal variables in each row")?;
     let checksums = ours.data(CHECKSUMS)?;
     checksums.expect(&[ROWS], "one for each row")?;
     let (numbers, checksums) = (stored.floats()?, checksums.integers()?);
     let whole = numbers.chunks_exact(row).zip(checksums).filter(|(numbers, stored)| sum(numbers) == *stored);
     let newest = whole.map(|(numbers, _)| numbers).filter(|numbers| fits(numbers[0] as usize));
     Ok(newest.max_by(|a, b| a[0].total_cmp(&b[0])).map(|numbers| {
-        let (displacement, half_step) = numbers[HEAD..].split_at(nodes * dimension);
+        let (displacement, rest) = numbers[HEAD..].split_at(nodes * dimension);
+        let (half_step, internal) = rest.split_at(nodes * dimension);
         let mut sums = [0.0; SUMS];
         sums.copy_from_slice(&numbers[1..HEAD]);
         Checkpoint {
             step: numbers[0] as usize,
             displacement: displacement.to_vec(),
             half_step: half_step.to_vec(),
+            internal: internal.to_vec(),
             sums,
         }
     }))

@@ -1,5 +1,6 @@
 //! An open history file.
 
+use super::PLASTIC;
 use super::elsewhere::Elsewhere;
 use super::rows::FIELDS;
 use super::stored_part::ThinnedSteps;
@@ -60,6 +61,8 @@ pub(super) struct FileContents {
     pub(super) supplied: [bool; 2],
     pub(super) supplied_contact: [bool; 2],
     pub(super) stored: [bool; 2],
+    /// Internal variables of an element; 0 without any.
+    pub(super) plastic: usize,
     pub(super) kept: Option<ThinnedSteps>,
     pub(super) lacks_reactions: bool,
     /// Whether each field at each instant has a checksum.
@@ -241,6 +244,30 @@ impl HistoryFile {
             let values = vectors(&data, &data.float_rows(rows)?, self.dimension())?;
             self.check(opened, name, steps, &values, of_vectors)?;
             Ok(Some(values))
+        })
+    }
+
+    /// Internal variables of an element: ε_p,xx, ε_p,yy, ε_p,xy and p, of bars ε_p and p; 0 where no material yields.
+    #[must_use]
+    pub fn variables(&self) -> usize {
+        self.contents.plastic
+    }
+
+    /// The internal variables of the elements, in rows, step after step.
+    ///
+    /// # Errors
+    /// As for [`HistoryFile::displacement`].
+    pub fn plastic(&self, steps: Range<usize>) -> Result<Vec<f64>, FileError> {
+        let (elements, count) = (self.mesh().element_count(), self.variables());
+        let rows = elements * steps.start..elements * steps.end;
+        self.steps(steps.clone(), |opened| {
+            if count == 0 {
+                return Ok(Vec::new());
+            }
+            let data = opened.root().group("VTKHDF")?.group("CellData")?.data(PLASTIC)?;
+            let values = data.float_rows(rows)?;
+            self.check(opened, PLASTIC, steps, &values, of_vectors)?;
+            Ok(values)
         })
     }
 

@@ -30,3 +30,5 @@ pub use writer::Writer;
 
 /// Path of the displacements in a file.
 const DISPLACEMENT: &str = "VTKHDF/PointData/displacement";
+/// The internal variables of the elements, among the fields of cells.
+const PLASTIC: &str = "plastic";

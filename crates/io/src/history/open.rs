@@ -1,17 +1,18 @@
 //! Opens a history file: everything but the steps is read and checked.
 
-use super::DISPLACEMENT;
 use super::elsewhere::Elsewhere;
 use super::file::{FileContents, HistoryFile, Identity};
 use super::nodal::{finite, nodal};
 use super::rows::FIELDS;
 use super::stored_part;
 use super::sums::{check_fixed_part, check_rows, fixed_part, of_vectors};
+use super::{DISPLACEMENT, PLASTIC};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
 use crate::mesh::{read, vectors};
 use crate::read::{Data, Opened, Part, reading};
 use crate::write::{Case, Provenance};
+use percute_core::material::VonMises;
 use percute_core::time::TimeGrid;
 use std::path::Path;
 use std::sync::Arc;
@@ -55,6 +56,7 @@ pub(super) fn contents(path: &Path, identity: Identity, opened: &Opened) -> Resu
     let instants = times.instants().len();
     let (count, complete) = written(&vtk, &ours, instants)?;
     let (initial_displacement, stored) = fields(&vtk, instants, [nodes, d])?;
+    let plastic = plastic(&vtk, instants, [mesh.element_count(), d])?;
     let kept = stored_part::read(&ours, times.instants())?;
     // Motion by the scheme follows from all steps as well.
     let supplied = if ours.has_attribute("by_scheme") { [false; 2] } else { stored };
@@ -92,6 +94,7 @@ pub(super) fn contents(path: &Path, identity: Identity, opened: &Opened) -> Resu
         supplied,
         supplied_contact,
         stored,
+        plastic,
         kept,
         lacks_reactions: ours.has_attribute("without_reactions"),
         checksums,
@@ -118,6 +121,16 @@ fn fields(vtk: &Part<'_>, instants: usize, [nodes, dimension]: [usize; 2]) -> Re
     let velocity = field(vtk, "velocity", instants, nodes)?.is_some();
     let acceleration = field(vtk, "acceleration", instants, nodes)?.is_some();
     Ok((initial, [velocity, acceleration]))
+}
+
+/// The number of internal variables of an element.
+fn plastic(vtk: &Part<'_>, instants: usize, [elements, dimension]: [usize; 2]) -> Result<usize, FileCause> {
+    let Some(fields) = vtk.optional_group("CellData")? else { return Ok(0) };
+    let Some(data) = fields.optional(PLASTIC)? else { return Ok(0) };
+    let count = VonMises::count(dimension);
+    data.expect(&[instants.saturating_mul(elements), count], "(instants x elements, variables), step after step")?;
+    data.check_floats()?;
+    Ok(count)
 }
 
 /// All instants. In an incomplete file they are stored beside those visible to VTK.

@@ -1,5 +1,6 @@
 //! A history file before its run: its size and its parts.
 
+use super::PLASTIC;
 use super::checkpoints;
 use super::elsewhere::Elsewhere;
 use super::native::write_vectors;
@@ -100,7 +101,8 @@ impl<'p> Plan<'p> {
             .elsewhere
             .as_ref()
             .map_or(0, |origin| 8 * d * nodes + (origin.program.len() + origin.derived().len()) as u64 + 3 * PER_GROUP);
-        let checkpoints = checkpoints::size(self.steps_to_go_on(), mesh.node_count(), mesh.dimension());
+        let checkpoints =
+            checkpoints::size(self.steps_to_go_on(), [mesh.node_count(), mesh.dimension(), self.internal()]);
         let fixed = grid
             + faces
             + elements
@@ -119,7 +121,13 @@ impl<'p> Plan<'p> {
     /// Size of the fields at an instant (bytes).
     fn row(&self) -> u64 {
         let nodes = self.problem.mesh().node_count() as u64;
-        24 * nodes * self.vectors() + self.contact_nodes() as u64 * (8 * self.problem.dimension() as u64 + 1)
+        let contact = self.contact_nodes() as u64 * (8 * self.problem.dimension() as u64 + 1);
+        24 * nodes * self.vectors() + contact + 8 * self.internal() as u64
+    }
+
+    /// Number of internal variables of all elements.
+    fn internal(&self) -> usize {
+        self.problem.variables() * self.problem.mesh().element_count()
     }
 
     /// Number of nodal vector fields.
@@ -212,7 +220,8 @@ impl<'p> Plan<'p> {
         let sum = fixed_part(mesh, velocity, texts, [&self.stored_times(), run], nodes);
         numbers(&ours, "checksum", &[], &[sum])?;
         let checksums = room::<i64>(&ours, "checksums", &[self.instants(), FIELDS.len()])?;
-        let checkpoints = checkpoints::make_room(&ours, self.steps_to_go_on(), mesh.node_count(), dimension)?;
+        let fields = [mesh.node_count(), dimension, self.internal()];
+        let checkpoints = checkpoints::make_room(&ours, self.steps_to_go_on(), fields)?;
         let steps_written = numbers(&ours, "steps_written", &[], &[0_i64])?;
         let complete = numbers(&ours, "complete", &[], &[0_u8])?;
         let instants = &self.stored_times();
@@ -229,13 +238,16 @@ impl<'p> Plan<'p> {
             *place = Some(offset(&set)?);
             names.push((name, mesh.node_count()));
         }
-        write_steps(&vtk, instants, &names, self.bodies(&vtk)?.as_slice())?;
+        let (plastic, mut cells) = (self.plastic(&vtk)?, self.bodies(&vtk)?.into_iter().collect::<Vec<_>>());
+        cells.extend(plastic.map(|_| (PLASTIC, mesh.element_count())));
+        write_steps(&vtk, instants, &names, &cells)?;
         Ok(Places {
             displacement: places[0].unwrap_or_default(),
             velocity: places[1],
             acceleration: places[2],
             reaction,
             touching,
+            plastic: plastic.map(|place| (place, self.internal())),
             steps_written: offset(&steps_written)?,
             complete: offset(&complete)?,
             checksums: offset(&checksums)?,
@@ -251,7 +263,18 @@ impl<'p> Plan<'p> {
     /// The numbers of the bodies of the elements, of several bodies.
     fn bodies(&self, vtk: &Group) -> Result<Option<(&'static str, usize)>, FileCause> {
         let mesh = self.problem.mesh();
-        if mesh.parts() > 1 { write_bodies(&group(vtk, "CellData")?, mesh) } else { Ok(None) }
+        if mesh.parts() > 1 { write_bodies(&cell_data(vtk)?, mesh) } else { Ok(None) }
+    }
+
+    /// Room for the internal variables of the elements, if there are any, and its place.
+    fn plastic(&self, vtk: &Group) -> Result<Option<u64>, FileCause> {
+        if self.internal() == 0 {
+            return Ok(None);
+        }
+        let rows = self.instants() * self.problem.mesh().element_count();
+        let set = room::<f64>(&cell_data(vtk)?, PLASTIC, &[rows, self.problem.variables()])?;
+        unit(&set, "1")?;
+        Ok(Some(offset(&set)?))
     }
 
     /// The steps of a thinned history in its run; and whether motion comes from the scheme, as it does if any is kept.
@@ -285,4 +308,12 @@ impl<'p> Plan<'p> {
         let touching = room::<u8>(&contact, "touching", &[instants, count])?;
         Ok((offset(&reaction)?, offset(&touching)?))
     }
+}
+
+/// The group of the fields of elements.
+fn cell_data(vtk: &Group) -> Result<Group, FileCause> {
+    if vtk.link_exists("CellData") {
+        return vtk.group("CellData").map_err(|error| crate::library::refused(&error));
+    }
+    group(vtk, "CellData")
 }

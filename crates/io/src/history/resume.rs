@@ -1,5 +1,6 @@
 //! Opens the file of a run that was killed or stopped, so that the run goes on.
 
+use super::PLASTIC;
 use super::checkpoints;
 use super::file::{HistoryFile, Identity};
 use super::open::contents;
@@ -89,8 +90,7 @@ impl HistoryFile {
         let now: Self = contents(path, Identity::of(path)?, &opened)?;
         let places = now.places(&opened, problem)?;
         let fits = |step: usize| step <= now.run_times().step_count() && now.rows_until(step) <= now.count();
-        let checkpoint =
-            checkpoints::newest(&opened.root().group("percute")?, now.mesh().node_count(), now.dimension(), fits)?;
+        let checkpoint = checkpoints::newest(&opened.root().group("percute")?, now.checkpoint_fields(), fits)?;
         let bytes = opened.bytes();
         drop(opened);
         let next = checkpoint.as_ref().map_or(0, |checkpoint: &Checkpoint| checkpoint.step + 1);
@@ -110,6 +110,12 @@ impl HistoryFile {
         })
     }
 
+    /// Nodes, dimension and number of internal variables.
+    fn checkpoint_fields(&self) -> [usize; 3] {
+        let elements = self.mesh().element_count();
+        [self.mesh().node_count(), self.dimension(), self.contents.plastic * elements]
+    }
+
     /// Compares the first instants with their checksums: damage there would stay.
     fn check_rows(&self, count: usize) -> Result<(), FileError> {
         for steps in self.blocks(count) {
@@ -117,6 +123,7 @@ impl HistoryFile {
             self.velocity(steps.clone())?;
             self.acceleration(steps.clone())?;
             self.reaction(steps.clone())?;
+            self.plastic(steps.clone())?;
             self.touching(steps)?;
         }
         Ok(())
@@ -135,12 +142,17 @@ impl HistoryFile {
         let touching = of_contact("touching")?.map(|data| place(data.native_offset::<u8>()?, &data)).transpose()?;
         let counter = ours.data("steps_written")?;
         let (complete, checksums) = (ours.data("complete")?, ours.data("checksums")?);
+        let of_elements = root.group("VTKHDF")?.optional_group("CellData")?;
+        let of_elements = of_elements.map(|fields| fields.optional(PLASTIC)).transpose()?.flatten();
+        let [.., internal] = self.checkpoint_fields();
+        let of_elements = of_elements.map(|data| place(data.native_offset::<f64>()?, &data)).transpose()?;
         Ok(Places {
             displacement: place(displacement.native_offset::<f64>()?, &displacement)?,
             velocity: nodal(velocity?)?,
             acceleration: nodal(acceleration?)?,
             reaction: reaction.unwrap_or_default(),
             touching: touching.unwrap_or_default(),
+            plastic: of_elements.map(|place| (place, internal)),
             steps_written: place(counter.native_offset::<i64>()?, &counter)?,
             complete: place(complete.native_offset::<u8>()?, &complete)?,
             checksums: place(checksums.native_offset::<i64>()?, &checksums)?,

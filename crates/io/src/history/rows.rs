@@ -1,5 +1,6 @@
 //! The rows of a step as bytes at their place in the file.
 
+use super::PLASTIC;
 use super::checkpoints::CheckpointPlaces;
 use super::native::{bytes, write_vectors};
 use crate::checksum::Checksum;
@@ -9,7 +10,7 @@ use std::fs::File;
 use std::io;
 
 /// Fields over time, in the order of their checksums.
-pub(super) const FIELDS: [&str; 5] = ["displacement", "velocity", "acceleration", "reaction", "touching"];
+pub(super) const FIELDS: [&str; 6] = ["displacement", "velocity", "acceleration", "reaction", "touching", PLASTIC];
 
 /// The place of the rows of step 0 in the file (bytes), and their number of nodes.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +20,8 @@ pub(super) struct Places {
     pub(super) acceleration: Option<u64>,
     pub(super) reaction: u64,
     pub(super) touching: u64,
+    /// Of the internal variables of the elements, and their count.
+    pub(super) plastic: Option<(u64, usize)>,
     pub(super) steps_written: u64,
     pub(super) complete: u64,
     /// Of a row of checksums for each step.
@@ -39,7 +42,9 @@ impl Places {
         let (nodes, contact) = (24 * self.nodes as u64, self.contact_nodes as u64);
         let nodal = [Some(self.displacement), self.velocity, self.acceleration].into_iter().flatten();
         let of_contact = [(self.reaction, 8 * self.dimension as u64 * contact), (self.touching, contact)];
-        nodal.map(move |place| (place, nodes)).chain(of_contact.into_iter().filter(|_| self.has_contact))
+        let of_elements = self.plastic.map(|(place, count)| (place, 8 * count as u64));
+        let nodal = nodal.map(move |place| (place, nodes));
+        nodal.chain(of_contact.into_iter().filter(|_| self.has_contact)).chain(of_elements)
     }
 }
 
@@ -55,6 +60,7 @@ pub(super) struct Row {
     touching: Vec<u8>,
     velocity: Vec<f64>,
     acceleration: Vec<f64>,
+    plastic: Vec<f64>,
 }
 
 impl Row {
@@ -66,6 +72,7 @@ impl Row {
             (&mut self.reaction, Some(step.reaction)),
             (&mut self.velocity, step.velocity),
             (&mut self.acceleration, step.acceleration),
+            (&mut self.plastic, Some(step.internal)),
         ];
         for (kept, given) in fields {
             kept.clear();
@@ -94,6 +101,9 @@ impl Row {
             write_all_at(file, &reaction, places.reaction + n * contact * 8 * places.dimension as u64)?;
             write_all_at(file, &self.touching, places.touching + n * contact)?;
         }
+        if let Some((place, count)) = places.plastic {
+            write_all_at(file, &bytes(&self.plastic), place + n * 8 * count as u64)?;
+        }
         let sums = self.checksums(places.has_contact).iter().flat_map(|sum| sum.to_ne_bytes()).collect::<Vec<u8>>();
         write_all_at(file, &sums, places.checksums + n * sums.len() as u64)?;
         let count = (self.place + 1).max(places.had) as u64;
@@ -105,7 +115,9 @@ impl Row {
         let nodal = |values: &Vec<f64>| {
             if values.is_empty() { 0 } else { Checksum::new().numbers(values).stored() }
         };
-        let mut all = [nodal(&self.displacement), nodal(&self.velocity), nodal(&self.acceleration), 0, 0];
+        let [displacement, velocity, acceleration, plastic] =
+            [&self.displacement, &self.velocity, &self.acceleration, &self.plastic].map(nodal);
+        let mut all = [displacement, velocity, acceleration, 0, 0, plastic];
         if has_contact {
             all[3] = Checksum::new().numbers(&self.reaction).stored();
             all[4] = Checksum::new().indices(self.touching.iter().map(|&touches| touches.into())).stored();

@@ -31,12 +31,14 @@ struct StepBlock {
     reaction: Vec<f64>,
     touching: Vec<bool>,
     motion: [Option<Vec<f64>>; 2],
+    plastic: Vec<f64>,
 }
 
 impl HistoryFile {
     /// The first `count` steps in blocks that are read at once.
     pub(super) fn blocks(&self, count: usize) -> impl Iterator<Item = Range<usize>> {
-        let step = 24 * self.mesh().node_count() + 16 * self.contact_nodes().len();
+        let internal = 8 * self.variables() * self.mesh().element_count();
+        let step = 24 * self.mesh().node_count() + 16 * self.contact_nodes().len() + internal;
         let size = (BLOCK / step.max(1)).max(1);
         (0..count).step_by(size).map(move |start| start..count.min(start + size))
     }
@@ -79,23 +81,26 @@ impl HistorySource {
     fn block(&self, steps: Range<usize>) -> Result<StepBlock, FileError> {
         let nodes = self.file.mesh().node_count();
         let rows = steps.start * nodes..steps.end * nodes;
-        self.file.again(|opened| {
-            self.check_counter(opened)?;
-            let fields = opened.root().group("VTKHDF")?.group("PointData")?;
-            let motion = [0, 1].map(|at| self.motion(&fields, at, rows.clone(), steps.start));
-            let [velocity, acceleration] = motion;
-            let displacement = fields.data("displacement")?;
-            let displacement = vectors(&displacement, &displacement.float_rows(rows.clone())?, self.file.dimension())?;
-            self.finite("VTKHDF/PointData/displacement", &displacement, steps.start, |at| at)?;
-            self.file.check(opened, "displacement", steps.clone(), &displacement, of_vectors)?;
-            let (reaction, touching) = self.contact(opened, steps.clone())?;
-            let motion = [velocity?, acceleration?];
-            for (name, values) in ["velocity", "acceleration"].into_iter().zip(&motion) {
-                let Some(values) = values else { continue };
-                self.file.check(opened, name, steps.clone(), values, of_vectors)?;
-            }
-            Ok(StepBlock { displacement, reaction, touching, motion })
-        })
+        self.file
+            .again(|opened| {
+                self.check_counter(opened)?;
+                let fields = opened.root().group("VTKHDF")?.group("PointData")?;
+                let motion = [0, 1].map(|at| self.motion(&fields, at, rows.clone(), steps.start));
+                let [velocity, acceleration] = motion;
+                let displacement = fields.data("displacement")?;
+                let displacement =
+                    vectors(&displacement, &displacement.float_rows(rows.clone())?, self.file.dimension())?;
+                self.finite("VTKHDF/PointData/displacement", &displacement, steps.start, |at| at)?;
+                self.file.check(opened, "displacement", steps.clone(), &displacement, of_vectors)?;
+                let (reaction, touching) = self.contact(opened, steps.clone())?;
+                let motion = [velocity?, acceleration?];
+                for (name, values) in ["velocity", "acceleration"].into_iter().zip(&motion) {
+                    let Some(values) = values else { continue };
+                    self.file.check(opened, name, steps.clone(), values, of_vectors)?;
+                }
+                Ok(StepBlock { displacement, reaction, touching, motion, plastic: Vec::new() })
+            })
+            .and_then(|block| Ok(StepBlock { plastic: self.file.plastic(steps)?, ..block }))
     }
 
     fn check_counter(&self, opened: &Opened) -> Result<(), FileCause> {
@@ -175,6 +180,7 @@ impl HistorySource {
     ) -> Result<(), SinkError> {
         let (surface, d) = (self.rows.len(), self.file.dimension());
         let nodal = d * self.file.mesh().node_count();
+        let internal = self.file.variables() * self.file.mesh().element_count();
         for (k, index) in steps.enumerate() {
             let rows = |row: usize| k * row..(k + 1) * row;
             let [velocity, acceleration] = [0, 1].map(|m| block.motion[m].as_ref().map(|v| &v[rows(nodal)]));
@@ -184,6 +190,7 @@ impl HistorySource {
                 displacement: &block.displacement[rows(nodal)],
                 reaction: &block.reaction[rows(d * surface)],
                 touching: &block.touching[rows(surface)],
+                internal: &block.plastic[rows(internal)],
                 velocity,
                 acceleration,
             })?;

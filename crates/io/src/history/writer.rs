@@ -1,5 +1,6 @@
 //! Writes the steps of a run during the run.
 
+use super::PLASTIC;
 use super::checkpoints::is_due;
 use super::queue::Queue;
 use super::recover::{give_back_room, set_steps};
@@ -179,6 +180,7 @@ impl Writer {
             ("displacement", step.displacement.len(), nodal),
             ("reaction", step.reaction.len(), reaction),
             ("touching", step.touching.len(), contact_nodes),
+            (PLASTIC, step.internal.len(), self.places.plastic.map_or(0, |(_, count)| count)),
             ("velocity", step.velocity.map_or(nodal, <[_]>::len), nodal),
             ("acceleration", step.acceleration.map_or(nodal, <[_]>::len), nodal),
         ];

@@ -63,6 +63,7 @@ fn any_steps(problem: &AnyProblem, count: usize, given: [bool; 2], seed: u64) ->
             displacement: &displacement,
             reaction: &reaction,
             touching: &touching,
+            internal: &[],
             velocity: given[0].then_some(&velocity[..]),
             acceleration: given[1].then_some(&acceleration[..]),
         };

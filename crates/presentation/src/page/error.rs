@@ -48,25 +48,26 @@ pub(super) fn map(contents: &Contents<'_>) -> String {
 pub(super) fn over_time(document: &Document) -> String {
     let column = |name: &str| document.column(&format!("over_time.{name}"));
     let root = |name: &str| column(name).iter().map(|eta| eta.max(0.0).sqrt()).collect();
-    let line = |name: &'static str, column: &str| Line { name, values: root(column) };
+    let line = |(name, column): (&'static str, &str)| Line { name, values: root(column) };
+    // Elastic materials dissipate nothing.
+    let dissipates = column("dissipation").iter().any(|part| *part != 0.0);
+    let names: Vec<&'static str> = ["kinetic", "elastic", "dissipation", "contact"]
+        .into_iter()
+        .filter(|n| dissipates || *n != "dissipation")
+        .collect();
     let chart = OverTime {
         time: column("time"),
         quantity: "√η and its parts",
         unit: document.unit("J^½"),
         prefixes: false,
-        lines: vec![
-            line("√η", "total"),
-            line("kinetic", "kinetic"),
-            line("elastic", "elastic"),
-            line("contact", "contact"),
-        ],
+        lines: [("√η", "total")].into_iter().chain(names.iter().map(|name| (*name, *name))).map(line).collect(),
         mark: document.number("time_of_sup").map(|time| (time, "sup")),
     };
     let Some(svg) = chart.draw() else { return String::new() };
     let caption = "√η over time and the roots of its parts [14]: kinetic, the misfit of the law of inertia, elastic, \
                    that of Hooke's law, and contact, that of the contact law. The parts of η, not their roots, add up.";
     let figure = figure(&svg, "error over time with its parts", caption);
-    let parts = ["kinetic", "elastic", "contact"].map(|name| (name, document.number(&format!("parts.{name}"))));
+    let parts: Vec<_> = names.iter().map(|name| (*name, document.number(&format!("parts.{name}")))).collect();
     let total: f64 = parts.iter().filter_map(|(_, part)| *part).sum();
     let mut table = Table::new(&["part of η at the sup", &format!("#{}", document.unit("J")), "#share"]);
     for (name, part) in parts {

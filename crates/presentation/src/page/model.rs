@@ -13,6 +13,7 @@ pub(super) fn balance(document: &Document) -> String {
     let names = [
         ("kinetic", "kinetic"),
         ("strain", "strain"),
+        ("plastic", "plastic_work"),
         ("contact", "work_of_contact"),
         ("loads", "work_of_loads"),
         ("supports", "work_of_supports"),
@@ -40,6 +41,7 @@ pub(super) fn balance(document: &Document) -> String {
         ("initial", "energy at the start"),
         ("kinetic", "kinetic energy"),
         ("strain", "strain energy"),
+        ("plastic_work", "plastic work"),
         ("work_of_loads", "work of loads"),
         ("work_of_supports", "work of supports"),
         ("work_of_contact", "work of contact"),

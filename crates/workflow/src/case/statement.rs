@@ -125,6 +125,10 @@ fn material(
     if let Some(yield_stress) = law.yield_stress() {
         text.number("yield_stress", yield_stress);
     }
+    if let Some(hardening) = law.hardening() {
+        text.number("hardening", hardening.modulus());
+        text.number("kinematic", hardening.kinematic());
+    }
     let (kinematics, finite) = law.kinematics().names();
     if let Some(finite) = finite {
         text.key("kinematics", quoted(kinematics));

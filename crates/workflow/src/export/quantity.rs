@@ -78,7 +78,7 @@ impl ExportRows<'_> {
         };
         let elements = (0..self.problem.mesh().element_count()).map(ElementId::new);
         let states: Vec<ElementState> = match self.quantities.iter().any(of_elements) {
-            true => elements.map(|e| ElementState::new(self.problem, e, step.displacement)).collect(),
+            true => elements.map(|e| ElementState::new(self.problem, e, step.displacement, step.internal)).collect(),
             false => Vec::new(),
         };
         let rows = |quantity: &ExportQuantity| match quantity {

@@ -61,7 +61,7 @@ impl<'s> Completed<'s> {
     /// Looks at a history once, to see whether its last contact forces are known.
     ///
     /// # Errors
-    /// A node that may touch two planes; missing forces on non-matching interfaces; steps that
+    /// A material that yields; a node that may touch two planes; missing forces on non-matching interfaces; steps that
     /// cannot be read; forces on two nodes of different bodies that are not opposite; fewer than three instants of
     /// which the last is not known.
     pub fn new(problem: &'s AnyProblem, source: &'s dyn StepSource, lacks: Lacks) -> Result<Self, SinkError> {
@@ -71,6 +71,11 @@ impl<'s> Completed<'s> {
                  plane a `group` so that no node lies in two, or simulate with percute",
                 contact.node.index()
             );
+            return Err(told.into());
+        }
+        if problem.yields() {
+            let told = "histories of other programs are read for elastic materials, and plastic strains follow from all \
+                        their steps alone; leave out `tangent` and `hardening`, or simulate with percute";
             return Err(told.into());
         }
         let (times, count) = (source.times().clone(), source.count());

@@ -221,6 +221,7 @@ impl StepSource for Between<'_> {
                     displacement: &displacement,
                     reaction: &reaction,
                     touching: &touching,
+                    internal: &[],
                     velocity: Some(&velocity),
                     acceleration: Some(&acceleration),
                 })?;

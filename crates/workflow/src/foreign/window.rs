@@ -54,6 +54,7 @@ impl Held {
             displacement: &self.rows.displacement,
             reaction: &self.rows.reaction,
             touching: &self.touching,
+            internal: &[],
             velocity: self.rows.velocity.as_deref(),
             acceleration: self.rows.acceleration.as_deref(),
         }

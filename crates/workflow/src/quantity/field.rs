@@ -3,7 +3,7 @@
 use crate::message::{hint, list};
 use percute_core::border::row;
 use percute_core::element_state::ElementState;
-use percute_core::history::State;
+use percute_core::history::{State, Step};
 use percute_core::mesh::Around;
 use percute_core::problem::AnyProblem;
 use std::str::FromStr;
@@ -98,9 +98,9 @@ impl Field {
 
     /// Its value at a point, with its sign: the mean of the elements that contain the point, by their shares.
     pub(super) fn at(self, problem: &AnyProblem, around: &[Around], state: &State<'_>) -> f64 {
-        let displacement = state.step().displacement;
+        let Step { displacement, internal, .. } = *state.step();
         let stress = |of: fn(&ElementState) -> f64| -> f64 {
-            let value = |a: &Around| a.share * of(&ElementState::new(problem, a.element, displacement));
+            let value = |a: &Around| a.share * of(&ElementState::new(problem, a.element, displacement, internal));
             around.iter().map(value).sum()
         };
         match self {

@@ -9,10 +9,11 @@ use serde::{Serialize, Serializer};
 pub type Named<R> = (&'static str, fn(&R) -> f64);
 
 /// The parts of η over time.
-pub const PARTS: [Named<Sample>; 6] = [
+pub const PARTS: [Named<Sample>; 7] = [
     ("time", |s| s.time),
     ("kinetic", |s| s.parts.kinetic),
     ("elastic", |s| s.parts.elastic),
+    ("dissipation", |s| s.parts.dissipation),
     ("contact", |s| s.parts.contact),
     ("total", |s| s.parts.total()),
     ("reference", |s| s.reference),
@@ -23,9 +24,10 @@ pub const SOURCES: [Named<Sources>; 4] =
     [("surface", |s| s.surface), ("front", |s| s.front), ("dispersion", |s| s.dispersion), ("mesh", |s| s.mesh)];
 
 /// Energies and works.
-pub const ENERGIES: [Named<Balance>; 6] = [
+pub const ENERGIES: [Named<Balance>; 7] = [
     ("kinetic", |b| b.kinetic),
     ("strain", |b| b.strain),
+    ("plastic_work", |b| b.plastic_work),
     ("work_of_loads", |b| b.work_of_loads),
     ("work_of_supports", |b| b.work_of_supports),
     ("work_of_contact", |b| b.work_of_contact),
@@ -37,7 +39,7 @@ pub const ENERGIES: [Named<Balance>; 6] = [
 pub struct EnergiesOverTime {
     time: Vec<f64>,
     #[serde(flatten)]
-    energies: Columns<Balance, 6>,
+    energies: Columns<Balance, 7>,
 }
 
 impl EnergiesOverTime {

@@ -33,6 +33,8 @@ pub(super) struct Linearity {
     pub(super) stress: Option<String>,
     /// Whether the kinematics are finite: any strain and rotation is within the theory.
     pub(super) finite: bool,
+    /// The least E_t/E of the materials that yielded, by a law with plasticity.
+    pub(super) yielded: Option<f64>,
 }
 
 /// A strain or a rotation that is not small: it limits trust.
@@ -70,7 +72,9 @@ impl Linearity {
         };
         let bodies = deformation.bodies.iter().filter(|_| !finite);
         let turned = bodies.filter_map(turned).max_by(|a, b| a.angle.total_cmp(&b.angle));
-        Self { strain: deformation.strain(), turned, stress: stress(&deformation.materials, finite), finite }
+        let materials = &deformation.materials;
+        let stress = stress(materials, finite).or_else(|| flow(materials));
+        Self { strain: deformation.strain(), turned, stress, finite, yielded: yielded(materials) }
     }
 
     /// The strains and the rotation that are not small.
@@ -98,6 +102,34 @@ impl Linearity {
     }
 }
 
+/// "the body", or the group of a material.
+fn place(material: &MaterialStress) -> String {
+    material.group.as_ref().map_or_else(|| "the body".to_string(), |group| format!("group {group:?}"))
+}
+
+/// The least E_t/E of the materials that yielded.
+fn yielded(materials: &[MaterialStress]) -> Option<f64> {
+    let yielded = materials.iter().filter_map(|material| material.yielding.filter(|yielding| yielding.share > 0.0));
+    yielded.filter_map(|yielding| Some(yielding.plastic?.tangent_ratio)).reduce(f64::min)
+}
+
+/// The plastic flow of the material with the largest plastic strain, in a sentence.
+fn flow(materials: &[MaterialStress]) -> Option<String> {
+    let flows = materials.iter().filter_map(|material| {
+        let yielding = material.yielding.filter(|yielding| yielding.share > 0.0)?;
+        Some((material, yielding, yielding.plastic?.equivalent_strain))
+    });
+    let (material, yielding, strain) = flows.max_by(|a, b| a.2.value.total_cmp(&b.2.value))?;
+    Some(format!(
+        "{} of {} yielded, first at {} s; the plastic strain is at most {}, in element {}.",
+        percent(yielding.share),
+        place(material),
+        trimmed(yielding.first.unwrap_or_default(), 4),
+        percent(strain.value),
+        strain.element
+    ))
+}
+
 /// 1/cos θ − 1 ≈ θ²/2: by how much a body grows whose nodes leave their arcs along tangents.
 pub(super) fn growth(angle: f64) -> f64 {
     0.5 * angle * angle
@@ -107,12 +139,9 @@ pub(super) fn growth(angle: f64) -> f64 {
 fn stress(materials: &[MaterialStress], finite: bool) -> Option<String> {
     let law = if finite { "elastic" } else { "linear" };
     let yields = materials.iter().filter_map(|material| {
-        let yielding = material.yielding.filter(|yielding| yielding.share > 0.0)?;
+        let yielding = material.yielding.filter(|yielding| yielding.share > 0.0 && yielding.plastic.is_none())?;
         Some((yielding.share, yielding, material))
     });
-    let named = |material: &MaterialStress| {
-        material.group.as_ref().map_or_else(|| "the body".to_string(), |group| format!("group {group:?}"))
-    };
     let largest =
         |of: &Extreme| format!("{} Pa in element {} at {} s", short(of.value, 3), of.element, trimmed(of.time, 4));
     if let Some((share, yielding, material)) = yields.max_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -121,7 +150,7 @@ fn stress(materials: &[MaterialStress], finite: bool) -> Option<String> {
              s; it is at most {}.",
             short(yielding.yield_stress, 3),
             percent(share),
-            named(material),
+            place(material),
             trimmed(yielding.first.unwrap_or_default(), 4),
             largest(&material.von_mises)
         ));

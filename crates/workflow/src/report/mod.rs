@@ -134,7 +134,7 @@ pub struct Report {
     pub impacts: Option<Impacts>,
     pub non_matching: Vec<NonMatchingReport>,
     pub deformation: Deformation,
-    pub over_time: Columns<Sample, 6>,
+    pub over_time: Columns<Sample, 7>,
     pub by_element: Vec<f64>,
     pub outline: Option<Outline>,
     pub warnings: Vec<Warning>,

@@ -207,7 +207,9 @@ fn balance(report: &Report) -> Vec<(&'static str, String)> {
 /// Energies at the start and now.
 pub(crate) fn energy(balance: &Balance, units: Units) -> String {
     let [initial, kinetic, strain] = [balance.initial, balance.kinetic, balance.strain].map(|x| short(x, 4));
-    format!("initial {initial}, now kinetic {kinetic}, strain {strain} {}", units.of("J"))
+    let plastic = balance.plastic_work;
+    let plastic = if plastic > 0.0 { format!(", plastic work {}", short(plastic, 4)) } else { String::new() };
+    format!("initial {initial}, now kinetic {kinetic}, strain {strain}{plastic} {}", units.of("J"))
 }
 
 /// Drifts of the two balances.

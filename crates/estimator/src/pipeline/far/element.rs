@@ -7,6 +7,7 @@ use crate::kinematic::ElementMotion;
 use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, NodalBalance, at_places};
 use crate::pipeline::maps::Contribution;
 use crate::pipeline::sampling::{Course, ElementSample};
+use crate::plastic::{PlasticMemory, PlasticPart};
 use crate::residual::Residuals;
 use crate::stress::EnergyForm;
 use percute_core::ids::ElementId;
@@ -39,7 +40,12 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
         self.check(&balanced, &mut found.residuals);
         let stress = self.measure.stress(&self.form, &balanced);
         let split = fields.balance.is_split();
-        let now = self.error(&stress, &fields.now, split);
+        let plastic = self.plastic(&stress, &fields.now, &mut so_far.plastic);
+        let [plastic_now, plastic_mid] = match &plastic {
+            Some([now, mid]) => [Some(now.load(like)), Some(mid.load(like))],
+            None => [None, None],
+        };
+        let now = self.error(&stress, &fields.now, split, plastic_now.as_ref());
         found.levels.add(&now);
         let mut mid = ElementError::filled(like);
         if self.all.has_mids {
@@ -50,7 +56,7 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
                 #[inline(always)]
                 |last: f64, now: Wide<R>| now.later(last),
             );
-            mid = self.error(&AdmissibleStress::middle(&before, &stress), &fields.mid, split);
+            mid = self.error(&AdmissibleStress::middle(&before, &stress), &fields.mid, split, plastic_mid.as_ref());
             if !self.all.all_single {
                 mid = mid.only(&self.all.single);
             }
@@ -67,12 +73,40 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
         self.integrate(&now, &mid, &mut so_far.course, &mut found.kept);
     }
 
+    /// The plastic parts at all levels and in the middles before them, level after level; none of a material that does
+    /// not yield.
+    #[inline(always)]
+    fn plastic<R: Registers>(
+        &self,
+        stress: &AdmissibleStress<D, N, Wide<R>>,
+        velocities: &[VelocityLanes<D>],
+        memory: &mut Option<Box<PlasticMemory<D>>>,
+    ) -> Option<[PlasticPart<D, Lanes>; 2]> {
+        let (law, volume) = self.measure.yielding()?;
+        let (nodes, like) = (at_places(velocities, self.local), stress.mean[0][0]);
+        let mut motions = [&nodes[0].motion; N];
+        (0..N).for_each(|i| motions[i] = &nodes[i].motion);
+        let gradient = self.measure.elastic_gradient(&ElementMotion::of_nodes(like, motions), None);
+        let [gradient, mean] = [&gradient, &stress.mean].map(|tensor| tensor.map(|row| row.map(Value::store)));
+        let memory = memory.get_or_insert_default();
+        let mut parts = [PlasticPart::rest(); 2];
+        for lane in 0..self.all.levels.levels.len() {
+            let before = memory.last;
+            let [gradient, mean] = [&gradient, &mean].map(|tensor| tensor.map(|row| row.map(|x: Lanes| x.0[lane])));
+            memory.advance(law, volume, &gradient, &mean);
+            parts[0].set(lane, &memory.last);
+            parts[1].set(lane, &PlasticPart::middle(&before, &memory.last));
+        }
+        Some(parts)
+    }
+
     #[inline(always)]
     fn error<R: Registers>(
         &self,
         stress: &AdmissibleStress<D, N, Wide<R>>,
         velocities: &[VelocityLanes<D>],
         split: bool,
+        plastic: Option<&PlasticPart<D, Wide<R>>>,
     ) -> ElementError<Wide<R>> {
         let (nodes, like) = (at_places(velocities, self.local), stress.mean[0][0]);
         let (mut increment, mut skew, mut motions) = ([[like; D]; N], [[like; D]; N], [&nodes[0].motion; N]);
@@ -82,7 +116,7 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
             motions[i] = &nodes[i].motion;
         }
         let increment = self.measure.increment_of(&increment, split.then_some(&skew));
-        self.measure.error(stress, &increment, &ElementMotion::of_nodes(like, motions), like.zero())
+        self.measure.error(stress, &increment, &ElementMotion::of_nodes(like, motions), plastic)
     }
 
     /// Checks the stress at the levels at which it is the turn of the element: the map that makes the stress is linear

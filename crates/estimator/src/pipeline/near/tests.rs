@@ -40,6 +40,7 @@ fn checked(track: &ContactMotion) -> Residuals {
         displacement: problem.initial_displacement().as_flattened(),
         reaction: &vec![0.0; 2 * surface],
         touching: &vec![false; surface],
+        internal: &[],
         velocity: None,
         acceleration: None,
     };

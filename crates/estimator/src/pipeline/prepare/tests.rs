@@ -31,6 +31,7 @@ fn wrong_initial_conditions_show() {
         displacement: problem.initial_displacement().as_flattened(),
         reaction: &[],
         touching: &[],
+        internal: &[],
         velocity: None,
         acceleration: None,
     };

@@ -10,7 +10,7 @@ pub(crate) struct Vibration {
     pub(crate) strain: f64,
     /// Of the kinetic energy relative to the rigid motion of each body (J).
     pub(crate) kinetic: f64,
-    /// Of the sum of both (J).
+    /// Of the sum of both and of the plastic work (J).
     pub(crate) total: f64,
 }
 
@@ -19,11 +19,11 @@ impl Vibration {
         Self { rigid: RigidMotion::new(problem), strain: 0.0, kinetic: 0.0, total: 0.0 }
     }
 
-    /// Takes in the strain energy (J) and the velocities (m/s) of a level.
-    pub(super) fn take(&mut self, strain: f64, velocity: &[f64]) {
+    /// Takes in the strain energy and the plastic work (J), and the velocities (m/s) of a level.
+    pub(super) fn take(&mut self, [strain, plastic]: [f64; 2], velocity: &[f64]) {
         let kinetic = self.rigid.relative_kinetic_energy(velocity);
         self.strain = self.strain.max(strain);
         self.kinetic = self.kinetic.max(kinetic);
-        self.total = self.total.max(strain + kinetic);
+        self.total = self.total.max(strain + plastic + kinetic);
     }
 }

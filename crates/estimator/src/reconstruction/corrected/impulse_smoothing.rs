@@ -8,6 +8,7 @@
 //! change nothing; on a uniform bar these are steps from half the critical one on.
 
 use percute_core::contact_results::stopping_times;
+use percute_core::material::VonMises;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::collections::VecDeque;
@@ -18,8 +19,12 @@ const NEGLIGIBLE: f64 = 1e-9;
 /// The impulses under way at each node of the contact surface.
 #[derive(Clone, Debug)]
 pub(super) struct ImpulseSmoothing<const D: usize> {
-    /// τ (s).
+    /// τ (s) of an elastic body.
     time: Vec<f64>,
+    /// The law of each node, where materials yield.
+    laws: Vec<VonMises>,
+    /// Speeds at which nodes approached before they touched (m/s), where materials yield.
+    speeds: Vec<f64>,
     pending: Vec<VecDeque<Pending<D>>>,
 }
 
@@ -39,6 +44,8 @@ pub(super) struct Stopped {
 struct Pending<const D: usize> {
     /// When it began (s).
     start: f64,
+    /// τ (s).
+    time: f64,
     /// Its rest (N s).
     impulse: [f64; D],
 }
@@ -46,12 +53,23 @@ struct Pending<const D: usize> {
 impl<const D: usize> ImpulseSmoothing<D> {
     pub(super) fn new(problem: &Problem<D>) -> Self {
         let time = stopping_times(problem);
-        Self { pending: vec![VecDeque::new(); time.len()], time }
+        let laws = if problem.yields() { laws(problem) } else { Vec::new() };
+        Self { pending: vec![VecDeque::new(); time.len()], time, speeds: vec![0.0; laws.len()], laws }
     }
 
-    /// The time τ of a node (s).
+    /// The time τ of a node (s): longer in a material that has yielded under the impact.
     pub(super) fn time(&self, at: usize) -> f64 {
-        self.time[at]
+        let slowing = self.laws.get(at).map_or(1.0, |law| law.slowing(self.speeds[at]));
+        slowing * self.time[at]
+    }
+
+    /// Takes in v_{n−½} of the nodes (m/s), against their obstacles, and the reactions (N): nodes without any approach.
+    pub(super) fn approach(&mut self, problem: &Problem<D>, half_step: &[[f64; D]], reaction: &[[f64; D]]) {
+        let surface = problem.surface();
+        for (at, speed) in self.speeds.iter_mut().enumerate().filter(|(at, _)| reaction[*at] == [0.0; D]) {
+            let frame = problem.obstacles()[surface.nodes()[at].obstacle].flat_frame();
+            *speed = -frame.split(&surface.against_obstacle(at, half_step)).0;
+        }
     }
 
     /// The forces (N) of step n, of which reactions and total accelerations are given, and the nodes that forces of
@@ -74,7 +92,8 @@ impl<const D: usize> ImpulseSmoothing<D> {
         for (k, (contact, force)) in surface.nodes().iter().zip(&mut forces).enumerate() {
             let frame = problem.obstacles()[contact.obstacle].flat_frame();
             let slides = stopped.get(k).copied().flatten();
-            let (pending, time) = (&mut self.pending[k], slides.map_or(self.time[k], |stopped| stopped.time));
+            let time = slides.map_or_else(|| self.time(k), |stopped| stopped.time);
+            let pending = &mut self.pending[k];
             let (normal, _) = frame.split(force);
             if normal > 0.0 && step < time {
                 let stopped = slides.map_or_else(
@@ -94,23 +113,32 @@ impl<const D: usize> ImpulseSmoothing<D> {
                 );
                 let share = (stopped / normal).min(1.0);
                 if share > NEGLIGIBLE {
-                    pending.push_back(Pending { start: now, impulse: force.map(|f| share * f * length) });
+                    pending.push_back(Pending { start: now, time, impulse: force.map(|f| share * f * length) });
                     *force = force.map(|f| (1.0 - share) * f);
                 }
             }
             for one in pending.iter_mut() {
-                let part = part(1.0 - (now - one.start) / time, step / time, length / step);
+                let part = part(1.0 - (now - one.start) / one.time, step / one.time, length / step);
                 for c in 0..D {
                     force[c] += part * one.impulse[c] / length;
                     one.impulse[c] -= part * one.impulse[c];
                 }
             }
-            while pending.front().is_some_and(|one| one.start + time <= now + step) {
-                pending.pop_front();
-            }
+            pending.retain(|one| one.start + one.time > now + step);
         }
         forces
     }
+}
+
+/// The law at each node of the contact surface: that of a face there.
+fn laws<const D: usize>(problem: &Problem<D>) -> Vec<VonMises> {
+    let (mesh, surface) = (problem.mesh(), problem.surface());
+    let mut laws = vec![VonMises::new(&problem.materials()[0]); surface.nodes().len()];
+    for face in surface.faces() {
+        let law = VonMises::new(problem.material(mesh.face(face.face).owner));
+        face.nodes.iter().for_each(|&k| laws[k] = law);
+    }
+    laws
 }
 
 /// The part of the acceleration of a node at two planes that the reaction of the first one causes, along its normal, if

@@ -21,6 +21,7 @@ use crate::error::EstimateError;
 use crate::kinematic::ContactMotion;
 use crate::nodal_field::FieldPool;
 use crate::options::{Ablation, Acceleration, Options};
+use crate::plastic::eigenstrains;
 use crate::pool::Pool;
 use crate::residual::worse;
 use crate::smoothing::{SmoothedStrains, Smoothing};
@@ -184,7 +185,8 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             skew: pool.copy(&skew_acceleration::<D, N>(problem, inverse_mass, &acceleration, &displacement)),
         });
         let (inertia, densities) = (KnownInertia::Acceleration(acceleration), Some(densities));
-        BalancedFields { displacement, inertia, contact, densities, split, smoothed: false }
+        let plastic = eigenstrains(problem, step.internal);
+        BalancedFields { displacement, inertia, contact, densities, split, smoothed: false, plastic }
     }
 
     fn around<'a>(&self, gap: &'a [f64], couplings: &'a [Arc<Coupling>]) -> SurfaceInstant<'a, D> {
@@ -339,7 +341,10 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let acceleration = |node| state.acceleration_of(node);
         let stopped = self.non_matching.stopped(&couplings, acceleration);
         let mut contact = match &mut self.impulse_smoothing {
-            Some(smoothing) => smoothing.advance(problem, self.times, step.index, &arresting, acceleration, &stopped),
+            Some(smoothing) => {
+                smoothing.approach(problem, state.half_step(), &arresting);
+                smoothing.advance(problem, self.times, step.index, &arresting, acceleration, &stopped)
+            }
             None => arresting.clone(),
         };
         [&mut arresting, &mut contact].into_iter().for_each(|forces| self.non_matching.gather(&couplings, forces));
@@ -366,10 +371,10 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let (velocity, strain, reaction) = (simulated.velocity, state.strain(), step.reaction());
         let simulated = SimulatedLevel { velocity, strain, reaction };
         auxiliary.advance(dynamics, step.index, &simulated, &pull, level);
-        let smoothed = auxiliary.smooths();
+        let (smoothed, plastic) = (auxiliary.smooths(), auxiliary.eigenstrains().cloned());
         self.auxiliary = Some(auxiliary);
         let (inertia, densities) = (KnownInertia::Acceleration(acceleration), Some(densities));
-        BalancedFields { displacement, inertia, contact, densities, split, smoothed }
+        BalancedFields { displacement, inertia, contact, densities, split, smoothed, plastic }
     }
 
     fn differ(&mut self, simulated: [&[[f64; D]]; 2]) {
@@ -438,8 +443,7 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         let smoothed = forces.iter().any(|forces| forces.level.smoothed);
         self.strains.lend(SmoothedStrains::default, |strains| {
             if smoothed {
-                let fields: Vec<_> = forces.iter().map(|f| (&f.level.displacement[..], f.level.smoothed)).collect();
-                equilibration.fill_strains(&self.smoothing, &fields, strains);
+                equilibration.fill_strains(&self.smoothing, &forces, strains);
             }
             let strains = smoothed.then_some((&*strains, &*self.smoothing));
             let Some(minimisation) = &self.minimisation else {

@@ -18,11 +18,11 @@ fn problem(mesh: &Mesh) -> Problem<2> {
 fn compared((coarse, own): (&Mesh, &Fields), (fine, reference): (&Mesh, &Fields), located: bool) -> TrueErrorSample {
     let (coarse, fine) = (problem(coarse), problem(fine));
     let [displacement, velocity] = own.clone().map(|field| vec![field.into_flattened()]);
-    let motion = Motion { times: vec![0.0], displacement, velocity };
+    let motion = Motion { times: vec![0.0], displacement, velocity, ..Motion::default() };
     let mut comparison = Finer { problem: &fine, coarse: Vec::new(), before: None };
     comparison.add(ProblemRef::from(&coarse), &motion, !located).unwrap();
     let [displacement, velocity] = reference.clone();
-    let now = Instant { time: 0.0, displacement, velocity };
+    let now = Instant { time: 0.0, displacement, velocity, internal: Vec::new() };
     comparison.coarse[0].sample(&fine, &now, &now, 1.0)
 }
 

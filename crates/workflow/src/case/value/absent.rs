@@ -8,9 +8,9 @@ pub(super) fn absent(key: &str, table: &str) -> Option<&'static str> {
             "percute has no damping: only contact, friction and supports take energy, and the estimate has the rest; \
              leave it out"
         }
-        "hardening" | "hardening_modulus" | "tangent_modulus" | "plasticity" | "ultimate_stress" => {
-            "percute has no plasticity: the law is linear; `yield_stress` (Pa) says where and when the stress is above \
-             it; leave the rest out"
+        "hardening_modulus" | "tangent_modulus" | "plasticity" | "ultimate_stress" => {
+            "a material yields with a `yield_stress` (Pa) and linear hardening: `tangent` (Pa), the slope of the uniaxial \
+             curve beyond it, or `hardening` (Pa), its slope over the plastic strain"
         }
         "velocity" if of_obstacle => {
             "planes do not move: subtract the velocity of the plane from that of the bodies, in [initial]; a plane \

@@ -91,6 +91,8 @@ pub struct Shares {
     pub kinetic: f64,
     /// The elastic part: misfit of Hooke's law.
     pub elastic: f64,
+    /// The plastic part: misfit of hardening and of dissipation; 0 where no material yields.
+    pub dissipation: f64,
 }
 
 impl Verdict {
@@ -137,5 +139,10 @@ fn within(rule: &Rule) -> bool {
 fn shares(parts: &Parts) -> Shares {
     let total = parts.total();
     let share = |part: f64| if total > 0.0 { part / total } else { 0.0 };
-    Shares { contact: share(parts.contact), kinetic: share(parts.kinetic), elastic: share(parts.elastic) }
+    Shares {
+        contact: share(parts.contact),
+        kinetic: share(parts.kinetic),
+        elastic: share(parts.elastic),
+        dissipation: share(parts.dissipation),
+    }
 }

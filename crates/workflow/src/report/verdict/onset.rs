@@ -91,7 +91,7 @@ fn velocity_jumps(problem: &AnyProblem) -> bool {
     // A triangle is at least as high as the inverse of the largest gradient of its shape functions.
     let change = |element: ElementId| {
         let squares = mesh.gradients(element).into_iter().map(|g| g.iter().map(|x| x * x).sum::<f64>());
-        let rate = largest(ElementState::new(problem, element, velocity).strain.as_flattened());
+        let rate = largest(ElementState::new(problem, element, velocity, &[]).strain.as_flattened());
         rate / squares.fold(0.0, f64::max).sqrt()
     };
     whole > 0.0 && (0..mesh.element_count()).map(ElementId::new).any(|element| change(element) > OF_RANGE * whole)
@@ -101,8 +101,9 @@ fn velocity_jumps(problem: &AnyProblem) -> bool {
 fn is_strained(problem: &AnyProblem) -> bool {
     let (mesh, displacement) = (problem.mesh(), problem.initial_displacement());
     let limit = ROUNDING * largest(displacement) / mesh.size();
-    let strained =
-        |element: ElementId| largest(ElementState::new(problem, element, displacement).strain.as_flattened()) > limit;
+    let strained = |element: ElementId| {
+        largest(ElementState::new(problem, element, displacement, &[]).strain.as_flattened()) > limit
+    };
     limit > 0.0 && (0..mesh.element_count()).map(ElementId::new).any(strained)
 }
 

@@ -38,7 +38,7 @@ const SETTLED: f64 = 3.0;
 const ACUTE: f64 = 59.9;
 
 /// The rules in their order.
-pub(super) const RULES: [Rule; 31] = [
+pub(super) const RULES: [Rule; 33] = [
     // effectivity.csv, effectivity-steps.csv, bar-maps.csv, ablation-slide: on very fine bars `consistent` and
     // `published` fall to a quarter.
     Rule {
@@ -55,6 +55,20 @@ pub(super) const RULES: [Rule; 31] = [
     },
     // See `report/flat.rs`; studies/flat_elements.py.
     Rule { applies: |f| f.flat, range: [0.95, 10.0], situation: "meshes with nearly flat elements", reason: None },
+    // docs/plasticity.md, studies/yielding.
+    Rule {
+        applies: |f| f.linearity.yielded.is_some() && f.dimension == 1,
+        range: [0.6, 1.6],
+        situation: "bars that yield",
+        reason: None,
+    },
+    // docs/plasticity.md, studies/random_bodies, yielding.
+    Rule {
+        applies: |f| f.linearity.yielded.is_some(),
+        range: [0.7, 1.8],
+        situation: "bodies that yield",
+        reason: None,
+    },
     // docs/finite.md, studies/turning_blocks, and studies/random_bodies, turning: 0.94 to 1.47 on edges, up to 2.2 with
     // few elements or ν = 0.49.
     Rule {

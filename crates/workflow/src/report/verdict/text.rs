@@ -146,15 +146,19 @@ fn situation(facts: &Facts, rule: &Rule, outside_tested_range: &[String]) -> Str
 
 fn place(facts: &Facts, shares: Shares) -> String {
     let [contact, kinetic, elastic] = [shares.contact, shares.kinetic, shares.elastic].map(whole_percent);
+    let elastic = match shares.dissipation {
+        0.0 => format!("{elastic} elastic"),
+        dissipation => format!("{elastic} elastic, {} dissipation", whole_percent(dissipation)),
+    };
     if facts.contact.touches == Touches::None {
         // Contact forces that only pull.
         let contact = if shares.contact < LEAST { String::new() } else { format!("{contact} contact, ") };
-        return format!("The squared largest error is {contact}{kinetic} kinetic, {elastic} elastic.");
+        return format!("The squared largest error is {contact}{kinetic} kinetic, {elastic}.");
     }
     let near = whole_percent(facts.at_contact);
     format!(
         "{near} of the squared mean error lies in elements at the contact; the squared largest error is {contact} \
-         contact, {kinetic} kinetic, {elastic} elastic."
+         contact, {kinetic} kinetic, {elastic}."
     )
 }
 

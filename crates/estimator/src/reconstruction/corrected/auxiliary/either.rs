@@ -4,6 +4,7 @@ use super::finite::FiniteAuxiliary;
 use super::{AuxiliaryLevel, AuxiliarySolutions, EnergyBalance, Foreseen, Shares, SimulatedLevel};
 use crate::difference::Difference;
 use crate::element::Element;
+use crate::plastic::EigenStrains;
 use crate::reconstruction::corrected::present_stars::PresentStars;
 use crate::smoothing::Smoothing;
 use percute_core::dynamics::Dynamics;
@@ -94,7 +95,15 @@ impl<'p, const D: usize, const N: usize> Auxiliary<'p, D, N> {
     /// The differences at all levels so far: those that were measured.
     pub(in crate::reconstruction::corrected) fn differences(&self) -> Option<&[Difference]> {
         match self {
-            Self::Small(own) => Some(own.differences()),
+            Self::Small(own) => own.differences(),
+            Self::Finite(_) => None,
+        }
+    }
+
+    /// ε* of all elements at the level that has begun, where a material yields.
+    pub(in crate::reconstruction::corrected) fn eigenstrains(&self) -> Option<&EigenStrains> {
+        match self {
+            Self::Small(own) => own.eigenstrains(),
             Self::Finite(_) => None,
         }
     }

@@ -43,6 +43,7 @@ mod pairs;
 mod parts;
 mod pass;
 mod patch;
+mod plastic;
 mod response;
 mod stability;
 mod surface;
@@ -53,6 +54,7 @@ mod weights;
 
 use crate::difference::Difference;
 use crate::element::Element;
+use crate::plastic::EigenStrains;
 use crate::smoothing::Smoothing;
 pub(super) use approach::{Approach, Foreseen, FreeFlight, Mobility};
 use approach::{BeforePass, ContactElements};
@@ -70,6 +72,7 @@ use percute_core::dynamics::Dynamics;
 use percute_core::problem::Problem;
 use percute_core::simd::run_task;
 use percute_core::time::TimeGrid;
+use plastic::PlasticStrains;
 use std::sync::Arc;
 use surface::SurfaceForces;
 pub(super) use weights::Shares;
@@ -93,8 +96,9 @@ pub(super) struct AuxiliarySolutions<'p, const D: usize, const N: usize> {
     weights: Weights,
     energies: Option<Energies<'p, D, N>>,
     fields: MotionFields,
-    /// F_n (N); empty without loads.
+    /// F_n and the forces of plastic strains (N); empty without both.
     external: Vec<[f64; D]>,
+    plastic: Option<PlasticStrains<D, N>>,
     /// The step that has to be made from `displacement` before it is that of the present level (s).
     due: f64,
     energy_balance: EnergyBalance<D>,
@@ -219,7 +223,11 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
             weights: Weights::new(&smoothing, shares),
             smoothing,
             energies: None,
-            external: if problem.is_loaded() { vec![[0.0; D]; problem.mesh().node_count()] } else { Vec::new() },
+            external: match problem.is_loaded() || problem.yields() {
+                true => vec![[0.0; D]; problem.mesh().node_count()],
+                false => Vec::new(),
+            },
+            plastic: None,
             due: 0.0,
             energy_balance: EnergyBalance::new(problem),
             differences: Vec::new(),
@@ -229,7 +237,8 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
     /// Prepares the energies of differences, and makes sure that the scheme is stable.
     pub(super) fn prepare(&mut self, elements: &[Element<D, N>]) {
         self.stabilise();
-        self.energies = Some(Energies::new(self.problem, elements));
+        self.plastic = PlasticStrains::new(self.problem, elements);
+        self.energies = self.plastic.is_none().then(|| Energies::new(self.problem, elements));
     }
 
     /// Takes in the loads and supports of a level. Levels come in order.
@@ -239,6 +248,11 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
         }
         self.surface.hold(dynamics, n);
         self.weights.begin(self.times, n);
+        let (smooths, of) = (self.smooths(), (self.problem, &*self.smoothing));
+        if let Some(plastic) = &mut self.plastic {
+            let MotionFields { displacement, half_step, .. } = &self.fields;
+            plastic.advance(of, (displacement, half_step, self.due), smooths, &mut self.external);
+        }
     }
 
     /// Whether strains are smoothed at the level that has begun.
@@ -325,9 +339,15 @@ impl<'p, const D: usize, const N: usize> AuxiliarySolutions<'p, D, N> {
         }
     }
 
-    /// The differences at all levels so far: those that were measured.
-    pub(super) fn differences(&self) -> &[Difference] {
-        &self.differences
+    /// The differences at all levels so far: those that were measured. None where a material yields: the energies of
+    /// differences are elastic ones.
+    pub(super) fn differences(&self) -> Option<&[Difference]> {
+        self.energies.as_ref().map(|_| &self.differences[..])
+    }
+
+    /// ε* of all elements at the level that has begun, where a material yields.
+    pub(super) fn eigenstrains(&self) -> Option<&EigenStrains> {
+        self.plastic.as_ref().map(PlasticStrains::eigenstrains)
     }
 
     /// The energies of the simulation and of this motion.

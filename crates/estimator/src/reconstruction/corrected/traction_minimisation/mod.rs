@@ -24,6 +24,7 @@ use crate::deformation::Deformation;
 use crate::element::Element;
 use crate::measure::{BalanceFields, BalanceNode, ElementMeasure};
 use crate::options::Acceleration;
+use crate::plastic::take_off;
 use crate::pool::Pool;
 use crate::stress::EnergyForms;
 use crate::time_level::ForcesKnown;
@@ -316,7 +317,8 @@ impl<const D: usize, const N: usize> Slopes<'_, D, N> {
                 let form = forms.of(problem, id, &BalanceNode::points(&nodes), lane);
                 let measure = ElementMeasure::of_nodes((problem, element, id), self.choice, &nodes);
                 let balance = fields.nodal_balance(like, e - start, levels, id, &nodes);
-                let gradient = element.gradient(&BalanceNode::displacements(like, &nodes));
+                let mut gradient = element.gradient(&BalanceNode::displacements(like, &nodes));
+                take_off(&mut gradient, levels.forces().iter().map(|forces| forces.level.plastic.as_ref()), e);
                 let [stress, _] = measure.stress_and_strain(&gradient);
                 let mut slope = moment_slope(&measure, &form, &balance, &stress);
                 if self.present.is_some() {

@@ -1,0 +1,138 @@
+//! Plastic strain in the estimate: that of elements at a level, and the memory of an element.
+//!
+//! ε* of a plastic strain is the strain in the plane with σ = K(ε − ε*). Formulas of linear elasticity serve where ε* is
+//! taken off a strain first.
+
+use percute_core::material::{Elastic, Tensor, VonMises};
+use percute_core::problem::Problem;
+use percute_core::simd::lanes::{Lanes, Value};
+
+/// ε* of all elements, as xx, yy and xy.
+pub(crate) type EigenStrains = Vec<[f64; 3]>;
+
+/// ε* of the internal variables of all elements, in rows; none where no material yields.
+pub(crate) fn eigenstrains<const D: usize>(problem: &Problem<D>, internal: &[f64]) -> Option<EigenStrains> {
+    if !problem.yields() || internal.is_empty() {
+        return None;
+    }
+    let laws: Vec<VonMises> = problem.materials().iter().map(VonMises::new).collect();
+    let rows = internal.chunks_exact(VonMises::count(D)).zip(problem.element_material());
+    Some(rows.map(|(row, &law)| components(&laws[usize::from(law)].eigenstrain::<f64, D>(row))).collect())
+}
+
+/// The components of a symmetric tensor.
+pub(crate) fn components<const D: usize>(tensor: &Tensor<D>) -> [f64; 3] {
+    [tensor[0][0], tensor[D - 1][D - 1], tensor[0][D - 1]]
+}
+
+/// The symmetric tensor with these components.
+pub(crate) fn tensor<const D: usize>([xx, yy, xy]: [f64; 3]) -> Tensor<D> {
+    std::array::from_fn(|a| std::array::from_fn(|b| if a != b { xy } else { [xx, yy][a] }))
+}
+
+/// Takes ε* of an element at some levels side by side off a displacement gradient.
+#[inline(always)]
+pub(crate) fn take_off<'l, T: Value<Stored = Lanes>, const D: usize>(
+    gradient: &mut [[T; D]; D],
+    levels: impl Iterator<Item = Option<&'l EigenStrains>>,
+    element: usize,
+) {
+    let mut lanes: Option<[Lanes; 3]> = None;
+    for (lane, strains) in levels.enumerate() {
+        if let Some(strains) = strains {
+            let all = lanes.get_or_insert([Lanes::ZERO; 3]);
+            (0..3).for_each(|c| all[c].0[lane] = strains[element][c]);
+        }
+    }
+    let Some(lanes) = lanes else { return };
+    for a in 0..D {
+        for b in 0..D {
+            gradient[a][b] -= gradient[a][b].load(&lanes[if a != b { 2 } else { a }]);
+        }
+    }
+}
+
+/// The plastic part of an element in η at a sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlasticPart<const D: usize, T = f64> {
+    /// ε* of σ_CA.
+    pub(crate) eigenstrain: [[T; D]; D],
+    /// The distance of the hardening of both fields, and the misfit of the flow of CA so far (J).
+    pub(crate) energy: T,
+}
+
+impl<const D: usize> Default for PlasticPart<D> {
+    fn default() -> Self {
+        Self { eigenstrain: [[0.0; D]; D], energy: 0.0 }
+    }
+}
+
+impl<const D: usize> PlasticPart<D> {
+    /// Half way between two instants.
+    pub(crate) fn middle(a: &Self, b: &Self) -> Self {
+        let mean = |a: f64, b: f64| 0.5 * (a + b);
+        Self {
+            eigenstrain: std::array::from_fn(|i| {
+                std::array::from_fn(|j| mean(a.eigenstrain[i][j], b.eigenstrain[i][j]))
+            }),
+            energy: mean(a.energy, b.energy),
+        }
+    }
+}
+
+impl<const D: usize> PlasticPart<D, Lanes> {
+    /// Of no plastic strain.
+    pub(crate) fn rest() -> Self {
+        Self { eigenstrain: [[Lanes::ZERO; D]; D], energy: Lanes::ZERO }
+    }
+
+    /// Sets that of a level.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, lane: usize, part: &PlasticPart<D>) {
+        for (to, from) in self.eigenstrain.as_flattened_mut().iter_mut().zip(part.eigenstrain.as_flattened()) {
+            to.0[lane] = *from;
+        }
+        self.energy.0[lane] = part.energy;
+    }
+
+    /// In the form of a number.
+    #[inline(always)]
+    pub(crate) fn load<T: Value<Stored = Lanes>>(&self, like: T) -> PlasticPart<D, T> {
+        let mut eigenstrain = [[like; D]; D];
+        for a in 0..D {
+            (0..D).for_each(|b| eigenstrain[a][b] = like.load(&self.eigenstrain[a][b]));
+        }
+        PlasticPart { eigenstrain, energy: like.load(&self.energy) }
+    }
+}
+
+/// The memory of an element: the internal variables of both fields, and the misfit of the flow of CA.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PlasticMemory<const D: usize> {
+    kinematic: [f64; 4],
+    dynamic: [f64; 4],
+    /// ∫φ(Ė_CA) − Σ_DA·Ė_CA dt (J).
+    misfit: f64,
+    /// The part at the last sample.
+    pub(crate) last: PlasticPart<D>,
+}
+
+impl<const D: usize> PlasticMemory<D> {
+    /// Goes on to a sample with this gradient of u_CA and this mean of σ_DA (Pa): the law takes CA to its strain, the
+    /// inverse law DA to its stress, and the flow of CA is measured under the forces of DA at the end of the interval.
+    pub(crate) fn advance(&mut self, law: &Elastic, volume: f64, gradient: &Tensor<D>, stress: &Tensor<D>) {
+        let (law, count) = (VonMises::new(law), VonMises::count(D));
+        if !law.yields() {
+            return;
+        }
+        let (kinematic, dynamic) = (&mut self.kinematic[..count], &mut self.dynamic[..count]);
+        let mut now = [0.0; 4];
+        now[..count].copy_from_slice(kinematic);
+        law.advance(gradient, &mut now[..count]);
+        let forces = law.admit(stress, dynamic);
+        self.misfit += volume * forces.misfit::<D>(kinematic, &now[..count]);
+        kinematic.copy_from_slice(&now[..count]);
+        let distance = volume * law.hardening_distance::<D>(dynamic, kinematic);
+        self.last = PlasticPart { eigenstrain: law.eigenstrain(kinematic), energy: distance + self.misfit };
+    }
+}
