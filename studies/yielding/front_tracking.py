@@ -7,7 +7,8 @@ stress there.
 
 Where a wave of plastic flow reaches an end or another such wave, elastic waves between both run to and fro. If these
 make the bar flow again, there are infinitely many of them in a finite time, and `strike` refuses to go on. With
-isotropic hardening this is rare, with kinematic hardening it is the rule at several times v_y after L/c_p.
+isotropic hardening, up to 15 v_y and with E_t/E from 0.02 to 0.3, this has not occurred within 4 L/c; it does at
+4.7 L/c for 8 v_y and 0.02. With kinematic hardening it is the rule at 3 v_y and more, at the earliest at L/c_p.
 """
 
 from __future__ import annotations
@@ -174,6 +175,7 @@ class _Tracker:
         self._note()
 
     def _note(self) -> None:
+        """Log the present numbers."""
         self.log.append(_Entry(self.time, np.array(self.fronts, dtype=np.intp), np.array(self.regions, dtype=np.intp)))
 
     def _at_plane(self, last: int) -> None:
@@ -216,9 +218,7 @@ class _Tracker:
         while first > 0 and self._edge(first - 2) >= left - TOGETHER:
             first -= 1
         if first <= 0:
-            if closing <= now:
-                self.gap, self.since = 0.0, now
-                self.touching = True
+            self.touching |= closing <= now
             self._at_plane(last)
         elif last == len(self.fronts):
             self._at_free_end(first)
@@ -375,7 +375,7 @@ def strike(bar: Bar, speed: float, gap: float, end: float) -> Impact:
             reached = gap / speed + tracker.time * passage
             told = f"`end` is {end:g} s; after {MEETINGS} meetings of waves the solution has come to {reached:g} s only"
             remedy = "give an earlier `end`, a lower `speed`, or less `kinematic` hardening"
-            raise ValueError(f"{told}, where they follow each other without end: {remedy}")
+            raise ValueError(f"{told}, where they may go on without end: {remedy}")
     strain = bar.yield_stress / bar.young
     units = np.array([bar.yield_stress, bar.yield_velocity, strain, strain])
     made = np.array(tracker.made).reshape(-1, 2)
