@@ -38,7 +38,7 @@ class Case:
     def problem(self, mesh: int, refinements: int) -> tuple[pc.Problem, float]:
         """Give the problem on a mesh, and its end (s)."""
         material = pc.Elastic(**(RUBBER if self.name == "rubber" else ALUMINIUM), plane="strain", kinematics="finite", law=self.law)  # type: ignore[arg-type]
-        body = _shape(self.situation, 1 << mesh)
+        body = shape(self.situation, 1 << mesh)
         for _ in range(refinements):
             body = body.refine()
         height = body.points[:, 1].min()
@@ -62,7 +62,7 @@ class Case:
         return found.sup, found.mean, holds(estimate, (found.sup, found.mean))
 
 
-def _shape(situation: str, n: int) -> pc.Mesh:
+def shape(situation: str, n: int) -> pc.Mesh:
     """Make a body of one of the meshes, 4 n cells over its height."""
     if situation == "disc":
         return pc.Mesh.disc(0.5 * SIDE, rings=2 * n)

@@ -100,7 +100,7 @@ def plot_over_time(estimate: ErrorResults, by: str, axes: Axes | None, save: obj
     file = writable("save", save, overwrite)
     one_of("by", by, ("parts", "sources"))
     if by == "sources" and estimate.sources is None:
-        raise InputError('`by` is "sources", but the estimate has none; only the reconstruction "corrected" separates them')
+        raise InputError('`by` is "sources", but the estimate has none; "corrected" separates them, for elastic materials with small strains')
     axes = new_axes(axes, (7.2, 4.0))
     samples = estimate.over_time
     time = samples.time / (seconds := over_time(axes, samples.time))

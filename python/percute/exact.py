@@ -109,6 +109,8 @@ class _Bar(_Exact, Compared):
             If it is a simulation of another one.
         """
         mesh = instance("history", history, History).problem.mesh
+        if history._data.variables:
+            raise InputError("the exact solution is that of an elastic bar, and the material of `history` yields")
         if mesh.dimension != 1:
             raise InputError("`history` is that of a plane body; the exact solution is that of a bar")
         if abs(mesh.size / self.length - 1) > 1e-9:

@@ -43,6 +43,7 @@ STRESSES = {"stress_xx": (0, 0), "stress_yy": (1, 1), "stress_xy": (0, 1)}
 SCALARS = {
     "von_mises": ("von Mises stress", "Pa", FIELD),
     "pressure": ("pressure", "Pa", SIGNED),
+    "equivalent_plastic_strain": ("equivalent plastic strain", "", FIELD),
     "strain_energy": ("strain energy of the element", "J", FIELD),
     "kinetic_energy": ("kinetic energy of the element", "J", FIELD),
 }

@@ -181,7 +181,7 @@ def test_sources_over_time(block_history: pc.History) -> None:
     axes = estimate.plot_over_time("sources")
     drawn = {line.get_label(): line.get_ydata() for line in axes.lines}
     assert np.allclose(drawn["dispersion"], np.sqrt(np.maximum(estimate.sources.over_time.dispersion, 0.0)))  # type: ignore[arg-type]
-    with pytest.raises(pc.InputError, match='only the reconstruction "corrected" separates them'):
+    with pytest.raises(pc.InputError, match='"corrected" separates them, for elastic materials'):
         pc.estimate(block_history, reconstruction="published").plot_over_time("sources")
 
 

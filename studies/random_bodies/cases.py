@@ -15,8 +15,9 @@ from studies.random_bodies.meshes import Integers, NoMesh, Sizes
 from studies.random_bodies.shapes import SHAPES, Floats, Shape
 from studies.random_bodies.velocities import Velocity, smooth
 
-KINDS = ("impact", "vibration", "graded", "turning")
-"""Impacts of any kind; free bodies that vibrate; impacts on meshes that are graded towards the contact; bodies that spin and strike, with finite kinematics."""
+KINDS = ("impact", "vibration", "graded", "turning", "yielding")
+"""Impacts of any kind; free bodies that vibrate; impacts on meshes that are graded towards the contact; bodies that spin and strike, with finite kinematics;
+impacts of metals that yield."""
 MATERIALS: dict[str, tuple[float, float, float]] = {
     "steel": (210e9, 0.3, 7800.0),
     "aluminium": (70e9, 0.33, 2700.0),
@@ -43,6 +44,9 @@ FINITE_LAWS: list[Literal["neo_hookean", "svk", "hencky"]] = ["neo_hookean", "ne
 """The default twice."""
 FINITE = 4.0
 """What a step of a finite law takes over one of small strains."""
+METALS = ("steel", "aluminium", "titanium", "copper")
+SLOWEST_STRAIN = 0.01
+"""Largest speed of a metal that yields over that of waves in a bar: strains stay small."""
 SHORTEST = 0.3
 """Fewest wave passages; a body that takes more work for them is drawn again."""
 
@@ -142,9 +146,9 @@ def body(kind: str, seed: int) -> RandomBody:
     raise AssertionError(f"no mesh of {kind} {seed} in {ATTEMPTS} attempts")
 
 
-def _law(draws: Draws) -> tuple[str, pc.Elastic, float]:
+def _law(draws: Draws, names: Sequence[str] = tuple(MATERIALS)) -> tuple[str, pc.Elastic, float]:
     """Draw a material; give the speed of waves in a bar of it, too (m/s)."""
-    name = draws.one(list(MATERIALS))
+    name = draws.one(list(names))
     young, poisson, density = MATERIALS[name]
     if name == "rubber":
         poisson = draws.uniform(0.45, 0.49)
@@ -194,7 +198,7 @@ def _striking(draws: Draws, seed: int, kind: str) -> RandomBody:
     graded = kind == "graded"
     cells = graded and draws.chance(0.5)
     shape = _shape(draws, OF_CELLS if cells else list(SHAPES))
-    name, law, wave = _law(draws)
+    name, law, wave = _law(draws, METALS if kind == "yielding" else tuple(MATERIALS))
     if kind == "turning":
         law = replace(law, kinematics="finite", law=draws.one(FINITE_LAWS))
     tilt = draws.one([45.0, draws.uniform(1.0, 20.0), draws.uniform(-180.0, 180.0)]) if graded else _tilt(draws)
@@ -210,6 +214,9 @@ def _striking(draws: Draws, seed: int, kind: str) -> RandomBody:
     mesh = _turned(_mesh(draws, shape, mesh_kind, place, grading), tilt)
     free = pc.Problem(mesh, material=law)
     speed = min(draws.log_uniform(0.3, 200.0), FASTEST * wave)
+    if kind == "yielding":
+        speed = min(speed, SLOWEST_STRAIN * wave)
+        law = _yielding(draws, law, law.young * speed / wave)
     # Half of the speed of the fall at the rim, at most.
     spin = draws.uniform(-1.0, 1.0) * speed / mesh.size if kind == "turning" else 0.0
     along = 0.0 if draws.chance(0.6) else draws.uniform(-1.0, 1.0)
@@ -225,6 +232,13 @@ def _striking(draws: Draws, seed: int, kind: str) -> RandomBody:
         raise NoMesh("too much work")
     end = gap / speed + passages * passage
     return RandomBody(kind, seed, shape.name, mesh_kind, mesh, name, law, courant, end, passages, tilt, speed, along, friction, gap, spin=spin)
+
+
+def _yielding(draws: Draws, law: pc.Elastic, stress: float) -> pc.Elastic:
+    """Draw where a metal yields that an impact gives this stress (Pa) in a bar, and how it hardens."""
+    tangent = draws.log_uniform(0.02, 0.3) * law.young
+    kinematic = draws.one([0.0, 0.0, 1.0, draws.uniform(0.0, 1.0)])
+    return replace(law, yield_stress=stress / draws.log_uniform(0.5, 10.0), tangent=tangent, kinematic=kinematic)
 
 
 def _vibrating(draws: Draws, seed: int) -> RandomBody:

@@ -1,7 +1,7 @@
 //! Plastic strain in the estimate: that of elements at a level, and the memory of an element.
 //!
-//! ε* of a plastic strain is the strain in the plane with σ = K(ε − ε*). Formulas of linear elasticity serve where ε* is
-//! taken off a strain first.
+//! ε* of a plastic strain is the strain in the plane with σ = K(ε − ε*). Formulas of linear elasticity serve where ε*
+//! is taken off a strain first.
 
 use percute_core::material::{Elastic, Tensor, VonMises};
 use percute_core::problem::Problem;

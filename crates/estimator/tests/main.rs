@@ -15,3 +15,4 @@ mod sliding_blocks;
 mod table1;
 mod two_blocks;
 mod vibration;
+mod yielding;

@@ -14,8 +14,8 @@ type Numbers = fn(&AnyProblem, ElementId, [&[f64]; 2], &mut Vec<f64>);
 
 /// A quantity of each element at instants: (instants, elements), of one with components (instants, elements,
 /// dimension), of a tensor (instants, elements, dimension, dimension). `nodal` are velocities (m/s) for
-/// `kinetic_energy` and displacements (m) for the others, (instants, nodes, dimension); `internal` the internal variables
-/// of materials that yield, (instants, elements, variables).
+/// `kinetic_energy` and displacements (m) for the others, (instants, nodes, dimension); `internal` are the internal
+/// variables of materials that yield, (instants, elements, variables).
 #[pyfunction]
 pub(crate) fn element_field<'py>(
     py: Python<'py>,
@@ -40,6 +40,11 @@ pub(crate) fn element_field<'py>(
     }
     let (problem, rows) = (problem.clone(), nodal.as_slice()?.to_vec());
     let internal = internal.map_or_else(|| Ok(Vec::new()), |internal| internal.as_slice().map(<[f64]>::to_vec))?;
+    let needed = shape[0] * elements * problem.variables();
+    if internal.len() != needed {
+        let told = format!("{needed} internal variables are needed, and {} are given", internal.len());
+        return Err(errors::input(py, told));
+    }
     let work = move |watch: Watch| over_time(&problem, [&rows, &internal], numbers, watch);
     let values = bridge::blocking(py, None, work)?;
     let shape = [&[shape[0], elements], &[dimension; 2][..order]].concat();

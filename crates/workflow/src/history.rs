@@ -90,6 +90,11 @@ impl Stored {
         let (u, v) = (file.initial_displacement().to_vec(), file.initial_velocity().to_vec());
         let read = problem_from(&source, file.mesh(), u, v);
         let (problem, options) = read.map_err(|error| if backwards(&file) { reversed(error) } else { error })?;
+        if problem.yields() && file.variables() == 0 {
+            let told = "a material of this history yields, but the file has no internal variables \
+                        (`VTKHDF/CellData/plastic`); leave `hardening` out of its statement, or simulate with percute";
+            return Err(Failure::Argument(format!("{name}: {told}")));
+        }
         Ok(Self { file, problem, options, name })
     }
 

@@ -15,7 +15,9 @@ const MARGIN: u64 = 16 << 20;
 #[must_use]
 pub fn of_history(problem: &AnyProblem, times: &TimeGrid) -> u64 {
     let (nodes, contact) = (problem.mesh().node_count(), problem.contact_nodes().len());
-    let instant = (nodes + contact) * problem.dimension() * size_of::<f64>() + contact * size_of::<bool>();
+    let internal = problem.variables() * problem.mesh().element_count();
+    let numbers = (nodes + contact) * problem.dimension() + internal;
+    let instant = numbers * size_of::<f64>() + contact * size_of::<bool>();
     (times.step_count() as u64 + 1).saturating_mul(instant as u64)
 }
 

@@ -170,7 +170,7 @@ impl<'p> Ordered<'p> {
         if let StepError::NotFinite { field, position, .. } = error
             && *field != "reaction"
         {
-            *position = self.node(*position);
+            *position = if *field == "internal" { self.element(*position) } else { self.node(*position) };
         }
     }
 

@@ -7,7 +7,7 @@ use crate::deformation::{Deformation, DeformationRecorder};
 use crate::failure::Failure;
 use crate::leaving::Leaving;
 use crate::memory;
-use crate::numbering::Ordered;
+use crate::numbering::{Fields, Ordered};
 pub use crate::numbering::TakeStep;
 use crate::outline::{LastOutline, Outline};
 use crate::report::Findings;
@@ -375,7 +375,7 @@ pub fn chosen(
         return source.replay(&mut |step| if wanted(step.index) { take(step) } else { Ok(()) });
     }
     let ordered = Ordered::new(problem);
-    let mut sink = ChosenStates { ordered: &ordered, steps, take };
+    let mut sink = ChosenStates { ordered: &ordered, steps, take, fields: Fields::default() };
     replay(ordered.problem(), &ordered.source(source), &mut sink).map_err(|cause| ordered.refused(cause))
 }
 
@@ -384,6 +384,7 @@ struct ChosenStates<'o, 'p, 't, 's> {
     ordered: &'o Ordered<'p>,
     steps: &'o [usize],
     take: &'t mut TakeStep<'s>,
+    fields: Fields,
 }
 
 impl StateSink for ChosenStates<'_, '_, '_, '_> {
@@ -392,10 +393,9 @@ impl StateSink for ChosenStates<'_, '_, '_, '_> {
         if self.steps.binary_search(&step.index).is_err() {
             return Ok(());
         }
-        let displacement = self.ordered.nodal(step.displacement.to_vec());
-        let (velocity, acceleration) = (self.ordered.nodal(state.velocity()), self.ordered.nodal(state.acceleration()));
-        let (velocity, acceleration) = (Some(&velocity[..]), Some(&acceleration[..]));
-        (self.take)(&Step { displacement: &displacement, velocity, acceleration, ..*step })
+        let (velocity, acceleration) = (state.velocity(), state.acceleration());
+        let step = Step { velocity: Some(&velocity), acceleration: Some(&acceleration), ..*step };
+        (self.take)(&self.ordered.stated_step(&step, &mut self.fields))
     }
 }
 

@@ -95,6 +95,7 @@ impl<const D: usize> BalanceKeeper<D> {
         // The works of the next step begin at this state. Those until here are among the sums.
         keeper.advance_works(problem, times, now);
         keeper.numbers().into_iter().zip(sums).for_each(|(number, sum)| *number = *sum);
+        keeper.balance.plastic_work = problem.plastic_work(now.step().internal);
         keeper
     }
 
@@ -108,7 +109,6 @@ impl<const D: usize> BalanceKeeper<D> {
         let Balance {
             kinetic,
             strain,
-            plastic_work,
             initial,
             work_of_loads,
             work_of_supports,
@@ -121,6 +121,8 @@ impl<const D: usize> BalanceKeeper<D> {
             largest_energy,
             largest_impulse_gap,
             largest_impulse,
+            // It follows from the internal variables.
+            plastic_work: _,
         } = balance;
         let [[x, y, z], [initial_x, initial_y, initial_z], [impulse_x, impulse_y, impulse_z]] =
             [momentum, initial_momentum, impulse].map(<[f64; 3]>::each_mut);
@@ -149,7 +151,6 @@ impl<const D: usize> BalanceKeeper<D> {
             impulse_z,
             energy_put_in,
             kick,
-            plastic_work,
         ]
     }
 

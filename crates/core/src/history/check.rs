@@ -70,8 +70,8 @@ pub enum StepError {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StepCheck {
     next: usize,
-    /// Whether step 0 had velocity and acceleration.
-    given: [bool; 2],
+    /// Whether step 0 had velocity, acceleration and internal variables.
+    given: [bool; 3],
 }
 
 impl StepCheck {
@@ -103,7 +103,8 @@ impl StepCheck {
         length(n, "touching", step.touching.len(), surface)?;
         if !step.internal.is_empty() {
             length(n, "internal", step.internal.len(), problem.variables() * problem.mesh().element_count())?;
-            if let Some(position) = step.internal.iter().position(|x| !x.is_finite()) {
+            if let Some(at) = step.internal.iter().position(|x| !x.is_finite()) {
+                let position = at / problem.variables().max(1);
                 return Err(StepError::NotFinite { step: n, field: "internal", position });
             }
         }
@@ -126,8 +127,12 @@ impl StepCheck {
     }
 }
 
-fn optional(step: &Step<'_>) -> [(&'static str, bool); 2] {
-    [("velocity", step.velocity.is_some()), ("acceleration", step.acceleration.is_some())]
+fn optional(step: &Step<'_>) -> [(&'static str, bool); 3] {
+    [
+        ("velocity", step.velocity.is_some()),
+        ("acceleration", step.acceleration.is_some()),
+        ("internal", !step.internal.is_empty()),
+    ]
 }
 
 fn length(step: usize, field: &'static str, given: usize, needed: usize) -> Result<(), StepError> {

@@ -4,7 +4,7 @@
 pub type Sums = [f64; SUMS];
 
 /// Count of the numbers in [`Sums`].
-pub const SUMS: usize = 25;
+pub const SUMS: usize = 24;
 
 /// All that the scheme needs to go on from t_n; forces and contact at t_n follow from it, bit by bit.
 #[derive(Clone, Debug, PartialEq)]

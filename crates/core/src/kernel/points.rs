@@ -443,7 +443,7 @@ mod tests {
     use super::*;
     use crate::ids::ElementId;
     use crate::kernel::Stiffness;
-    use crate::material::{HyperelasticLaw, Kinematics, LinearLaw, Response};
+    use crate::material::{Hardening, HyperelasticLaw, Kinematics, LinearLaw, Response, VonMises};
     use crate::mesh::Mesh;
     use percute_testkit::Random;
 
@@ -523,6 +523,56 @@ mod tests {
         assert!((0.9785..=1.0 + 1e-14).contains(&(found / expected)), "{found} against {expected}");
         assert!(points.is_stable(&problem, &rest, found));
         assert!(!points.is_stable(&problem, &rest, 1.023 * found));
+    }
+
+    /// Eight elements at once have the forces of each alone, where some of them yield and others have no strain at all:
+    /// in plane strain and plane stress, beside an elastic material.
+    #[test]
+    fn elements_yield_side_by_side() {
+        let hardening = Hardening::new(0.5, 0.3).unwrap();
+        for of in [Elastic::plane_strain, Elastic::plane_stress] {
+            let mesh = block([Kinematics::Small; 2]).mesh().clone();
+            let yields = of(7.0, 0.3, 2.0, 1.0).unwrap().with_yield_stress(0.01).unwrap();
+            let law = yields.with_hardening(hardening).unwrap();
+            let elastic = of(3.0, 0.2, 1.0, 1.0).unwrap();
+            let built = Problem::builder(mesh).material_of("soft", law).material_of("hard", elastic).build();
+            let problem = built.unwrap();
+            let laws: Vec<_> = problem.materials().iter().map(VonMises::new).collect();
+            let (points, mut random) = (kernel(&problem, laws.clone()), Random::new(8));
+            let (nodes, elements) = (problem.mesh().node_count(), problem.mesh().element_count());
+            let (mut internal, mut alone) = (vec![0.0; 4 * elements], vec![0.0; 4 * elements]);
+            let mut u = vec![[0.0; 2]; nodes];
+            for instant in 1..4 {
+                // A part of the body that grows moves.
+                for moved in u.iter_mut().take(nodes * instant / 4) {
+                    *moved = [random.between(-0.001, 0.001), random.between(-0.001, 0.001)];
+                }
+                let (mut force, mut expected) = (vec![[0.0; 2]; nodes], vec![[0.0; 2]; nodes]);
+                let energy = points.subtract(&u, &mut internal, &mut force);
+                let mut sum = 0.0;
+                for e in 0..elements {
+                    let id = ElementId::new(e);
+                    let gradient = crate::element_state::displacement_gradient::<2>(problem.mesh(), id, &u);
+                    let law = &laws[usize::from(problem.element_material()[e])];
+                    let (stress, density) = law.respond(&gradient, &mut alone[4 * e..4 * e + 4]);
+                    sum += problem.volume(id) * density;
+                    for (node, slope) in problem.mesh().cell(id).iter().zip(problem.mesh().gradients_in::<2>(id)) {
+                        for a in 0..2 {
+                            (0..2).for_each(|b| {
+                                expected[node.index()][a] -= problem.volume(id) * stress[a][b] * slope[b];
+                            });
+                        }
+                    }
+                }
+                let scale = expected.iter().flatten().fold(0.0_f64, |most, f| most.max(f.abs()));
+                assert!((energy / sum - 1.0).abs() < 1e-13, "{energy} for {sum}");
+                for (found, expected) in force.iter().flatten().zip(expected.iter().flatten()) {
+                    assert!((found - expected).abs() < 1e-13 * scale, "{found} for {expected}, scale {scale}");
+                }
+            }
+            assert!(alone.iter().filter(|x| **x != 0.0).count() > elements && alone.contains(&0.0));
+            assert!(internal.iter().zip(&alone).all(|(a, b)| (a - b).abs() < 1e-14));
+        }
     }
 
     /// A law with two internal variables: the number of instants, and the largest trace of H, which softens it.

@@ -1,8 +1,8 @@
 //! Isotropic linear elasticity in 1D and 2D, eq. \[9\].
 
+use super::hardening::Hardening;
 use super::hyperelastic::{HyperelasticLaw, Moduli, Response, dilatation, green_strain, present_stress, volume_ratio};
 use super::stability::{bound, excess};
-use super::von_mises::Hardening;
 use super::{Kinematics, Law, LinearLaw, MaterialError, PointLaw, Tensor, contract, require, symmetric};
 use crate::simd::lanes::Value;
 
@@ -125,7 +125,7 @@ impl Elastic {
     /// law. [`Law`] of this material gives the stress of its elastic strain.
     ///
     /// # Errors
-    /// No yield stress, or finite kinematics.
+    /// No yield stress.
     pub fn with_hardening(self, hardening: Hardening) -> Result<Self, MaterialError> {
         let missing = "given: a material that hardens has a yield stress";
         require(self.yield_stress.is_some(), "yield_stress", 0.0, "Pa", missing)?;

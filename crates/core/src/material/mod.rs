@@ -3,6 +3,7 @@
 //! A sweep over elements is generic over the law. Nothing is dispatched at run time.
 
 mod elastic;
+mod hardening;
 mod hyperelastic;
 mod kinematics;
 mod metric;
@@ -10,10 +11,11 @@ mod stability;
 mod von_mises;
 
 pub use elastic::{Elastic, Hypothesis};
+pub use hardening::Hardening;
 pub use hyperelastic::{HyperelasticLaw, Response, first_stress, green_strain, volume_ratio};
 pub use kinematics::Kinematics;
 pub use metric::StressMetric;
-pub use von_mises::{FlowForces, FourComponents, Hardening, PlasticState, VonMises};
+pub use von_mises::{FlowForces, FourComponents, PlasticState, VonMises};
 
 use crate::simd::lanes::Value;
 use thiserror::Error;

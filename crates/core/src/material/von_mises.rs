@@ -7,7 +7,7 @@
 
 use super::elastic::{Elastic, Hypothesis};
 use super::hyperelastic::Response;
-use super::{Law, LinearLaw, MaterialError, PointLaw, Tensor, require};
+use super::{Law, LinearLaw, MOST_VARIABLES, PointLaw, Tensor};
 use crate::simd::lanes::Value;
 
 /// A point flows where f is above this part of its yield stress σ_y + R: more than the rounding of f, so that the same
@@ -17,85 +17,6 @@ const FLOWS: f64 = 1e-12;
 const STEPS: usize = 5;
 /// Newton steps for σ_zz of the inverse law.
 const ACROSS: usize = 8;
-
-/// The growth of the elastic range.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hardening {
-    /// H = H_i + C (Pa): the slope of the uniaxial stress over the plastic strain.
-    modulus: f64,
-    /// C/H.
-    kinematic: f64,
-}
-
-impl Hardening {
-    /// Of a modulus H (Pa) and the share of it that is kinematic.
-    ///
-    /// # Errors
-    /// A modulus that is not positive, or a share outside of 0 to 1.
-    pub fn new(modulus: f64, kinematic: f64) -> Result<Self, MaterialError> {
-        require(modulus > 0.0, "hardening", modulus, "Pa", "positive")?;
-        require((0.0..=1.0).contains(&kinematic), "kinematic", kinematic, "(no unit)", "from 0 to 1")?;
-        Ok(Self { modulus, kinematic })
-    }
-
-    /// Of the slope E_t of the uniaxial stress over the strain (Pa): H = E E_t/(E − E_t).
-    ///
-    /// # Errors
-    /// A slope that is not between 0 and Young's modulus (Pa), or a share outside of 0 to 1.
-    pub fn of_tangent(young: f64, tangent: f64, kinematic: f64) -> Result<Self, MaterialError> {
-        require(tangent > 0.0 && tangent < young, "tangent", tangent, "Pa", "above 0 and below `young`")?;
-        Self::new(young * tangent / (young - tangent), kinematic)
-    }
-
-    /// Of the values that are stated beside a yield stress (Pa), if any: E_t or H (Pa), and the kinematic share, 0 by
-    /// default.
-    ///
-    /// # Errors
-    /// A value out of range, both moduli, or one value without those that it needs.
-    pub fn stated(
-        young: f64,
-        yield_stress: Option<f64>,
-        [tangent, hardening, kinematic]: [Option<f64>; 3],
-    ) -> Result<Option<Self>, MaterialError> {
-        let share = kinematic.unwrap_or(0.0);
-        let made = match (tangent, hardening, kinematic) {
-            (Some(tangent), Some(_), _) => {
-                let allowed = "left out where `hardening` is given: H = E E_t/(E - E_t) follows from one of them";
-                return Err(MaterialError { name: "tangent", value: tangent, unit: "Pa", allowed });
-            }
-            (None, None, Some(share)) => {
-                let allowed = "given with `tangent` or `hardening` (Pa), of which it is a share";
-                return Err(MaterialError { name: "kinematic", value: share, unit: "(no unit)", allowed });
-            }
-            (Some(tangent), None, _) => Self::of_tangent(young, tangent, share)?,
-            (None, Some(modulus), _) => Self::new(modulus, share)?,
-            (None, None, None) => return Ok(None),
-        };
-        let (name, value) =
-            if let Some(tangent) = tangent { ("tangent", tangent) } else { ("hardening", made.modulus) };
-        let allowed = "given with a `yield_stress` (Pa), from which on the material hardens";
-        require(yield_stress.is_some(), name, value, "Pa", allowed)?;
-        Ok(Some(made))
-    }
-
-    /// H (Pa).
-    #[must_use]
-    pub fn modulus(&self) -> f64 {
-        self.modulus
-    }
-
-    /// The share of it that is kinematic, C/H.
-    #[must_use]
-    pub fn kinematic(&self) -> f64 {
-        self.kinematic
-    }
-
-    /// E_t = E H/(E + H) of a material with this Young's modulus (Pa).
-    #[must_use]
-    pub fn tangent(&self, young: f64) -> f64 {
-        young * self.modulus / (young + self.modulus)
-    }
-}
 
 /// The law of a material that may yield; one without hardening never does.
 #[derive(Clone, Copy, Debug)]
@@ -198,8 +119,8 @@ impl VonMises {
         let (lambda, shear) = elastic.moduli();
         let (yield_stress, isotropic, kinematic) = match (elastic.hardening(), elastic.yield_stress()) {
             (Some(hardening), Some(yield_stress)) => {
-                let kinematic = hardening.modulus * hardening.kinematic;
-                (yield_stress, hardening.modulus - kinematic, kinematic)
+                let kinematic = hardening.modulus() * hardening.kinematic();
+                (yield_stress, hardening.modulus() - kinematic, kinematic)
             }
             // Times p = 0 it is still a number.
             _ => (f64::MAX, 0.0, 0.0),
@@ -210,8 +131,8 @@ impl VonMises {
     }
 
     /// How much longer than in an elastic body an impact at this speed (m/s) takes to stop a depth of the material:
-    /// ρcv over the stress of the impact, ρcv up to the yield speed v_y, ρcv_y + ρc_p(v − v_y) beyond. v_y and the speed
-    /// c_p of plastic waves are those of a plane wave.
+    /// ρcv over the stress of the impact: ρcv up to the yield speed v_y, ρcv_y + ρc_p(v − v_y) beyond. v_y and the
+    /// speed c_p of plastic waves are those of a plane wave in plane strain, and of a bar otherwise.
     #[must_use]
     pub fn slowing(&self, speed: f64) -> f64 {
         if !self.yields() {
@@ -385,7 +306,7 @@ impl VonMises {
         let back = self.kinematic / 1.5;
         let slopes = [self.young / (3.0 * (1.0 - self.poisson)) + back, 2.0 * self.shear + back];
         let [xx, yy, _, xy] = xi.0;
-        // Of the relative stress in the plane, η = ξ + tr ξ 1: η_xx + η_yy = 3 (ξ_xx + ξ_yy), differences are those of ξ.
+        // Of the relative stress in the plane, η = ξ + tr ξ 1, the sum is three times that of ξ.
         let (sum, difference) = ((xx + yy) * 3.0, xx - yy);
         let squares = [sum * sum * 0.25, difference * difference * 0.75 + xy * xy * 3.0];
         let one = range.fill(1.0);
@@ -409,7 +330,8 @@ impl VonMises {
             let ratio = range / q;
             let slope = ratio * (parts[0] * f[0] * slopes[0] + parts[1] * f[1] * slopes[1]) / (q * q);
             let g = ratio - one + gamma * (self.isotropic / 1.5);
-            gamma = (gamma - g / (slope + one * (self.isotropic / 1.5))).max(one.zero());
+            // A point without relative stress has no slope: its step is not a number, which the larger of both ignores.
+            gamma = one.zero().max(gamma - g / (slope + one * (self.isotropic / 1.5)));
         }
         let gamma = one.zero().replaced_where(excess, |excess| excess > 0.0, |_| 1.0) * gamma;
         let (sum, difference) = (sum * factors[0] * (1.0 / 6.0), difference * factors[1] * 0.5);
@@ -420,8 +342,8 @@ impl VonMises {
     }
 
     /// The inverse law: takes the internal variables to the nearest ones, along the normal, whose elastic range has a
-    /// stress in the plane (Pa). In plane strain σ_zz is free: it makes the sum of the energies of its distance from the
-    /// elastic one and of the flow least. Gives the forces on the flow.
+    /// stress in the plane (Pa). In plane strain σ_zz is free: it makes the sum of the energies of the flow and of its
+    /// distance from the elastic one least. Gives the forces on the flow.
     #[must_use]
     pub fn admit<const D: usize>(&self, stress: &Tensor<D>, internal: &mut [f64]) -> FlowForces {
         let (plastic, p) = Self::plastic_strain::<f64, D>(internal);
@@ -466,7 +388,8 @@ impl VonMises {
     /// ½ of the square of the distance of the forces X and R of two points (J/m³): ⅓ C |Δε_p|² + ½ H_i Δp².
     #[must_use]
     pub fn hardening_distance<const D: usize>(&self, a: &[f64], b: &[f64]) -> f64 {
-        let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+        let difference: [f64; MOST_VARIABLES] =
+            std::array::from_fn(|k| if k < Self::count(D) { a[k] - b[k] } else { 0.0 });
         self.plastic_energies::<f64, D>(&difference)[0]
     }
 
@@ -532,6 +455,7 @@ impl PointLaw for VonMises {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::Hardening;
     use percute_testkit::Random;
 
     /// Bar, plane strain and plane stress with isotropic, kinematic and mixed hardening, E = 1 and σ_y = 0.004.

@@ -3,8 +3,9 @@
 use crate::solution::run::aluminium;
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::{Simulation, replay, resume, simulate};
-use percute_core::history::{Checkpoint, History, SinkError, State, StateSink};
+use percute_core::history::{Checkpoint, History, SinkError, State, StateSink, Step, StepSource};
 use percute_core::load::{BodyForce, Support, Table};
+use percute_core::material::Hardening;
 use percute_core::mesh::Mesh;
 use percute_core::observer::Unobserved;
 use percute_core::problem::{Initial, Problem};
@@ -104,4 +105,55 @@ fn blocks_that_slide_go_on_from_every_step() {
             .problem();
     let step = 0.9 * percute_core::dynamics::critical_time_step(&problem);
     goes_on_from_every_step(&problem, &TimeGrid::uniform(STEPS as f64 * step, STEPS).unwrap());
+}
+
+/// Internal variables are part of a checkpoint: the flow goes on where it was.
+#[test]
+fn a_block_that_yields_goes_on_from_every_step() {
+    let hardening = Hardening::of_tangent(70e9, 3e9, 0.5).unwrap();
+    let law = aluminium().with_yield_stress(200e6).unwrap().with_hardening(hardening).unwrap();
+    let step = 4e-7;
+    let problem = Problem::<2>::builder(Mesh::rectangle(0.03, 0.02, 6, 4).unwrap())
+        .material(law)
+        .initial_velocity(Initial::Uniform([20.0, -100.0]))
+        .obstacle(Obstacle::plane([0.0, -50.0 * step], [0.0, 1.0], 0.3, None).unwrap())
+        .build()
+        .unwrap();
+    let times = TimeGrid::uniform(STEPS as f64 * step, STEPS).unwrap();
+    goes_on_from_every_step(&problem, &times);
+    // A replay integrates the same internal variables, with or without those of the steps.
+    let mut history = History::new(&times);
+    simulate(&problem, &times, &mut history, &mut Unobserved).unwrap();
+    let mut again = InternalVariables::default();
+    let bare = WithoutInternal(&history);
+    replay(&problem, &bare, &mut again).unwrap();
+    assert!(again.0 == history.internal() && again.0.iter().any(|x| *x != 0.0));
+}
+
+/// Keeps internal variables.
+#[derive(Default)]
+struct InternalVariables(Vec<f64>);
+
+impl StateSink for InternalVariables {
+    fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
+        self.0.extend_from_slice(state.step().internal);
+        Ok(())
+    }
+}
+
+/// A history without internal variables.
+struct WithoutInternal<'h>(&'h History);
+
+impl StepSource for WithoutInternal<'_> {
+    fn times(&self) -> &TimeGrid {
+        self.0.times()
+    }
+
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+
+    fn replay(&self, take: &mut dyn FnMut(&Step<'_>) -> Result<(), SinkError>) -> Result<(), SinkError> {
+        self.0.replay(&mut |step| take(&Step { internal: &[], ..*step }))
+    }
 }

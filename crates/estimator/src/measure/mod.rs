@@ -230,8 +230,8 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         self.error_of((&stress.mean, stress.fluctuation.energy()), increment, motion, (beside, plastic))
     }
 
-    /// The same, from the mean of σ_DA and the energies of its fluctuation and of other stresses `beside` it (J per unit
-    /// of section or thickness).
+    /// The same, from the mean of σ_DA and the energies of its fluctuation and of other stresses `beside` it (J per
+    /// unit of section or thickness).
     #[inline(always)]
     pub(crate) fn error_of<T: Value>(
         &self,

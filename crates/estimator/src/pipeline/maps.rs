@@ -7,6 +7,7 @@ use crate::kinematic::{ContactMotion, common, settle};
 use crate::map::{AdmissibleFields, ElementMap};
 use crate::measure::{ElementError, ElementMeasure};
 use crate::options::Acceleration;
+use crate::plastic::tensor;
 use crate::reconstruction::Concentration;
 use crate::request::{Request, RequestError};
 use crate::traction::{EquilibratedLevel, EquilibratedLevels, Equilibration};
@@ -26,6 +27,8 @@ pub(crate) struct Contribution {
     pub(crate) contact: f64,
     /// ∫η_E dt so far (J s).
     pub(crate) accumulated: f64,
+    /// ε* of σ_CA, as xx, yy and xy.
+    pub(crate) eigenstrain: [f64; 3],
 }
 
 /// The request, and the maps of the steps that have come.
@@ -43,7 +46,7 @@ impl Maps {
         let (nodes, elements) = (problem.mesh().node_count(), problem.mesh().element_count());
         let fields = if request.fields { 2 * D * nodes + (2 * D * D + D) * elements } else { 0 };
         let steps = request.steps.len();
-        let bytes = (4 * elements + fields).saturating_mul(size_of::<f64>()).saturating_mul(steps);
+        let bytes = (5 * elements + fields).saturating_mul(size_of::<f64>()).saturating_mul(steps);
         match Vec::<u8>::new().try_reserve_exact(bytes) {
             Ok(()) => Ok(Self { request, made: Vec::new(), settled: 0 }),
             Err(_) => Err(RequestError::Memory { bytes, steps }),
@@ -90,6 +93,11 @@ impl Maps {
                 let map = &mut self.made[k];
                 (map.kinetic[e], map.elastic[e]) = (contribution.error.kinetic, contribution.error.elastic);
                 map.dissipation[e] = contribution.error.plastic;
+                // Until the displacement is known that the stress follows from.
+                if let Some(fields) = &mut map.fields {
+                    fields.compatible_stress.resize(3 * map.kinetic.len(), 0.0);
+                    fields.compatible_stress[3 * e..3 * e + 3].copy_from_slice(&contribution.eigenstrain);
+                }
                 (map.contact[e], map.accumulated[e]) = (contribution.contact, contribution.accumulated);
             }
         }
@@ -127,10 +135,14 @@ impl Maps {
         for map in &mut self.made {
             let Some(fields) = &mut map.fields else { continue };
             let displacement = vectors::<D>(&fields.displacement);
+            let eigenstrains = std::mem::take(&mut fields.compatible_stress);
             let compatible = |(e, element): (usize, &Element<D, N>)| {
-                let stress =
-                    problem.material(ElementId::new(e)).stress(&element.gradient(&element.gather(displacement)));
-                stress.into_iter().flatten()
+                let mut gradient = element.gradient(&element.gather(displacement));
+                if let Some(&eigen) = eigenstrains.as_chunks::<3>().0.get(e) {
+                    let eigen = tensor::<D>(eigen);
+                    (0..D).for_each(|a| (0..D).for_each(|b| gradient[a][b] -= eigen[a][b]));
+                }
+                problem.material(ElementId::new(e)).stress(&gradient).into_iter().flatten()
             };
             fields.compatible_stress = elements.iter().enumerate().flat_map(compatible).collect();
         }

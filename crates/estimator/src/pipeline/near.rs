@@ -142,6 +142,10 @@ impl<const D: usize, const N: usize> NearElement<D, N> {
         if steps[0] == 0 {
             self.settle(context, &mut start, 0);
             self.check_start(context, sampler.element, &start.velocities);
+            if let Some(stress) = &waiting.start {
+                let hats = self.hat_stress(context, &waiting.hats[0]);
+                self.yield_further(&sampler, (stress, &start.velocities), &hats);
+            }
         }
         let stop = 2 * steps[1];
         if let Some(mid) = &mut waiting.mid {

@@ -9,7 +9,7 @@ use crate::kinematic::{ElementMotion, gather_common};
 use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, hat_energy, work};
 use crate::numbers::Reader;
 use crate::options::Acceleration;
-use crate::plastic::PlasticPart;
+use crate::plastic::{PlasticPart, components};
 use crate::residual::{Residuals, worse};
 use crate::stress::{ElementForm, Loading};
 use crate::time_level::{Side, Velocities};
@@ -34,6 +34,8 @@ pub(super) struct ElementSample {
     pub(super) error: ElementError,
     /// The contact part.
     pub(super) contact: ContactPart,
+    /// ε* of σ_CA, as xx, yy and xy.
+    pub(super) eigenstrain: [f64; 3],
 }
 
 /// The contact part of η (J).
@@ -47,8 +49,8 @@ pub(super) struct ContactPart {
 impl ElementSample {
     /// Where there is no contact part.
     #[inline(always)]
-    pub(super) fn away_from_contact(error: ElementError) -> Self {
-        Self { error, contact: ContactPart::default() }
+    pub(super) fn away_from_contact(error: ElementError, eigenstrain: [f64; 3]) -> Self {
+        Self { error, contact: ContactPart::default(), eigenstrain }
     }
 
     #[inline(always)]
@@ -87,8 +89,9 @@ impl Course {
     /// Keeps the last sample of an element, at this step; the one after a jump replaces the one before it.
     pub(super) fn keep(&self, element: ElementId, step: usize, kept: &mut Vec<Contribution>) {
         kept.pop_if(|last| last.element == element && last.step == step);
-        let ElementSample { error, contact } = self.last;
-        kept.push(Contribution { element, step, error, contact: contact.total, accumulated: self.integral });
+        let ElementSample { error, contact, eigenstrain } = self.last;
+        let accumulated = self.integral;
+        kept.push(Contribution { element, step, error, contact: contact.total, accumulated, eigenstrain });
     }
 }
 
@@ -307,7 +310,8 @@ impl<'a, 'p, const D: usize, const N: usize> ElementSampler<'a, 'p, D, N> {
                 alone.residual(residual, of_misfit(&|misfit| work(misfit, &residual.products)), energies)
             };
             changes[k] = error.elastic - alone.elastic;
-            ElementSample { error, contact: interval.contact[k] }
+            let eigenstrain = plastic.map_or([0.0; 3], |part| components(&part.eigenstrain));
+            ElementSample { error, contact: interval.contact[k], eigenstrain }
         };
         if let Some(start) = interval.start {
             course.last = at(start, 0);

@@ -122,6 +122,17 @@ impl<'p, const D: usize> Compare<'p> for Finer<'p, D> {
         if problem.is_finite() != self.problem.is_finite() {
             return Err(ReferenceError::Kinematics);
         }
+        if problem.yields() != self.problem.yields() {
+            return Err(ReferenceError::Yielding);
+        }
+        let internal = problem.variables() * problem.mesh().element_count();
+        if let Some(values) = motion.internal.iter().find(|row| row.len() != internal).filter(|_| internal > 0) {
+            return Err(ReferenceError::Length { field: "internal", given: values.len(), needed: internal });
+        }
+        if internal > 0 && motion.internal.len() != motion.times.len() {
+            let (given, needed) = (motion.internal.len(), motion.times.len());
+            return Err(ReferenceError::Length { field: "internal", given, needed });
+        }
         let mesh = (problem.mesh(), self.problem.mesh());
         let transfer = if nested { Transfer::nested(mesh.0, mesh.1)? } else { Transfer::located(mesh.0, mesh.1)? };
         let needed = D * problem.mesh().node_count();

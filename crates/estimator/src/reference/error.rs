@@ -40,6 +40,14 @@ pub enum ReferenceError {
     /// Small and finite kinematics.
     #[error("the reference has other kinematics than the simulation that is compared; give both the same")]
     Kinematics,
+    /// Materials that yield in one of both only.
+    #[error(
+        "materials yield in the reference or in the simulation that is compared, but not in both; give both the same"
+    )]
+    Yielding,
+    /// An exact elastic solution for a bar that yields.
+    #[error("the exact solution is that of an elastic bar, and the material of the simulation yields")]
+    ElasticSolution,
     /// A reference that stops too early.
     #[error("the reference ends at {reference:.6e} s, before the end of the simulation at {end:.6e} s")]
     EndsEarly { reference: f64, end: f64 },

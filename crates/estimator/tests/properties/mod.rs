@@ -9,7 +9,7 @@ mod consistency;
 mod corners;
 mod determinism;
 mod edges;
-mod estimating;
+pub(crate) mod estimating;
 mod half;
 mod loads;
 mod malformed;

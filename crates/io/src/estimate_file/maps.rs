@@ -78,8 +78,12 @@ pub(super) fn fields<'f>(vtk: &Part<'f>, size: Size, instants: usize) -> Result<
         all.push(found(part, name, [instants, rows, components])?);
         Ok(())
     };
+    // Files without it are those of elastic materials.
+    let dissipates = cells.optional("dissipation")?.is_some();
     for name in ["kinetic", "elastic", "dissipation", "contact", "total", "accumulated"] {
-        add(&cells, name, elements, 1)?;
+        if dissipates || name != "dissipation" {
+            add(&cells, name, elements, 1)?;
+        }
     }
     if has_admissible(vtk)? {
         let points = vtk.group("PointData")?;

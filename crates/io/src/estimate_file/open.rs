@@ -99,8 +99,12 @@ fn finite(data: &Data<'_>) -> Result<Vec<f64>, FileCause> {
 fn over_time(group: &Part<'_>) -> Result<Vec<Sample>, FileCause> {
     let time = column(group, "time", None)?;
     let of = |name| column(group, name, Some(time.len()));
-    let [kinetic, elastic, dissipation] = [of("kinetic")?, of("elastic")?, of("dissipation")?];
-    let [contact, reference] = [of("contact")?, of("reference")?];
+    let [kinetic, elastic, contact, reference] = [of("kinetic")?, of("elastic")?, of("contact")?, of("reference")?];
+    // Files without it are those of elastic materials.
+    let dissipation = match group.optional("dissipation")? {
+        Some(_) => of("dissipation")?,
+        None => vec![0.0; time.len()],
+    };
     // The sum of the parts is computed again.
     of("total")?;
     let sample = |k: usize| {

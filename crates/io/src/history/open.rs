@@ -3,7 +3,7 @@
 use super::elsewhere::Elsewhere;
 use super::file::{FileContents, HistoryFile, Identity};
 use super::nodal::{finite, nodal};
-use super::rows::FIELDS;
+use super::rows::sums_at_an_instant;
 use super::stored_part;
 use super::sums::{check_fixed_part, check_rows, fixed_part, of_vectors};
 use super::{DISPLACEMENT, PLASTIC};
@@ -41,9 +41,9 @@ fn dimension(opened: &Opened) -> Result<usize, FileCause> {
 }
 
 /// Whether a history has checksums: then one for each field at each instant.
-fn has_checksums(ours: &Part<'_>, instants: usize) -> Result<bool, FileCause> {
+fn has_checksums(ours: &Part<'_>, instants: usize, yields: bool) -> Result<bool, FileCause> {
     let Some(sums) = ours.optional("checksums")? else { return Ok(false) };
-    sums.expect(&[instants, FIELDS.len()], "one for each field at each instant")?;
+    sums.expect(&[instants, sums_at_an_instant(yields)], "one for each field at each instant")?;
     Ok(true)
 }
 
@@ -65,7 +65,7 @@ pub(super) fn contents(path: &Path, identity: Identity, opened: &Opened) -> Resu
     let statement =
         ours.optional_text("problem")?.ok_or_else(|| FileCause::MissingPart { name: "percute/problem".to_string() })?;
     let (case, provenance, elsewhere) = (case(&ours)?, provenance(&ours)?, Elsewhere::read(&ours, [nodes, d])?);
-    let checksums = provenance.is_percute() && has_checksums(&ours, instants)?;
+    let checksums = provenance.is_percute() && has_checksums(&ours, instants, plastic > 0)?;
     if checksums {
         let nodes = contact_nodes.iter().copied();
         let run = kept.as_ref().map_or(&[][..], |kept| kept.times.instants());

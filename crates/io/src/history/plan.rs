@@ -4,7 +4,7 @@ use super::PLASTIC;
 use super::checkpoints;
 use super::elsewhere::Elsewhere;
 use super::native::write_vectors;
-use super::rows::{FIELDS, Places};
+use super::rows::{Places, sums_at_an_instant};
 use super::stored_part::StoredPart;
 use super::sums::fixed_part;
 use super::writer::{Begun, Target, Writer};
@@ -91,7 +91,7 @@ impl<'p> Plan<'p> {
         let (nodes, cells, instants) = (mesh.node_count() as u64, mesh.element_count() as u64, self.instants() as u64);
         let (d, contact) = (mesh.dimension() as u64, self.contact_nodes() as u64);
         let grid = 24 * nodes + 8 * (d + 1) * cells + 8 * (cells + 1) + cells;
-        let steps = 8 * (7 + self.vectors() + FIELDS.len() as u64);
+        let steps = 8 * (7 + self.vectors() + sums_at_an_instant(self.internal() > 0) as u64);
         let faces: u64 = mesh.face_groups().values().map(|members| 8 * d * members.len() as u64).sum();
         let elements: u64 = mesh.element_groups().values().map(|members| 8 * members.len() as u64).sum();
         let run = if self.is_thinned() { 8 * (instants + self.times.instants().len() as u64) } else { 0 };
@@ -219,7 +219,7 @@ impl<'p> Plan<'p> {
         let texts = (self.statement.as_str(), self.case.as_ref(), elsewhere);
         let sum = fixed_part(mesh, velocity, texts, [&self.stored_times(), run], nodes);
         numbers(&ours, "checksum", &[], &[sum])?;
-        let checksums = room::<i64>(&ours, "checksums", &[self.instants(), FIELDS.len()])?;
+        let checksums = room::<i64>(&ours, "checksums", &[self.instants(), sums_at_an_instant(self.internal() > 0)])?;
         let fields = [mesh.node_count(), dimension, self.internal()];
         let checkpoints = checkpoints::make_room(&ours, self.steps_to_go_on(), fields)?;
         let steps_written = numbers(&ours, "steps_written", &[], &[0_i64])?;

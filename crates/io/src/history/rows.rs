@@ -9,8 +9,13 @@ use percute_system::write_all_at;
 use std::fs::File;
 use std::io;
 
-/// Fields over time, in the order of their checksums.
+/// Fields over time, in the order of their checksums; the last one is there where a material yields.
 pub(super) const FIELDS: [&str; 6] = ["displacement", "velocity", "acceleration", "reaction", "touching", PLASTIC];
+
+/// Number of checksums of an instant.
+pub(super) fn sums_at_an_instant(yields: bool) -> usize {
+    FIELDS.len() - usize::from(!yields)
+}
 
 /// The place of the rows of step 0 in the file (bytes), and their number of nodes.
 #[derive(Clone, Copy, Debug)]
@@ -104,7 +109,11 @@ impl Row {
         if let Some((place, count)) = places.plastic {
             write_all_at(file, &bytes(&self.plastic), place + n * 8 * count as u64)?;
         }
-        let sums = self.checksums(places.has_contact).iter().flat_map(|sum| sum.to_ne_bytes()).collect::<Vec<u8>>();
+        let sums = self.checksums(places.has_contact);
+        let sums = sums[..sums_at_an_instant(places.plastic.is_some())]
+            .iter()
+            .flat_map(|sum| sum.to_ne_bytes())
+            .collect::<Vec<u8>>();
         write_all_at(file, &sums, places.checksums + n * sums.len() as u64)?;
         let count = (self.place + 1).max(places.had) as u64;
         write_all_at(file, &count.to_ne_bytes(), places.steps_written)

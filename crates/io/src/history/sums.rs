@@ -57,14 +57,14 @@ pub(super) fn check_rows<T>(
 /// Compares the checksums found of a field at some instants with the rows of `checksums` there.
 pub(super) fn compare(
     field: &str,
-    steps: impl IntoIterator<Item = usize>,
+    steps: impl ExactSizeIterator<Item = usize>,
     found: impl Iterator<Item = Checksum>,
     rows: &[i64],
 ) -> Result<(), FileCause> {
     let Some(column) = FIELDS.iter().position(|name| *name == field) else { return Ok(()) };
-    let differs =
-        |(k, (_, sum)): &(usize, (usize, Checksum))| rows.get(FIELDS.len() * k + column) != Some(&sum.stored());
-    match steps.into_iter().zip(found).enumerate().find(differs) {
+    let width = rows.len() / steps.len().max(1);
+    let differs = |(k, (_, sum)): &(usize, (usize, Checksum))| rows.get(width * k + column) != Some(&sum.stored());
+    match steps.zip(found).enumerate().find(differs) {
         None => Ok(()),
         Some((_, (step, _))) => Err(FileCause::Checksum { name: field.to_string(), step: Some(step) }),
     }

@@ -52,6 +52,9 @@ pub struct Adapting {
     reason: Option<Reason>,
 }
 
+/// Why a body that yields is not adapted.
+const YIELDING: &str = "runs on adapted meshes need elastic materials: where a material yields, the error has no \
+                        sources to plan from; refine the mesh, and compare by `percute verify`";
 /// Why a body that turns is not adapted.
 const FINITE: &str = "runs on adapted meshes need kinematics = \"small\": with finite kinematics the error has no \
                       sources to plan from; refine the mesh, and compare by `percute verify`";
@@ -71,6 +74,9 @@ impl Adapting {
         wish.check()?;
         if problem.is_finite() {
             return Err(Failure::Argument(FINITE.into()));
+        }
+        if problem.yields() {
+            return Err(Failure::Argument(YIELDING.into()));
         }
         if options.reconstruction != Reconstruction::Corrected {
             return Err(Failure::Argument(format!(

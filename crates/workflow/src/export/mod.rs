@@ -96,7 +96,7 @@ impl<'a> Export<'a> {
         if steps.is_empty() {
             return Err(wrong(format!("{}: no step is chosen; name at least one", request.names.instants)));
         }
-        let quantities = quantities(request)?;
+        let quantities = quantities(request, problem.yields())?;
         let error = request.error.clone().unwrap_or_default();
         let (given, needed) = (error.len(), problem.mesh().element_count());
         if request.error.is_some() && given != needed {

@@ -19,12 +19,13 @@ pub(super) enum ExportQuantity {
     Stress,
     VonMises,
     Pressure,
+    PlasticStrain,
     Error,
 }
 
 impl ExportQuantity {
     /// In the order of a file.
-    const ALL: [Self; 8] = [
+    const ALL: [Self; 9] = [
         Self::Displacement,
         Self::Velocity,
         Self::Acceleration,
@@ -32,6 +33,7 @@ impl ExportQuantity {
         Self::Stress,
         Self::VonMises,
         Self::Pressure,
+        Self::PlasticStrain,
         Self::Error,
     ];
 
@@ -44,6 +46,7 @@ impl ExportQuantity {
             Self::Stress => ("stress", "Pa", 9, FieldPlace::Elements),
             Self::VonMises => ("von_mises", "Pa", 1, FieldPlace::Elements),
             Self::Pressure => ("pressure", "Pa", 1, FieldPlace::Elements),
+            Self::PlasticStrain => ("equivalent_plastic_strain", "1", 1, FieldPlace::Elements),
             Self::Error => ("error", "J^(1/2)", 1, FieldPlace::Elements),
         };
         ExportField { name, unit, components, place }
@@ -74,7 +77,8 @@ impl ExportRows<'_> {
     pub(super) fn at(&self, step: &Step<'_>) -> Vec<Vec<f64>> {
         let d = self.problem.dimension();
         let of_elements = |q: &ExportQuantity| {
-            matches!(q, ExportQuantity::Stress | ExportQuantity::VonMises | ExportQuantity::Pressure)
+            use ExportQuantity::{PlasticStrain, Pressure, Stress, VonMises};
+            matches!(q, Stress | VonMises | Pressure | PlasticStrain)
         };
         let elements = (0..self.problem.mesh().element_count()).map(ElementId::new);
         let states: Vec<ElementState> = match self.quantities.iter().any(of_elements) {
@@ -89,6 +93,7 @@ impl ExportRows<'_> {
             ExportQuantity::Stress => states.iter().flat_map(tensor).collect(),
             ExportQuantity::VonMises => states.iter().map(ElementState::von_mises).collect(),
             ExportQuantity::Pressure => states.iter().map(ElementState::pressure).collect(),
+            ExportQuantity::PlasticStrain => states.iter().map(|state| state.equivalent_plastic_strain).collect(),
             ExportQuantity::Error => self.error.clone(),
         };
         self.quantities.iter().map(rows).collect()
@@ -104,12 +109,16 @@ impl ExportRows<'_> {
     }
 }
 
-/// The quantities of a request, in the order of [`ExportQuantity::ALL`].
-pub(super) fn quantities(request: &Request) -> Result<Vec<ExportQuantity>, Failure> {
+/// The quantities of a request for a body of which a material `yields`, in the order of [`ExportQuantity::ALL`].
+pub(super) fn quantities(request: &Request, yields: bool) -> Result<Vec<ExportQuantity>, Failure> {
     let (estimated, fields) = (request.error.is_some(), request.fields.as_deref());
     let wanted = |quantity: &ExportQuantity| match fields {
         Some(names) => names.iter().any(|name| name == quantity.field().name),
-        None => !matches!(quantity, ExportQuantity::Acceleration | ExportQuantity::Pressure | ExportQuantity::Error),
+        None => match quantity {
+            ExportQuantity::Acceleration | ExportQuantity::Pressure | ExportQuantity::Error => false,
+            ExportQuantity::PlasticStrain => yields,
+            _ => true,
+        },
     };
     let known = ExportQuantity::ALL.map(|quantity| quantity.field().name);
     let unknown = fields.into_iter().flatten().find(|name| !known.contains(&name.as_str()));

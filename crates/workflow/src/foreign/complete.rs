@@ -74,7 +74,7 @@ impl<'s> Completed<'s> {
             return Err(told.into());
         }
         if problem.yields() {
-            let told = "histories of other programs are read for elastic materials, and plastic strains follow from all \
+            let told = "histories of other programs are read for elastic materials: plastic strains follow from all of \
                         their steps alone; leave out `tangent` and `hardening`, or simulate with percute";
             return Err(told.into());
         }

@@ -7,7 +7,7 @@ use crate::kinematic::ElementMotion;
 use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, NodalBalance, at_places};
 use crate::pipeline::maps::Contribution;
 use crate::pipeline::sampling::{Course, ElementSample};
-use crate::plastic::{PlasticMemory, PlasticPart};
+use crate::plastic::{PlasticMemory, PlasticPart, components};
 use crate::residual::Residuals;
 use crate::stress::EnergyForm;
 use percute_core::ids::ElementId;
@@ -70,7 +70,11 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
             |now: Wide<R>, _: Wide<R>| now.store().0[last],
         );
         so_far.before = so_far.course.integral;
-        self.integrate(&now, &mid, &mut so_far.course, &mut found.kept);
+        let eigenstrain = |lane: usize| {
+            let of = |part: &PlasticPart<D, Lanes>| components(&part.eigenstrain.map(|row| row.map(|x| x.0[lane])));
+            plastic.as_ref().map_or([0.0; 3], |[now, _]| of(now))
+        };
+        self.integrate((&now, &mid), eigenstrain, &mut so_far.course, &mut found.kept);
     }
 
     /// The plastic parts at all levels and in the middles before them, level after level; none of a material that does
@@ -142,8 +146,8 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
     #[inline(always)]
     fn integrate<R: Registers>(
         &self,
-        now: &ElementError<Wide<R>>,
-        mid: &ElementError<Wide<R>>,
+        (now, mid): (&ElementError<Wide<R>>, &ElementError<Wide<R>>),
+        eigenstrain: impl Fn(usize) -> [f64; 3],
         course: &mut Course,
         kept: &mut Vec<Contribution>,
     ) {
@@ -155,10 +159,11 @@ impl<const D: usize, const N: usize> FarElement<'_, '_, '_, '_, D, N> {
         for (lane, forces) in self.all.levels.levels.forces().iter().enumerate() {
             course.add(integrals.0[lane]);
             if self.all.wanted[lane] {
-                course.reach(ElementSample::away_from_contact(now.lane(lane)));
+                course.reach(ElementSample::away_from_contact(now.lane(lane), eigenstrain(lane)));
                 course.keep(self.id, forces.level.index, kept);
             }
         }
-        course.reach(ElementSample::away_from_contact(now.lane(self.all.levels.levels.len() - 1)));
+        let last = self.all.levels.levels.len() - 1;
+        course.reach(ElementSample::away_from_contact(now.lane(last), eigenstrain(last)));
     }
 }

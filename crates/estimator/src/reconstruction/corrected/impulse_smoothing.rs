@@ -44,8 +44,8 @@ pub(super) struct Stopped {
 struct Pending<const D: usize> {
     /// When it began (s).
     start: f64,
-    /// τ (s).
-    time: f64,
+    /// τ over that of an elastic body.
+    slowing: f64,
     /// Its rest (N s).
     impulse: [f64; D],
 }
@@ -59,8 +59,12 @@ impl<const D: usize> ImpulseSmoothing<D> {
 
     /// The time τ of a node (s): longer in a material that has yielded under the impact.
     pub(super) fn time(&self, at: usize) -> f64 {
-        let slowing = self.laws.get(at).map_or(1.0, |law| law.slowing(self.speeds[at]));
-        slowing * self.time[at]
+        self.slowing(at) * self.time[at]
+    }
+
+    /// τ over that of an elastic body.
+    fn slowing(&self, at: usize) -> f64 {
+        self.laws.get(at).map_or(1.0, |law| law.slowing(self.speeds[at]))
     }
 
     /// Takes in v_{n−½} of the nodes (m/s), against their obstacles, and the reactions (N): nodes without any approach.
@@ -68,7 +72,10 @@ impl<const D: usize> ImpulseSmoothing<D> {
         let surface = problem.surface();
         for (at, speed) in self.speeds.iter_mut().enumerate().filter(|(at, _)| reaction[*at] == [0.0; D]) {
             let frame = problem.obstacles()[surface.nodes()[at].obstacle].flat_frame();
-            *speed = -frame.split(&surface.against_obstacle(at, half_step)).0;
+            let approach = -frame.split(&surface.against_obstacle(at, half_step)).0;
+            // Of two bodies, each is stopped from about half of their relative speed.
+            let rigid = problem.obstacles()[surface.nodes()[at].obstacle].as_plane().is_some();
+            *speed = if rigid { approach } else { 0.5 * approach };
         }
     }
 
@@ -92,7 +99,8 @@ impl<const D: usize> ImpulseSmoothing<D> {
         for (k, (contact, force)) in surface.nodes().iter().zip(&mut forces).enumerate() {
             let frame = problem.obstacles()[contact.obstacle].flat_frame();
             let slides = stopped.get(k).copied().flatten();
-            let time = slides.map_or_else(|| self.time(k), |stopped| stopped.time);
+            let (slowing, elastic) = (self.slowing(k), slides.map_or(self.time[k], |stopped| stopped.time));
+            let time = slowing * elastic;
             let pending = &mut self.pending[k];
             let (normal, _) = frame.split(force);
             if normal > 0.0 && step < time {
@@ -113,18 +121,19 @@ impl<const D: usize> ImpulseSmoothing<D> {
                 );
                 let share = (stopped / normal).min(1.0);
                 if share > NEGLIGIBLE {
-                    pending.push_back(Pending { start: now, time, impulse: force.map(|f| share * f * length) });
+                    pending.push_back(Pending { start: now, slowing, impulse: force.map(|f| share * f * length) });
                     *force = force.map(|f| (1.0 - share) * f);
                 }
             }
             for one in pending.iter_mut() {
-                let part = part(1.0 - (now - one.start) / one.time, step / one.time, length / step);
+                let time = one.slowing * elastic;
+                let part = part(1.0 - (now - one.start) / time, step / time, length / step);
                 for c in 0..D {
                     force[c] += part * one.impulse[c] / length;
                     one.impulse[c] -= part * one.impulse[c];
                 }
             }
-            pending.retain(|one| one.start + one.time > now + step);
+            pending.retain(|one| one.start + one.slowing * elastic > now + step);
         }
         forces
     }

@@ -9,8 +9,8 @@ pub(super) fn absent(key: &str, table: &str) -> Option<&'static str> {
              leave it out"
         }
         "hardening_modulus" | "tangent_modulus" | "plasticity" | "ultimate_stress" => {
-            "a material yields with a `yield_stress` (Pa) and linear hardening: `tangent` (Pa), the slope of the uniaxial \
-             curve beyond it, or `hardening` (Pa), its slope over the plastic strain"
+            "a material yields with a `yield_stress` (Pa) and linear hardening: `tangent` (Pa), the slope of the \
+             uniaxial curve beyond it, or `hardening` (Pa), its slope over the plastic strain"
         }
         "velocity" if of_obstacle => {
             "planes do not move: subtract the velocity of the plane from that of the bodies, in [initial]; a plane \

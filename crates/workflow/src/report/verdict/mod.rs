@@ -13,7 +13,7 @@ pub(super) use facts::{Facts, FurtherFacts};
 use super::{PoorElement, Touches};
 use crate::plan::Recommendation;
 use percute_estimator::Parts;
-use rules::{RULES, Rule};
+use rules::Rule;
 use serde::Serialize;
 
 /// How far the estimate can be trusted.
@@ -99,7 +99,7 @@ impl Verdict {
     /// The verdict that follows from facts and from the parts of η at its largest value.
     #[must_use]
     pub(super) fn new(facts: &Facts, parts: &Parts) -> Self {
-        let rule = RULES.iter().find(|rule| (rule.applies)(facts)).unwrap_or(&RULES[RULES.len() - 1]);
+        let rule = &rules::rule(facts);
         let (outside_tested_range, shares) = (tested_range::outside(facts), shares(parts));
         let (reasons, departures) = (text::reasons(facts, rule), facts.linearity.departures());
         let far = departures.iter().filter(|departure| departure.is_far).map(|departure| departure.reason.clone());

@@ -7,6 +7,7 @@ use crate::report::touches::Touches;
 use percute_estimator::{Acceleration, Reconstruction};
 
 /// A situation that the evidence has, and its effectivity indices.
+#[derive(Clone, Copy)]
 pub(super) struct Rule {
     /// Whether a run is in this situation. The first rule that applies counts.
     pub(super) applies: fn(&Facts) -> bool,
@@ -38,7 +39,7 @@ const SETTLED: f64 = 3.0;
 const ACUTE: f64 = 59.9;
 
 /// The rules in their order.
-pub(super) const RULES: [Rule; 33] = [
+const RULES: [Rule; 31] = [
     // effectivity.csv, effectivity-steps.csv, bar-maps.csv, ablation-slide: on very fine bars `consistent` and
     // `published` fall to a quarter.
     Rule {
@@ -55,20 +56,6 @@ pub(super) const RULES: [Rule; 33] = [
     },
     // See `report/flat.rs`; studies/flat_elements.py.
     Rule { applies: |f| f.flat, range: [0.95, 10.0], situation: "meshes with nearly flat elements", reason: None },
-    // docs/plasticity.md, studies/yielding.
-    Rule {
-        applies: |f| f.linearity.yielded.is_some() && f.dimension == 1,
-        range: [0.6, 1.6],
-        situation: "bars that yield",
-        reason: None,
-    },
-    // docs/plasticity.md, studies/random_bodies, yielding.
-    Rule {
-        applies: |f| f.linearity.yielded.is_some(),
-        range: [0.7, 1.8],
-        situation: "bodies that yield",
-        reason: None,
-    },
     // docs/finite.md, studies/turning_blocks, and studies/random_bodies, turning: 0.94 to 1.47 on edges, up to 2.2 with
     // few elements or ν = 0.49.
     Rule {
@@ -255,6 +242,19 @@ pub(super) const RULES: [Rule; 33] = [
     },
     Rule { applies: |_| true, range: [0.4, 2.8], situation: "impacts", reason: None },
 ];
+
+/// The indices of bars that yield, studies/yielding, and of plane bodies, studies/random_bodies, yielding.
+const YIELDING: [([f64; 2], &str); 2] = [([0.6, 1.6], "bars that yield"), ([0.7, 1.8], "bodies that yield")];
+
+/// The rule of a run: the first one that applies. Where a material yields, its range has that of such bodies as well.
+pub(super) fn rule(facts: &Facts) -> Rule {
+    let first = RULES.iter().find(|rule| (rule.applies)(facts)).unwrap_or(&RULES[RULES.len() - 1]);
+    if facts.linearity.yielded.is_none() {
+        return *first;
+    }
+    let ([low, high], situation) = YIELDING[facts.dimension - 1];
+    Rule { range: [first.range[0].min(low), first.range[1].max(high)], situation, ..*first }
+}
 
 impl Facts {
     /// Whether nothing touches, and Γ_DA is `closest` with `corrected`.
