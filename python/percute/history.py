@@ -148,7 +148,7 @@ class History(Steps, Views):
         return element_fields.element_field(self, "plastic_work", step)
 
     def strain_energy(self, step: Step) -> NDArray[np.float64]:
-        """Give the strain energy of each element of its elastic strain (J), shape (elements,); the sum is that of ``balance``. ``step`` as for `strain`."""
+        """Give the energy of the elastic strain of each element (J), shape (elements,); the sum is that of ``balance``. ``step`` as for `strain`."""
         return element_fields.element_field(self, "strain_energy", step)
 
     def kinetic_energy(self, step: Step) -> NDArray[np.float64]:
