@@ -1,4 +1,4 @@
-//! Time of the integrator with finite laws over that with small strains: `laws [ROUNDS]`.
+//! Time of the integrator with finite laws and with plasticity over that with Hooke's law: `laws [ROUNDS]`.
 //!
 //! A block of aluminium vibrates in free flight, on one thread. All laws run in each round; median and range are those
 //! of the ratios of all rounds.
@@ -7,7 +7,7 @@
 
 use percute_benches::{Block, Failure, Order, SIZES, processor, simulated};
 use percute_core::dynamics::critical_time_step;
-use percute_core::material::{Elastic, HyperelasticLaw, Kinematics, Law};
+use percute_core::material::{Elastic, Hardening, HyperelasticLaw, Kinematics, Law};
 use percute_core::problem::{Initial, Problem};
 
 /// Element steps of a run.
@@ -15,6 +15,9 @@ const WORK: usize = 8_000_000;
 
 /// Speed of the sides over the wave speed: strains of about a per cent.
 const SPEED: f64 = 0.01;
+
+/// Strain from which on the metal flows.
+const YIELD_STRAIN: f64 = 0.004;
 
 /// Time step over critical time step.
 const COURANT: f64 = 0.9;
@@ -44,6 +47,9 @@ fn ratios(cells: [usize; 2], plane: &str, material: Elastic, rounds: usize) -> R
     for (name, law) in finite {
         laws.push((name, block(cells, material.with_kinematics(Kinematics::Finite(law))?)?, Vec::new()));
     }
+    let hardening = Hardening::of_tangent(material.young(), 0.1 * material.young(), 0.3)?;
+    let metal = material.with_yield_stress(YIELD_STRAIN * material.young())?.with_hardening(hardening)?;
+    laws.push(("von_mises", block(cells, metal)?, Vec::new()));
     let steps = WORK / small.elements();
     let time = |block: &Block| -> Result<f64, Failure> {
         Ok(simulated(block, steps, Some(1), processor)?.0.as_secs_f64() * 1e9 / (steps * block.elements()) as f64)

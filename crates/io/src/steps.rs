@@ -7,7 +7,7 @@ use hdf5::dataset::AllocTime;
 use hdf5::{Extent, Group};
 
 /// A name and its number of rows for each instant; none for a constant field.
-type StepField<'a> = (&'a str, usize);
+pub(crate) type StepField<'a> = (&'a str, usize);
 
 /// Creates `VTKHDF/Steps` for all these instants; only the first is visible to VTK at first.
 pub(crate) fn write_steps(

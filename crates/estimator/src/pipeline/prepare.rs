@@ -232,8 +232,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         }
         let (mid_velocity, now) = self.motion.advance(problem, self.times, state);
         self.track_contact(step, mid_velocity.as_deref(), &now)?;
-        let miss = self.supports.advance(problem, self.times, n, &now);
-        self.residuals.supports = worse(self.residuals.supports, miss);
+        self.residuals.supports = worse(self.residuals.supports, self.supports.advance(problem, self.times, n, &now));
 
         let simulated = SimulatedStep { state, velocity: now.velocity() };
         let balanced = self.reconstruction.advance(&self.dynamics, &simulated, &self.pool);
@@ -247,7 +246,6 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
         if let Some(densities) = &densities {
             self.non_matching.push(problem, n, densities)?;
         }
-        let plastic_work = problem.plastic_work(step.internal);
         let level = TimeLevel {
             index: n,
             displacement,
@@ -263,7 +261,7 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             split,
             smoothed,
             plastic,
-            energies: [state.strain() - plastic_work, plastic_work],
+            energies: energies(problem, state),
         };
         let motion = MotionKnown { level, now, mid_velocity, inertia };
         if n == 0 {
@@ -370,6 +368,12 @@ impl<'p, const D: usize, const N: usize> Preparation<'p, D, N> {
             }
         }
     }
+}
+
+/// Strain energy and plastic work (J).
+fn energies<const D: usize>(problem: &Problem<D>, state: &State<'_>) -> [f64; 2] {
+    let plastic = problem.plastic_work(state.step().internal);
+    [state.strain() - plastic, plastic]
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use crate::create::{Overwrite, Unnamed};
 use crate::error::{FileCause, FileError};
 use crate::kind::Kind;
 use crate::mesh::{bytes_of_bodies, write_bodies, write_grid, write_groups};
-use crate::steps::write_steps;
+use crate::steps::{StepField, write_steps};
 use crate::write::{Case, Texts, attribute, group, numbers, offset, ours, room, statement, unit};
 use hdf5::Group;
 use percute_core::problem::AnyProblem;
@@ -228,16 +228,7 @@ impl<'p> Plan<'p> {
         unit(&numbers(&ours, "times", &[instants.len()], instants)?, "s")?;
         self.run(&ours)?;
         let (reaction, touching) = self.contact(&ours)?;
-        let [velocity, acceleration] = self.supplied;
-        let fields =
-            [("displacement", "m", true), ("velocity", "m/s", velocity), ("acceleration", "m/s2", acceleration)];
-        let (data, mut names, mut places) = (group(&vtk, "PointData")?, Vec::new(), [None; 3]);
-        for (place, (name, of, _)) in places.iter_mut().zip(fields).filter(|(_, (_, _, there))| *there) {
-            let set = room::<f64>(&data, name, &[self.instants() * mesh.node_count(), 3])?;
-            unit(&set, of)?;
-            *place = Some(offset(&set)?);
-            names.push((name, mesh.node_count()));
-        }
+        let (places, names) = self.nodal(&vtk)?;
         let (plastic, mut cells) = (self.plastic(&vtk)?, self.bodies(&vtk)?.into_iter().collect::<Vec<_>>());
         cells.extend(plastic.map(|_| (PLASTIC, mesh.element_count())));
         write_steps(&vtk, instants, &names, &cells)?;
@@ -258,6 +249,22 @@ impl<'p> Plan<'p> {
             has_contact: self.has_contact(),
             had: 0,
         })
+    }
+
+    /// Room for displacement, velocity and acceleration: their places, and the names of those that are there with
+    /// their rows at an instant.
+    fn nodal(&self, vtk: &Group) -> Result<([Option<u64>; 3], Vec<StepField<'static>>), FileCause> {
+        let (nodes, [velocity, acceleration]) = (self.problem.mesh().node_count(), self.supplied);
+        let fields =
+            [("displacement", "m", true), ("velocity", "m/s", velocity), ("acceleration", "m/s2", acceleration)];
+        let (data, mut names, mut places) = (group(vtk, "PointData")?, Vec::new(), [None; 3]);
+        for (place, (name, of, _)) in places.iter_mut().zip(fields).filter(|(_, (_, _, there))| *there) {
+            let set = room::<f64>(&data, name, &[self.instants() * nodes, 3])?;
+            unit(&set, of)?;
+            *place = Some(offset(&set)?);
+            names.push((name, nodes));
+        }
+        Ok((places, names))
     }
 
     /// The numbers of the bodies of the elements, of several bodies.

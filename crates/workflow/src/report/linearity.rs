@@ -35,6 +35,8 @@ pub(super) struct Linearity {
     pub(super) finite: bool,
     /// The least E_t/E of the materials that yielded, by a law with plasticity.
     pub(super) yielded: Option<f64>,
+    /// Whether a material has such a law: the kinematics cannot be finite then.
+    pub(super) plastic: bool,
 }
 
 /// A strain or a rotation that is not small: it limits trust.
@@ -74,7 +76,8 @@ impl Linearity {
         let turned = bodies.filter_map(turned).max_by(|a, b| a.angle.total_cmp(&b.angle));
         let materials = &deformation.materials;
         let stress = stress(materials, finite).or_else(|| flow(materials));
-        Self { strain: deformation.strain(), turned, stress, finite, yielded: yielded(materials) }
+        let plastic = materials.iter().any(|material| material.yielding.is_some_and(|found| found.plastic.is_some()));
+        Self { strain: deformation.strain(), turned, stress, finite, yielded: yielded(materials), plastic }
     }
 
     /// The strains and the rotation that are not small.

@@ -269,7 +269,10 @@ fn strained(linearity: &Linearity) -> Option<Symptom> {
          up to {}: the error measure does not contain what the linear theory neglects",
         percent(STRAIN[0])
     );
-    let remedy = "take kinematics = \"finite\", a lower speed or load, or a stiffer material";
+    let remedy = match linearity.plastic {
+        true => "take a lower speed or load, or a material that yields later: plasticity is for small strains",
+        false => "take kinematics = \"finite\", a lower speed or load, or a stiffer material",
+    };
     symptom("large_strain", format!("strains of up to {shown}: not small"), figure, remedy)
 }
 
@@ -288,7 +291,11 @@ fn turned(linearity: &Linearity) -> Option<Symptom> {
          contains this"
     );
     let brief = format!("{subject} turns by {shown} rad: too far for small rotations");
-    symptom("rotation", brief, figure, "take kinematics = \"finite\", an earlier end, or a start closer to contact")
+    let remedy = match linearity.plastic {
+        true => "take an earlier end, or a start closer to contact: plasticity is for small rotations",
+        false => "take kinematics = \"finite\", an earlier end, or a start closer to contact",
+    };
+    symptom("rotation", brief, figure, remedy)
 }
 
 #[cfg(test)]

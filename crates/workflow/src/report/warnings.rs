@@ -134,9 +134,10 @@ pub(super) fn touches_again(facts: &WarningFacts<'_>) -> Option<Warning> {
     let NextTouch { node, plane, time } = facts.touches_again?;
     let time = trimmed(time, 4);
     let brief = format!("node {node} would reach plane_{plane} at {time} s");
-    let remedy = match facts.linearity.finite {
-        true => "a later end shows it",
-        false => {
+    let remedy = match (facts.linearity.finite, facts.linearity.plastic) {
+        (true, _) => "a later end shows it",
+        (false, true) => "a run in small strains moves points along straight lines: for what follows, begin a new run",
+        (false, false) => {
             "a run in small strains moves points along straight lines: for what follows, begin a new run there, or \
              take kinematics = \"finite\" and a later end"
         }
