@@ -119,7 +119,7 @@ class StoredEstimate:
         """Single numbers."""
         return self._measures
 
-    def parts(self) -> tuple[float, float, float]:
+    def parts(self) -> tuple[float, float, float, float]:
         """Parts of η at the time of the sup (J)."""
         return self._parts
 

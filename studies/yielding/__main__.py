@@ -20,16 +20,16 @@ from studies.yielding.front_tracking import strike
 
 SPEEDS, TANGENTS, COURANTS = (1.2, 2.0, 5.0, 15.0), (0.02, 0.1, 0.3), (0.1, 0.3, 0.9)
 """Speeds over the yield speed, E_t/E, and steps over the critical one: with two meshes the 72 bars of the table."""
-ALUMINIUM = dict(young=70e9, density=2700.0, yield_stress=300e6)
+YOUNG, DENSITY, YIELD_STRESS = 70e9, 2700.0, 300e6
 
 
 def bar_index(over: float, tangent: float, elements: int, courant: float, kinematic: float = 0.0) -> tuple[float, float]:
     """Give the indices, sup and mean, of a bar that strikes at a speed over its yield speed, against the exact solution."""
-    bar = Bar(length=1.0, tangent=tangent * 70e9, kinematic=kinematic, **ALUMINIUM)
+    bar = Bar(length=1.0, young=YOUNG, density=DENSITY, yield_stress=YIELD_STRESS, tangent=tangent * YOUNG, kinematic=kinematic)
     speed = over * bar.yield_velocity
     step = courant * bar.length / elements / bar.wave_speed
     gap, end = 1.3 * speed * step, 2.2 * bar.length / bar.wave_speed
-    law = pc.Elastic(section=1.0, tangent=bar.tangent, kinematic=kinematic, **ALUMINIUM)
+    law = pc.Elastic(young=YOUNG, density=DENSITY, section=1.0, yield_stress=YIELD_STRESS, tangent=bar.tangent, kinematic=kinematic)
     wall = pc.Plane(point=-gap, normal=1.0)
     problem = pc.Problem(pc.Mesh.bar(bar.length, elements=elements), material=law, initial_velocity=-speed, obstacles=[wall])
     history = pc.simulate(problem, end=end, step=step)
