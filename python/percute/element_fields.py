@@ -21,10 +21,11 @@ Floats = NDArray[np.float64]
 Step = int | slice | ArrayLike
 
 NODAL = ("displacement", "velocity", "acceleration")
-OF_ELEMENTS = (
-    "strain", "stress", "von_mises", "pressure", "plastic_strain", "equivalent_plastic_strain", "strain_energy", "plastic_work", "kinetic_energy",
-)
-MEANS = OF_ELEMENTS[:6]
+ELASTIC = ("strain", "stress", "von_mises", "pressure", "strain_energy", "kinetic_energy")
+PLASTIC = ("plastic_strain", "equivalent_plastic_strain", "plastic_work")
+"""Of materials that yield."""
+OF_ELEMENTS = ELASTIC + PLASTIC
+MEANS = ELASTIC[:4] + PLASTIC[:2]
 """Quantities of elements of which a mean is meant: energies are sums."""
 AT_ONCE = 1_000_000
 """Elements times instants that are computed at once for a group."""

@@ -28,7 +28,10 @@ FIELDS = {
     "stress": (("time", "element", "component", "component2"), "Pa", "stress"),
     "von_mises": (("time", "element"), "Pa", "von Mises stress"),
     "pressure": (("time", "element"), "Pa", "pressure in the element, positive in compression"),
+    "plastic_strain": (("time", "element", "component", "component2"), "1", "plastic strain"),
+    "equivalent_plastic_strain": (("time", "element"), "1", "equivalent plastic strain"),
     "strain_energy": (("time", "element"), "J", "strain energy of the element"),
+    "plastic_work": (("time", "element"), "J", "work of plastic flow in the element"),
     "kinetic_energy": (("time", "element"), "J", "kinetic energy of the element, of the lumped mass"),
 }
 
@@ -62,7 +65,8 @@ def table(history: Steps, over: object, step: int | None) -> _pandas.DataFrame:
     rows: dict[str, tuple[str, ...]] = {"time": ("time",), "nodes": ("time", "node"), "elements": ("time", "element")}
     if one_of("over", over, rows) == "time":
         return to_pandas(contents(history, ()), over, rows)
-    names = element_fields.NODAL if over == "nodes" else element_fields.OF_ELEMENTS
+    of_elements = element_fields.OF_ELEMENTS if history._data.variables else element_fields.ELASTIC
+    names = element_fields.NODAL if over == "nodes" else of_elements
     found = contents(history, names, at, over_time=False)
     if at is None:
         return to_pandas(found, over, rows)

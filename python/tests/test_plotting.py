@@ -254,7 +254,7 @@ def test_bars(bar_history: pc.History) -> None:
     axes = bar_history.plot("stress", step=20)
     assert axes.get_ylabel() == "stress (GPa)" and axes.get_xlabel() == "x (mm)"
     pc.estimate(bar_history).plot_map()
-    with pytest.raises(pc.InputError, match="must be one of displacement, velocity, acceleration, stress, strain_energy"):
+    with pytest.raises(pc.InputError, match="must be one of displacement, velocity, acceleration, stress, equivalent_plastic_strain, strain_energy"):
         bar_history.plot("von_mises")
     with pytest.raises(pc.InputError, match="`step` is 1000"):
         bar_history.plot(step=1000)

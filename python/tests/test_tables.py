@@ -20,7 +20,7 @@ def test_a_history_over_time(block_history: pc.History) -> None:
     assert np.array_equal(table["kinetic"], block_history.balance.kinetic)
     assert np.array_equal(table["total_force_y"], block_history.contact.resultants.force[:, 1])
     assert table.attrs["units"]["total_impulse_x"] == "N s/m" and set(table.attrs["units"]) == {"time", *table.columns}
-    assert list(block_history.balance.to_pandas().columns) == list(table.columns)[:8]
+    assert list(block_history.balance.to_pandas().columns) == list(table.columns)[:9]
 
 
 def test_a_history_over_nodes(block_history: pc.History) -> None:

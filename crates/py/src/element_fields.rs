@@ -17,6 +17,7 @@ type Numbers = fn(&AnyProblem, ElementId, [&[f64]; 2], &mut Vec<f64>);
 /// `kinetic_energy` and displacements (m) for the others, (instants, nodes, dimension); `internal` are the internal
 /// variables of materials that yield, (instants, elements, variables).
 #[pyfunction]
+#[pyo3(signature = (problem, quantity, nodal, internal=None))]
 pub(crate) fn element_field<'py>(
     py: Python<'py>,
     problem: &ProblemData,
