@@ -43,7 +43,7 @@ STRESSES = {"stress_xx": (0, 0), "stress_yy": (1, 1), "stress_xy": (0, 1)}
 SCALARS = {
     "von_mises": ("von Mises stress", "Pa", FIELD),
     "pressure": ("pressure", "Pa", SIGNED),
-    "equivalent_plastic_strain": ("equivalent plastic strain", "", FIELD),
+    "equivalent_plastic_strain": ("equivalent plastic strain", "%", FIELD),
     "strain_energy": ("strain energy of the element", "J", FIELD),
     "kinetic_energy": ("kinetic energy of the element", "J", FIELD),
 }
@@ -62,7 +62,8 @@ def field(history: Steps, quantity: object, step: int) -> tuple[Floats, str, str
         row, column = STRESSES[name]
         return element_field(history, "stress", step)[:, row, column], f"stress σ$_{{{name[-2:]}}}$", "Pa", SIGNED
     told, of, colours = SCALARS[name]
-    return element_field(history, name, step), told, unit(of, history.problem.per_metre), colours
+    values = element_field(history, name, step)
+    return (100.0 * values if of == "%" else values), told, unit(of, history.problem.per_metre), colours
 
 
 def plot_field(
@@ -90,7 +91,7 @@ def draw_field(
     """Draw a field on axes. A frame of an animation has the range of the values and the outermost places (m) of all frames."""
     values, name, unit, colours = found
     mesh = history.problem.mesh
-    factor, prefix = prefixed(values if span is None else np.array(span))
+    factor, prefix = (1.0, "") if unit == "%" else prefixed(values if span is None else np.array(span))
     label = f"{name} ({prefix}{unit})"
     planes: list[Line] = [(each.point, each.normal) for each in history.problem.obstacles if each.point is not None]
     limits = None if span is None else Scale(span[0] / factor, span[1] / factor)

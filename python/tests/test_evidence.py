@@ -339,8 +339,11 @@ def test_the_command_has_its_options_and_exit_codes(tmp_path: Path) -> None:
 def test_an_interrupt_ends_with_a_message(tmp_path: Path, name: str) -> None:
     arguments = [sys.executable, "-m", "studies", "stress-maps", "effectivity", "--output", "ev"]
     child = subprocess.Popen(arguments, cwd=tmp_path, env=AT_ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    # Effectivity comes first on the page and takes minutes.
-    time.sleep(3)
+    # Effectivity comes first on the page and takes minutes. The folder is made once signals are caught.
+    until = time.monotonic() + 60
+    while not (tmp_path / "ev").exists() and time.monotonic() < until:
+        time.sleep(0.1)
+    time.sleep(2)
     os.kill(child.pid, getattr(signal, name))
     _, said = child.communicate(timeout=60)
     assert child.returncode == 130 and "interrupted: no study is done" in said

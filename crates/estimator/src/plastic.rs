@@ -30,6 +30,12 @@ pub(crate) fn tensor<const D: usize>([xx, yy, xy]: [f64; 3]) -> Tensor<D> {
     std::array::from_fn(|a| std::array::from_fn(|b| if a != b { xy } else { [xx, yy][a] }))
 }
 
+/// A displacement gradient less ε* of its element.
+pub(crate) fn elastic<const D: usize>(gradient: &Tensor<D>, eigenstrain: [f64; 3]) -> Tensor<D> {
+    let eigenstrain = tensor::<D>(eigenstrain);
+    std::array::from_fn(|a| std::array::from_fn(|b| gradient[a][b] - eigenstrain[a][b]))
+}
+
 /// Takes ε* of an element at some levels side by side off a displacement gradient.
 #[inline(always)]
 pub(crate) fn take_off<'l, T: Value<Stored = Lanes>, const D: usize>(

@@ -7,7 +7,7 @@ use crate::kinematic::{ContactMotion, common, settle};
 use crate::map::{AdmissibleFields, ElementMap};
 use crate::measure::{ElementError, ElementMeasure};
 use crate::options::Acceleration;
-use crate::plastic::tensor;
+use crate::plastic::elastic;
 use crate::reconstruction::Concentration;
 use crate::request::{Request, RequestError};
 use crate::traction::{EquilibratedLevel, EquilibratedLevels, Equilibration};
@@ -139,8 +139,7 @@ impl Maps {
             let compatible = |(e, element): (usize, &Element<D, N>)| {
                 let mut gradient = element.gradient(&element.gather(displacement));
                 if let Some(&eigen) = eigenstrains.as_chunks::<3>().0.get(e) {
-                    let eigen = tensor::<D>(eigen);
-                    (0..D).for_each(|a| (0..D).for_each(|b| gradient[a][b] -= eigen[a][b]));
+                    gradient = elastic(&gradient, eigen);
                 }
                 problem.material(ElementId::new(e)).stress(&gradient).into_iter().flatten()
             };

@@ -7,7 +7,7 @@ use crate::deformation::Deformation;
 use crate::element::Element;
 use crate::field_lanes::FieldLanes;
 use crate::inertia::{add_lumping_stress, arms, lumping_stress};
-use crate::plastic::{EigenStrains, take_off, tensor};
+use crate::plastic::{EigenStrains, elastic, take_off};
 use crate::residual::worse;
 use crate::smoothing::{Smoothed, SmoothedStrains, Smoothing, StrainLevel};
 use crate::time_level::{ForcesKnown, Side, TimeLevel};
@@ -273,8 +273,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         let data = &self.elements[element.index()];
         let mut gradient = data.gradient(&data.gather(&forces.level.displacement));
         if let Some(strains) = &forces.level.plastic {
-            let eigen = tensor::<D>(strains[element.index()]);
-            (0..D).for_each(|a| (0..D).for_each(|b| gradient[a][b] -= eigen[a][b]));
+            gradient = elastic(&gradient, strains[element.index()]);
         }
         self.problem.material(element).respond(&gradient, &mut []).0
     }
