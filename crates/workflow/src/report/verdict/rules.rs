@@ -244,7 +244,7 @@ const RULES: [Rule; 31] = [
 ];
 
 /// The indices of bars that yield, studies/yielding, and of plane bodies, studies/random_bodies, yielding.
-const YIELDING: [([f64; 2], &str); 2] = [([0.6, 1.6], "bars that yield"), ([0.55, 1.9], "bodies that yield")];
+const YIELDING: [([f64; 2], &str); 2] = [([0.6, 1.6], "bars that yield"), ([0.5, 1.9], "bodies that yield")];
 
 /// The rule of a run: the first one that applies. Where a material yields, its range has that of such bodies as well.
 pub(super) fn rule(facts: &Facts) -> Rule {

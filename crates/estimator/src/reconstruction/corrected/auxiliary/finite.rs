@@ -409,7 +409,7 @@ fn lumped_share<const D: usize, const N: usize>(element: &Element<D, N>) -> f64 
 }
 
 /// The local number of a node of an element.
-fn corner<const D: usize, const N: usize>(element: &Element<D, N>, node: NodeId) -> usize {
+pub(super) fn corner<const D: usize, const N: usize>(element: &Element<D, N>, node: NodeId) -> usize {
     element.nodes.iter().position(|own| *own == node).unwrap_or(0)
 }
 

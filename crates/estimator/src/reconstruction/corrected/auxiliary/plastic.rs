@@ -3,6 +3,7 @@
 //! Each element has the law of its own strain. The forces of the auxiliary solution are those of the smoothed elastic
 //! strains, K_s u less B̄ᵀK̄ε* of the plastic ones, with the same means. Without flow nothing changes.
 
+use super::finite::corner;
 use super::lanes::Nodal;
 use crate::element::Element;
 use crate::parallel::by_pieces;
@@ -18,8 +19,8 @@ use std::array::from_fn;
 pub(super) struct PlasticStrains<const D: usize, const N: usize> {
     laws: Vec<VonMises>,
     elements: Vec<Element<D, N>>,
-    /// Internal variables, in rows.
-    internal: Vec<f64>,
+    /// Internal variables; of bars the first two.
+    internal: Vec<[f64; 4]>,
     eigen: EigenStrains,
     strains: SmoothedStrains<f64>,
     stresses: Vec<Tensor<D>>,
@@ -33,7 +34,7 @@ impl<const D: usize, const N: usize> PlasticStrains<D, N> {
         problem.yields().then(|| Self {
             laws: problem.materials().iter().map(VonMises::new).collect(),
             elements: elements.to_vec(),
-            internal: vec![0.0; VonMises::count(D) * elements.len()],
+            internal: vec![[0.0; 4]; elements.len()],
             eigen: vec![[0.0; 3]; elements.len()],
             strains: SmoothedStrains::default(),
             stresses: vec![[[0.0; D]; D]; elements.len()],
@@ -61,12 +62,12 @@ impl<const D: usize, const N: usize> PlasticStrains<D, N> {
             let (u, v): ([f64; D], [f64; D]) = (displacement[node.index()].of(0), half_step[node.index()].of(0));
             from_fn(|c| u[c] + due * v[c])
         };
-        let mut rows: Vec<(&mut [f64], &mut [f64; 3])> = internal.chunks_exact_mut(count).zip(&mut eigen[..]).collect();
-        by_pieces(&mut rows[..], &|first, rows| {
-            for (k, (variables, eigen)) in rows.iter_mut().enumerate() {
-                let (element, law) = (&elements[first + k], &laws[usize::from(materials[first + k])]);
+        by_pieces((&mut internal[..], &mut eigen[..], elements), &|first, (internal, eigen, elements)| {
+            let points = internal.iter_mut().zip(eigen).zip(elements).zip(&materials[first..]);
+            for (((variables, eigen), element), law) in points {
+                let (variables, law) = (&mut variables[..count], &laws[usize::from(*law)]);
                 law.advance(&element.gradient(&element.nodes.map(place)), variables);
-                **eigen = components(&law.eigenstrain::<f64, D>(variables));
+                *eigen = components(&law.eigenstrain::<f64, D>(variables));
             }
         });
         *yielded = *yielded || eigen.as_flattened().iter().any(|x| *x != 0.0);
@@ -90,8 +91,7 @@ impl<const D: usize, const N: usize> PlasticStrains<D, N> {
                 let node = NodeId::new(first + k);
                 for element in stars.star(node).elements {
                     let own = &elements[element.index()];
-                    let corner = own.nodes.iter().position(|other| *other == node).unwrap_or(0);
-                    let internal = own.internal_force(corner, &stresses[element.index()]);
+                    let internal = own.internal_force(corner(own, node), &stresses[element.index()]);
                     (0..D).for_each(|c| force[c] += internal[c]);
                 }
             }
