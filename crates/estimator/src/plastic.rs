@@ -5,7 +5,7 @@
 
 use percute_core::material::{Elastic, Tensor, VonMises};
 use percute_core::problem::Problem;
-use percute_core::simd::lanes::{Lanes, Value};
+use percute_core::simd::lanes::{LANES, Lanes, Value};
 
 /// ε* of all elements, as xx, yy and xy.
 pub(crate) type EigenStrains = Vec<[f64; 3]>;
@@ -36,24 +36,38 @@ pub(crate) fn elastic<const D: usize>(gradient: &Tensor<D>, eigenstrain: [f64; 3
     std::array::from_fn(|a| std::array::from_fn(|b| gradient[a][b] - eigenstrain[a][b]))
 }
 
-/// Takes ε* of an element at some levels side by side off a displacement gradient.
+/// ε* of all elements at some levels side by side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EigenLevels<'l>([Option<&'l EigenStrains>; LANES]);
+
+impl<'l> EigenLevels<'l> {
+    /// Those of levels; none where no level has any.
+    #[inline(always)]
+    pub(crate) fn new(levels: impl Iterator<Item = Option<&'l EigenStrains>>) -> Option<Self> {
+        let mut all = [None; LANES];
+        all.iter_mut().zip(levels).for_each(|(to, level)| *to = level);
+        all.iter().any(Option::is_some).then_some(Self(all))
+    }
+
+    /// A component of ε* of an element.
+    #[inline(always)]
+    fn component(&self, element: usize, c: usize) -> Lanes {
+        Lanes::at_levels(|k| self.0[k].map_or(0.0, |strains| strains[element][c]))
+    }
+}
+
+/// Takes ε* of an element, where there is one, off a displacement gradient.
 #[inline(always)]
-pub(crate) fn take_off<'l, T: Value<Stored = Lanes>, const D: usize>(
+pub(crate) fn take_off<T: Value<Stored = Lanes>, const D: usize>(
+    eigen: Option<&EigenLevels<'_>>,
     gradient: &mut [[T; D]; D],
-    levels: impl Iterator<Item = Option<&'l EigenStrains>>,
     element: usize,
 ) {
-    let mut lanes: Option<[Lanes; 3]> = None;
-    for (lane, strains) in levels.enumerate() {
-        if let Some(strains) = strains {
-            let all = lanes.get_or_insert([Lanes::ZERO; 3]);
-            (0..3).for_each(|c| all[c].0[lane] = strains[element][c]);
-        }
-    }
-    let Some(lanes) = lanes else { return };
+    let Some(eigen) = eigen else { return };
     for a in 0..D {
         for b in 0..D {
-            gradient[a][b] -= gradient[a][b].load(&lanes[if a != b { 2 } else { a }]);
+            let c = if a != b { 2 } else { a };
+            gradient[a][b] -= gradient[a][b].load(&eigen.component(element, c));
         }
     }
 }

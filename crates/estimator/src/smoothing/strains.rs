@@ -10,7 +10,7 @@ use crate::deformation::second_stress;
 use crate::element::Element;
 use crate::field_lanes::FieldLanes;
 use crate::parallel::by_pieces;
-use crate::plastic::{EigenStrains, take_off};
+use crate::plastic::{EigenLevels, EigenStrains, take_off};
 use crate::pool::Pool;
 use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::material::{Elastic, green_strain};
@@ -195,11 +195,12 @@ impl<const D: usize, const N: usize> Task for StrainsOfBlock<'_, '_, D, N> {
         let Self { of, blocks, levels, block, fields, strains } = self;
         let (like, own) = (Wide::zeros(r), blocks.block(block));
         fields.gather(like, own.nodes, levels.iter().map(|level| Some(level.displacement)));
+        let eigen = EigenLevels::new(levels.iter().map(|level| level.plastic));
         let range = blocks.elements(block);
         let elements = &of.elements[range.clone()];
         for (((element, local), strain), e) in elements.iter().zip(own.local).zip(strains).zip(range) {
             let mut gradient = element.gradient(&fields.of(like, local));
-            take_off(&mut gradient, levels.iter().map(|level| level.plastic), e);
+            take_off(eigen.as_ref(), &mut gradient, e);
             *strain = averaged(of.problem.material(ElementId::new(e)), &gradient).map(
                 #[inline(always)]
                 |x| x.store(),

@@ -7,7 +7,7 @@ use crate::deformation::Deformation;
 use crate::element::Element;
 use crate::field_lanes::FieldLanes;
 use crate::inertia::{add_lumping_stress, arms, lumping_stress};
-use crate::plastic::{EigenStrains, elastic, take_off};
+use crate::plastic::{EigenLevels, elastic, take_off};
 use crate::residual::worse;
 use crate::smoothing::{Smoothed, SmoothedStrains, Smoothing, StrainLevel};
 use crate::time_level::{ForcesKnown, Side, TimeLevel};
@@ -152,11 +152,12 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         let (range, block) = (self.blocks.elements(block), self.blocks.block(block));
         fields.displacement.gather(like, block.nodes, forces.iter().map(|f| Some(&f.level.displacement[..])));
         fields.acceleration.gather(like, block.nodes, forces.iter().map(|f| Some(&f.acceleration[..])));
+        let eigen = eigenstrains(forces);
         let mut largest = like.zero();
         for (e, local) in range.zip(block.local) {
             let (element, law) = (&self.elements[e], self.problem.material(ElementId::new(e)));
             let mut gradient = element.gradient(&fields.displacement.of(like, local));
-            take_off(&mut gradient, eigenstrains(forces), e);
+            take_off(eigen.as_ref(), &mut gradient, e);
             let (stress, _) = law.respond(&gradient, &mut []);
             largest = largest.max(largest_force(element, &stress, &fields.acceleration.of(like, local)));
         }
@@ -348,7 +349,7 @@ impl<const D: usize> StarFields<D> {
         (forces, strains): (&[ForcesKnown<D>], Option<BalancedStrains<'_>>),
         block: &StarBlock<'_, N>,
     ) -> bool {
-        let finite = all.problem.is_finite();
+        let (finite, eigen) = (all.problem.is_finite(), eigenstrains(forces));
         if strains.is_none() || finite {
             self.displacement.gather(like, block.nodes, forces.iter().map(|f| Some(&f.level.displacement[..])));
         }
@@ -367,7 +368,7 @@ impl<const D: usize> StarFields<D> {
                 Some(strain) if !finite => (strain, law.respond(&strain, &mut []).0),
                 mean => {
                     let mut gradient = element.gradient(&self.displacement.of(like, local));
-                    take_off(&mut gradient, eigenstrains(forces), id.index());
+                    take_off(eigen.as_ref(), &mut gradient, id.index());
                     let plain = || law.respond(&gradient, &mut []).0;
                     (gradient, mean.map_or_else(plain, |second| first_stress(&gradient, &second)))
                 }
@@ -401,9 +402,9 @@ impl<const D: usize> StarFields<D> {
     }
 }
 
-/// ε* at each level.
-fn eigenstrains<const D: usize>(forces: &[ForcesKnown<D>]) -> impl Iterator<Item = Option<&EigenStrains>> {
-    forces.iter().map(|forces| forces.level.plastic.as_ref())
+/// ε* at each level; none where no material yields.
+fn eigenstrains<const D: usize>(forces: &[ForcesKnown<D>]) -> Option<EigenLevels<'_>> {
+    EigenLevels::new(forces.iter().map(|forces| forces.level.plastic.as_ref()))
 }
 
 /// Largest |Vσ∇φ_i| and lumped inertia force of an element (N).

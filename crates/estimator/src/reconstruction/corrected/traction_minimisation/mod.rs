@@ -24,7 +24,7 @@ use crate::deformation::Deformation;
 use crate::element::Element;
 use crate::measure::{BalanceFields, BalanceNode, ElementMeasure};
 use crate::options::Acceleration;
-use crate::plastic::take_off;
+use crate::plastic::{EigenLevels, take_off};
 use crate::pool::Pool;
 use crate::stress::EnergyForms;
 use crate::time_level::ForcesKnown;
@@ -305,6 +305,7 @@ impl<const D: usize, const N: usize> Slopes<'_, D, N> {
         let block = equilibration.blocks.block(block);
         fields.gather(like, problem, block.nodes, levels);
         fields.gather_displacement(like, block.nodes, levels);
+        let eigen = EigenLevels::new(levels.forces().iter().map(|forces| forces.level.plastic.as_ref()));
         let mut forms = EnergyForms::new(problem.mesh().kind());
         for start in range.clone().step_by(LANES) {
             let group = start..(start + LANES).min(range.end);
@@ -318,7 +319,7 @@ impl<const D: usize, const N: usize> Slopes<'_, D, N> {
                 let measure = ElementMeasure::of_nodes((problem, element, id), self.choice, &nodes);
                 let balance = fields.nodal_balance(like, e - start, levels, id, &nodes);
                 let mut gradient = element.gradient(&BalanceNode::displacements(like, &nodes));
-                take_off(&mut gradient, levels.forces().iter().map(|forces| forces.level.plastic.as_ref()), e);
+                take_off(eigen.as_ref(), &mut gradient, e);
                 let [stress, _] = measure.stress_and_strain(&gradient);
                 let mut slope = moment_slope(&measure, &form, &balance, &stress);
                 if self.present.is_some() {
