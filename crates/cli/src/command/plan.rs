@@ -14,7 +14,7 @@ use percute_workflow::effort::{Effort, Long};
 use percute_workflow::grade::Graded;
 use percute_workflow::history::open;
 use percute_workflow::outputs::{self, OutputFile};
-use percute_workflow::plan::{Basis, NextMesh, SizeField};
+use percute_workflow::plan::{Basis, NextMesh, SizeField, can_be_planned};
 use percute_workflow::run::{Analysis, Results, Storage, located, run};
 use std::path::Path;
 
@@ -32,6 +32,7 @@ pub(super) fn command(arguments: &PlanArguments, console: &mut Console<'_>) -> R
     outputs::check(&[(what, file)], &[size_field(arguments)], *force)?;
     if is_history {
         let stored = open(file)?;
+        can_be_planned(&stored.problem).map_err(Failure::Argument)?;
         let options = Options { threads: *threads, ..stored.options };
         let watch = &mut Watch::new(console.progress && !quiet, console.stop);
         let analysis = Analysis { options, ..Analysis::default() };
@@ -41,6 +42,7 @@ pub(super) fn command(arguments: &PlanArguments, console: &mut Console<'_>) -> R
     }
     let case = case(file)?;
     case.check_run(true, Long::asked(*long, "--long"))?;
+    can_be_planned(&case.problem).map_err(Failure::Argument)?;
     console.warn_about(&case, *quiet);
     let Some(case) = &resolved(&case, *quiet, console)? else { return Ok(INTERRUPTED) };
     let options = Options { threads: *threads, ..case.options };

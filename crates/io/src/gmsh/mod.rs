@@ -41,7 +41,7 @@ const SCALES: RangeInclusive<f64> = 1e-12..=1e12;
 
 /// Bytes of memory for each byte of a file beside the file, before the mesh itself asks for memory: with it, 5.2 to 7.9
 /// were measured.
-const RAW: u64 = 6;
+const RAW: u64 = 8;
 
 /// A mesh from a file: of lines along x, or of triangles in a plane z = const. Its import warnings list omitted parts.
 #[derive(Clone, Debug)]

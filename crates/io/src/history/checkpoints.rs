@@ -1,7 +1,7 @@
 //! The checkpoints of a history: the two newest states from which its run can go on.
 //!
-//! They are rows of numbers: step, sums of the balance, u_n, v_{n−½} and internal variables. A row that was being written when the
-//! run was killed does not have its checksum; the other one does.
+//! They are rows of numbers: step, sums of the balance, u_n, v_{n−½} and internal variables. A row that was being
+//! written when the run was killed does not have its checksum; the other one does.
 
 use super::native::bytes;
 use crate::checksum::Checksum;

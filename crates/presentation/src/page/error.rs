@@ -65,8 +65,8 @@ pub(super) fn over_time(document: &Document) -> String {
     };
     let Some(svg) = chart.draw() else { return String::new() };
     let caption = "√η over time and the roots of its parts [14]: kinetic, the misfit of the law of inertia, elastic, \
-                   that of Hooke's law, dissipation, that of plastic flow, and contact, that of the contact law. The parts of η, not \
-                   their roots, add up.";
+                   that of Hooke's law, dissipation, that of plastic flow, and contact, that of the contact law. The \
+                   parts of η, not their roots, add up.";
     let figure = figure(&svg, "error over time with its parts", caption);
     let parts: Vec<_> = names.iter().map(|name| (*name, document.number(&format!("parts.{name}")))).collect();
     let total: f64 = parts.iter().filter_map(|(_, part)| *part).sum();

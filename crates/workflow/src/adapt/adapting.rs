@@ -9,7 +9,7 @@ use crate::effort::Effort;
 use crate::failure::Failure;
 use crate::memory;
 use crate::numbering::Ordered;
-use crate::plan::{Basis, Branch, Plan, sizes};
+use crate::plan::{Basis, Branch, Plan, can_be_planned, sizes};
 use crate::report::{Report, Subject};
 use crate::restated::Restated;
 use crate::run::{Results, whole};
@@ -52,13 +52,6 @@ pub struct Adapting {
     reason: Option<Reason>,
 }
 
-/// Why a body that yields is not adapted.
-const YIELDING: &str = "runs on adapted meshes need elastic materials: where a material yields, the error has no \
-                        sources to plan from; refine the mesh, and compare by `percute verify`";
-/// Why a body that turns is not adapted.
-const FINITE: &str = "runs on adapted meshes need kinematics = \"small\": with finite kinematics the error has no \
-                      sources to plan from; refine the mesh, and compare by `percute verify`";
-
 impl Adapting {
     /// Begins with a problem on its mesh.
     ///
@@ -72,12 +65,7 @@ impl Adapting {
         (wish, mesher): (Wish, Mesher),
     ) -> Result<Self, Failure> {
         wish.check()?;
-        if problem.is_finite() {
-            return Err(Failure::Argument(FINITE.into()));
-        }
-        if problem.yields() {
-            return Err(Failure::Argument(YIELDING.into()));
-        }
+        can_be_planned(problem).map_err(Failure::Argument)?;
         if options.reconstruction != Reconstruction::Corrected {
             return Err(Failure::Argument(format!(
                 "the reconstruction \"{}\" has no sources of the error to plan from; take \"corrected\"",

@@ -23,6 +23,7 @@ pub use size_field::SizeField;
 pub(crate) use wanted::PlannedSizes;
 
 use cheapest::{Sizing, smallest};
+use percute_core::problem::AnyProblem;
 use serde::Serialize;
 
 /// The part of the target that is aimed at.
@@ -36,6 +37,24 @@ pub(crate) const LARGEST: f64 = 1.5;
 const PART: f64 = 0.8;
 /// A source of more than this part of the squared mean error decides on the branch.
 const MOST: f64 = 0.5;
+
+/// Whether the error of a problem has sources to plan from.
+///
+/// # Errors
+/// Finite kinematics, and materials that yield, in words.
+pub fn can_be_planned(problem: &AnyProblem) -> Result<(), String> {
+    let [need, with] = if problem.is_finite() {
+        ["kinematics = \"small\"", "with finite kinematics"]
+    } else if problem.yields() {
+        ["elastic materials", "where a material yields,"]
+    } else {
+        return Ok(());
+    };
+    Err(format!(
+        "plans of meshes need {need}: {with} the error has no sources to plan from; refine the mesh, and compare by \
+         `percute verify`"
+    ))
+}
 
 /// How elements are made smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -5,6 +5,7 @@ use crate::load::BodyForce;
 use crate::material::{Elastic, Hypothesis, Law};
 use crate::message::short;
 use crate::problem::Problem;
+use std::ops::RangeInclusive;
 
 /// Less dense than any solid but foams (kg/m³).
 const LIGHT: f64 = 10.0;
@@ -46,6 +47,7 @@ pub(super) fn plausibility_warnings<const D: usize>(problem: &Problem<D>) -> Vec
         all.extend([density(material, index), stiffness(material, size, index)].into_iter().flatten().take(1));
         all.extend(extent(material, size, index));
         all.extend(locking(material, index));
+        all.extend(yielding(material, index));
     }
     let lightest = problem.materials().iter().map(|material| material.density()).fold(f64::INFINITY, f64::min);
     let forces = problem.conditions().body_forces.iter().enumerate();
@@ -187,6 +189,20 @@ fn locking(material: &Elastic, index: usize) -> Option<PlausibilityWarning> {
         "material, poisson: triangles will lock",
         message,
     ))
+}
+
+/// Metals yield at 1e-4 to 0.03 of Young's modulus, polymers below 0.1.
+const YIELDS: RangeInclusive<f64> = 1e-5..=0.1;
+
+fn yielding(material: &Elastic, index: usize) -> Option<PlausibilityWarning> {
+    let stress = material.yield_stress()?;
+    let ratio = stress / material.young();
+    let message = format!(
+        "is {} Pa, {} of Young's modulus; metals yield at 1e-4 to 0.03 of it: is it in Pa?",
+        short(stress),
+        short(ratio)
+    );
+    if YIELDS.contains(&ratio) { None } else { units("material", Some(index), "yield_stress", message) }
 }
 
 /// Accelerations of gravity in the two digits in which they are written (m/s²).
