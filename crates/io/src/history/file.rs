@@ -258,17 +258,19 @@ impl HistoryFile {
     /// # Errors
     /// As for [`HistoryFile::displacement`].
     pub fn plastic(&self, steps: Range<usize>) -> Result<Vec<f64>, FileError> {
-        let (elements, count) = (self.mesh().element_count(), self.variables());
-        let rows = elements * steps.start..elements * steps.end;
-        self.steps(steps.clone(), |opened| {
-            if count == 0 {
-                return Ok(Vec::new());
-            }
-            let data = opened.root().group("VTKHDF")?.group("CellData")?.data(PLASTIC)?;
-            let values = data.float_rows(rows)?;
-            self.check(opened, PLASTIC, steps, &values, of_vectors)?;
-            Ok(values)
-        })
+        self.steps(steps.clone(), |opened| self.plastic_rows(opened, steps))
+    }
+
+    /// The same from the open file.
+    pub(super) fn plastic_rows(&self, opened: &Opened, steps: Range<usize>) -> Result<Vec<f64>, FileCause> {
+        if self.variables() == 0 {
+            return Ok(Vec::new());
+        }
+        let elements = self.mesh().element_count();
+        let data = opened.root().group("VTKHDF")?.group("CellData")?.data(PLASTIC)?;
+        let values = data.float_rows(elements * steps.start..elements * steps.end)?;
+        self.check(opened, PLASTIC, steps, &values, of_vectors)?;
+        Ok(values)
     }
 
     /// R_n (N) on [`HistoryFile::contact_nodes`], in rows, step after step.

@@ -81,26 +81,24 @@ impl HistorySource {
     fn block(&self, steps: Range<usize>) -> Result<StepBlock, FileError> {
         let nodes = self.file.mesh().node_count();
         let rows = steps.start * nodes..steps.end * nodes;
-        self.file
-            .again(|opened| {
-                self.check_counter(opened)?;
-                let fields = opened.root().group("VTKHDF")?.group("PointData")?;
-                let motion = [0, 1].map(|at| self.motion(&fields, at, rows.clone(), steps.start));
-                let [velocity, acceleration] = motion;
-                let displacement = fields.data("displacement")?;
-                let displacement =
-                    vectors(&displacement, &displacement.float_rows(rows.clone())?, self.file.dimension())?;
-                self.finite("VTKHDF/PointData/displacement", &displacement, steps.start, |at| at)?;
-                self.file.check(opened, "displacement", steps.clone(), &displacement, of_vectors)?;
-                let (reaction, touching) = self.contact(opened, steps.clone())?;
-                let motion = [velocity?, acceleration?];
-                for (name, values) in ["velocity", "acceleration"].into_iter().zip(&motion) {
-                    let Some(values) = values else { continue };
-                    self.file.check(opened, name, steps.clone(), values, of_vectors)?;
-                }
-                Ok(StepBlock { displacement, reaction, touching, motion, plastic: Vec::new() })
-            })
-            .and_then(|block| Ok(StepBlock { plastic: self.file.plastic(steps)?, ..block }))
+        self.file.again(|opened| {
+            self.check_counter(opened)?;
+            let fields = opened.root().group("VTKHDF")?.group("PointData")?;
+            let motion = [0, 1].map(|at| self.motion(&fields, at, rows.clone(), steps.start));
+            let [velocity, acceleration] = motion;
+            let displacement = fields.data("displacement")?;
+            let displacement = vectors(&displacement, &displacement.float_rows(rows.clone())?, self.file.dimension())?;
+            self.finite("VTKHDF/PointData/displacement", &displacement, steps.start, |at| at)?;
+            self.file.check(opened, "displacement", steps.clone(), &displacement, of_vectors)?;
+            let (reaction, touching) = self.contact(opened, steps.clone())?;
+            let motion = [velocity?, acceleration?];
+            for (name, values) in ["velocity", "acceleration"].into_iter().zip(&motion) {
+                let Some(values) = values else { continue };
+                self.file.check(opened, name, steps.clone(), values, of_vectors)?;
+            }
+            let plastic = self.file.plastic_rows(opened, steps)?;
+            Ok(StepBlock { displacement, reaction, touching, motion, plastic })
+        })
     }
 
     fn check_counter(&self, opened: &Opened) -> Result<(), FileCause> {
