@@ -109,8 +109,8 @@ class Elastic:
     law: Literal["neo_hookean", "svk", "hencky"] | None = None
 
     def __post_init__(self) -> None:
-        units = {"young": "Pa", "density": "kg/m³", "thickness": "m", "poisson": "", "section": "m²"} | dict.fromkeys(("yield_stress", "tangent", "hardening"), "Pa")
-        units["kinematic"] = ""
+        units = {"young": "Pa", "density": "kg/m³", "thickness": "m", "poisson": "", "section": "m²"}
+        units |= {"yield_stress": "Pa", "tangent": "Pa", "hardening": "Pa", "kinematic": ""}
         for name, unit in units.items():
             if getattr(self, name) is not None or name in ("young", "density", "thickness"):
                 object.__setattr__(self, name, number(name, getattr(self, name), unit=unit))

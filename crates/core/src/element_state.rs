@@ -139,21 +139,30 @@ pub fn displacement_gradient<const D: usize>(mesh: &Mesh, element: ElementId, di
 }
 
 /// First Piola–Kirchhoff stress P of an element (Pa), force per undeformed area, for these displacements of all nodes
-/// (m), in rows. With small strains it is σ.
+/// (m) and internal variables of all elements, in rows. With small strains it is σ.
 #[must_use]
 pub fn first_piola_stress<'p>(
     problem: impl Into<ProblemRef<'p>>,
     element: ElementId,
     displacement: &[f64],
+    internal: &[f64],
 ) -> Tensor<3> {
-    fn of<const D: usize>(problem: &Problem<D>, element: ElementId, displacement: &[[f64; D]]) -> Tensor<3> {
+    fn of<const D: usize>(
+        problem: &Problem<D>,
+        element: ElementId,
+        displacement: &[[f64; D]],
+        internal: &[f64],
+    ) -> Tensor<3> {
+        if problem.yields() {
+            return ElementState::of(problem, element, displacement, internal).stress;
+        }
         let gradient = displacement_gradient(problem.mesh(), element, displacement);
         in_space(&problem.material(element).respond(&gradient, &mut []).0)
     }
-    fn any(problem: ProblemRef<'_>, element: ElementId, displacement: &[f64]) -> Tensor<3> {
-        on_problem!(problem, problem => of(problem, element, vectors(displacement)))
+    fn any(problem: ProblemRef<'_>, element: ElementId, displacement: &[f64], internal: &[f64]) -> Tensor<3> {
+        on_problem!(problem, problem => of(problem, element, vectors(displacement), internal))
     }
-    any(problem.into(), element, displacement)
+    any(problem.into(), element, displacement, internal)
 }
 
 /// Principal stretches of an element in the plane, the larger one first, for these displacements of all nodes (m), in

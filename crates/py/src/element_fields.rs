@@ -73,13 +73,7 @@ fn quantity_of(quantity: &str) -> Option<(Numbers, usize)> {
     Some(match quantity {
         "strain" => (|p, e, at, to| to.extend(tensor(p, &state(p, e, at).strain)), 2),
         "stress" => (|p, e, at, to| to.extend(tensor(p, &state(p, e, at).stress)), 2),
-        "first_piola" => (
-            |p, e, at, to| match p.yields() {
-                true => to.extend(tensor(p, &state(p, e, at).stress)),
-                false => to.extend(tensor(p, &first_piola_stress(p, e, at[0]))),
-            },
-            2,
-        ),
+        "first_piola" => (|p, e, [u, internal], to| to.extend(tensor(p, &first_piola_stress(p, e, u, internal))), 2),
         "principal_stretches" => {
             (|p, e, [u, _], to| to.extend(principal_stretches(p, e, u).into_iter().take(p.dimension())), 1)
         }

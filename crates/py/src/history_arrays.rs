@@ -56,7 +56,9 @@ impl HistoryArrays<'_> {
     }
 
     fn history(&self, py: Python<'_>, problem: &AnyProblem, times: &TimeGrid) -> PyResult<History> {
-        let (mut history, mut evaluation) = (History::new(times), Evaluation::new(problem, times));
+        let mut history = History::new(times);
+        // Plastic strains follow from the displacements of all steps.
+        let mut evaluation = problem.yields().then(|| Evaluation::new(problem, times));
         let (nodes, contact) = (problem.mesh().node_count(), problem.contact_nodes().len());
         let dimension = problem.dimension();
         let (in_body, in_contact) = (dimension * nodes, dimension * contact);
@@ -72,13 +74,10 @@ impl HistoryArrays<'_> {
                 velocity: self.motion[0].map(|a| rows(a, index, in_body)),
                 acceleration: self.motion[1].map(|a| rows(a, index, in_body)),
             };
-            if problem.yields() {
-                // Plastic strains follow from the displacements of all steps.
-                let state = evaluation.advance(&step).map_err(|error| errors::input(py, error))?;
-                history.push(state.step()).map_err(|error| errors::input(py, error))?;
-                continue;
-            }
-            history.push(&step).map_err(|error| errors::input(py, error))?;
+            let state = evaluation.as_mut().map(|evaluation| evaluation.advance(&step)).transpose();
+            let state = state.map_err(|error| errors::input(py, error))?;
+            let pushed = history.push(state.as_ref().map_or(&step, |state| state.step()));
+            pushed.map_err(|error| errors::input(py, error))?;
         }
         Ok(history)
     }

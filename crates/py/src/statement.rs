@@ -4,7 +4,7 @@ use crate::errors;
 use percute_core::border::{Vector, row};
 use percute_core::contact::{AnyObstacle, Interface, ObstacleError, PlaneAt};
 use percute_core::load::{BodyForce, Profile, Support, Table, TableError, Traction};
-use percute_core::material::{Elastic, Hardening, Hypothesis, Kinematics, Law, MaterialError};
+use percute_core::material::{Elastic, Hypothesis, Kinematics, Law, MaterialError};
 use percute_core::problem::{Between, Contact};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -51,12 +51,7 @@ pub(crate) fn material(name: &str, given: &Bound<'_, PyAny>, dimension: usize) -
     let kinematics = kinematics.map_err(|(key, told)| bad(key, told))?;
     let stated: [Option<f64>; 3] =
         [attribute(given, "tangent")?, attribute(given, "hardening")?, attribute(given, "kinematic")?];
-    let yielding = |law: Elastic| {
-        let hardening = Hardening::stated(young, yield_stress, stated)?;
-        let law = law.with_kinematics(kinematics)?;
-        let law = yield_stress.map_or(Ok(law), |stress| law.with_yield_stress(stress))?;
-        hardening.map_or(Ok(law), |hardening| law.with_hardening(hardening))
-    };
+    let yielding = |law: Elastic| law.with_yielding(yield_stress, stated)?.with_kinematics(kinematics);
     if dimension == 1 {
         for (key, there) in
             [("poisson", poisson.is_some()), ("plane", plane.is_some()), ("thickness", thickness != 1.0)]

@@ -92,8 +92,7 @@ impl<'p, const D: usize> Dynamics<'p, D> {
     /// Subtracts the internal forces (N) from `force` and returns the strain energy (J). Of materials that yield those
     /// of a body that had no strain before.
     pub fn subtract_internal_forces(&self, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
-        let mut internal = vec![0.0; self.problem.variables() * self.problem.mesh().element_count()];
-        on_kernel!(&self.kernel, kernel => kernel.subtract(displacement, &mut internal, force))
+        self.kernel.subtract_from_rest(displacement, force)
     }
 
     /// The forces M a_n of all nodes (N) but for contact, supports included. Returns the strain

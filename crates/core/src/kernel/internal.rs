@@ -1,6 +1,6 @@
 //! The internal forces of any problem, in rows.
 
-use super::{Kernel, ProblemKernel, on_kernel};
+use super::ProblemKernel;
 use crate::border::vectors;
 use crate::problem::ProblemRef;
 
@@ -28,16 +28,8 @@ impl InternalForces {
     /// Subtracts the internal forces from `force` (N), both in rows, and returns the strain energy (J).
     pub fn subtract_from_rows(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
         match &self.0 {
-            OfDimension::One(kernel) => subtract(kernel, displacement, force),
-            OfDimension::Two(kernel) => subtract(kernel, displacement, force),
+            OfDimension::One(kernel) => kernel.subtract_from_rest(vectors(displacement), force.as_chunks_mut().0),
+            OfDimension::Two(kernel) => kernel.subtract_from_rest(vectors(displacement), force.as_chunks_mut().0),
         }
     }
-}
-
-fn subtract<const D: usize>(kernel: &ProblemKernel<D>, displacement: &[f64], force: &mut [f64]) -> f64 {
-    let (displacement, force) = (vectors::<D>(displacement), force.as_chunks_mut().0);
-    on_kernel!(kernel, kernel => {
-        let elements = Kernel::<D>::strips(kernel).elements(Kernel::<D>::strips(kernel).count() - 1).end;
-        kernel.subtract(displacement, &mut vec![0.0; Kernel::<D>::variables(kernel) * elements], force)
-    })
 }

@@ -89,6 +89,15 @@ impl<const D: usize> ProblemKernel<D> {
             (false, true) => Self::Yielding(PointKernel::new(problem, VonMises::new)),
         }
     }
+
+    /// Subtracts the internal forces of all elements from `force` (N) and returns the strain energy (J); of materials
+    /// that yield those of a body that had no strain before.
+    pub(crate) fn subtract_from_rest(&self, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
+        on_kernel!(self, kernel => {
+            let variables = Kernel::<D>::variables(kernel) * Kernel::<D>::strips(kernel).element_count();
+            kernel.subtract(displacement, &mut vec![0.0; variables], force)
+        })
+    }
 }
 
 /// Gives the kernel of a problem to an expression that takes any.

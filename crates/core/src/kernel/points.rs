@@ -443,7 +443,7 @@ mod tests {
     use super::*;
     use crate::ids::ElementId;
     use crate::kernel::Stiffness;
-    use crate::material::{Hardening, HyperelasticLaw, Kinematics, LinearLaw, Response, VonMises};
+    use crate::material::{Hardening, HyperelasticLaw, Kinematics, LinearLaw, Response};
     use crate::mesh::Mesh;
     use percute_testkit::Random;
 
@@ -537,7 +537,7 @@ mod tests {
             let elastic = of(3.0, 0.2, 1.0, 1.0).unwrap();
             let built = Problem::builder(mesh).material_of("soft", law).material_of("hard", elastic).build();
             let problem = built.unwrap();
-            let laws: Vec<_> = problem.materials().iter().map(VonMises::new).collect();
+            let laws = problem.yielding_laws();
             let (points, mut random) = (kernel(&problem, laws.clone()), Random::new(8));
             let (nodes, elements) = (problem.mesh().node_count(), problem.mesh().element_count());
             let (mut internal, mut alone) = (vec![0.0; 4 * elements], vec![0.0; 4 * elements]);

@@ -132,6 +132,17 @@ impl Elastic {
         Ok(Self { hardening: Some(hardening), ..self })
     }
 
+    /// The same material with the values that are stated of its yielding, if any: yield stress (Pa), and `tangent`,
+    /// `hardening` and `kinematic` as for [`Hardening::stated`].
+    ///
+    /// # Errors
+    /// As for [`Hardening::stated`] and [`Elastic::with_yield_stress`].
+    pub fn with_yielding(self, yield_stress: Option<f64>, stated: [Option<f64>; 3]) -> Result<Self, MaterialError> {
+        let hardening = Hardening::stated(self.young, yield_stress, stated)?;
+        let law = yield_stress.map_or(Ok(self), |stress| self.with_yield_stress(stress))?;
+        hardening.map_or(Ok(law), |hardening| law.with_hardening(hardening))
+    }
+
     /// The hardening of a material that yields.
     #[must_use]
     pub fn hardening(&self) -> Option<Hardening> {

@@ -366,7 +366,7 @@ impl VonMises {
             }
         }
         let (normal, _, excess) = at(across);
-        if excess > 0.0 && hardening > 0.0 {
+        if excess > 0.0 {
             Self::flow::<f64, D>(internal, excess / hardening, &normal);
         }
         self.flow_forces::<D>(&Self::in_space(stress, across), internal)

@@ -75,6 +75,12 @@ impl Strips {
         self.nodes.len()
     }
 
+    /// Number of all elements.
+    #[must_use]
+    pub fn element_count(&self) -> usize {
+        self.elements(self.count() - 1).end
+    }
+
     /// Elements of a strip.
     #[inline]
     #[must_use]

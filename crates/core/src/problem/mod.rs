@@ -156,7 +156,7 @@ impl<const D: usize> Problem<D> {
         if internal.is_empty() {
             return 0.0;
         }
-        let laws: Vec<VonMises> = self.materials().iter().map(VonMises::new).collect();
+        let laws = self.yielding_laws();
         let rows = internal.chunks_exact(VonMises::count(D)).zip(self.element_material());
         let each = rows.enumerate().map(|(e, (row, &law))| {
             let [stored, dissipated] = laws[usize::from(law)].plastic_energies::<f64, D>(row);

@@ -60,6 +60,12 @@ impl Model {
         self.materials.iter().any(|material| material.hardening().is_some())
     }
 
+    /// The laws of all materials, of which some may yield.
+    #[must_use]
+    pub fn yielding_laws(&self) -> Vec<VonMises> {
+        self.materials.iter().map(VonMises::new).collect()
+    }
+
     /// Internal variables of an element.
     #[must_use]
     pub fn variables(&self) -> usize {

@@ -3,7 +3,7 @@
 use super::source::CaseError;
 use super::table::Table;
 use percute_core::cell::CellKind;
-use percute_core::material::{Elastic, Hardening, Kinematics, MaterialError};
+use percute_core::material::{Elastic, Kinematics, MaterialError};
 
 /// Keys of plane bodies alone, and of bars alone.
 const OF_PLANE: [&str; 3] = ["poisson", "plane", "thickness"];
@@ -39,12 +39,7 @@ pub(super) fn law(table: &Table<'_>, shape: CellKind) -> Result<Elastic, CaseErr
     let number = |key: &str, unit: &str| table.get(key).map(|value| value.number(unit)).transpose();
     let yield_stress = number("yield_stress", "Pa")?;
     let stated = [number("tangent", "Pa")?, number("hardening", "Pa")?, number("kinematic", "")?];
-    let yielding = |law: Elastic| {
-        let hardening = Hardening::stated(law.young(), yield_stress, stated)?;
-        let law = yield_stress.map_or(Ok(law), |stress| law.with_yield_stress(stress))?;
-        hardening.map_or(Ok(law), |hardening| law.with_hardening(hardening))
-    };
-    yielding(law).map_err(|error| out_of_range(table, &error))
+    law.with_yielding(yield_stress, stated).map_err(|error| out_of_range(table, &error))
 }
 
 /// Small or finite kinematics, and the law of the latter.

@@ -2,7 +2,7 @@
 //!
 //! studies/finite.py compares with the motion of finite strains: see docs/verdict.md.
 
-use crate::deformation::{BodyDeformation, Deformation, Extreme, MaterialStress};
+use crate::deformation::{BodyDeformation, Deformation, Extreme, MaterialStress, PlasticFlow, Yielding};
 use crate::message::{percent, short, trimmed};
 use percute_core::problem::SMALL_ROTATION;
 
@@ -77,7 +77,8 @@ impl Linearity {
         let materials = &deformation.materials;
         let stress = stress(materials, finite).or_else(|| flow(materials));
         let plastic = materials.iter().any(|material| material.yielding.is_some_and(|found| found.plastic.is_some()));
-        Self { strain: deformation.strain(), turned, stress, finite, yielded: yielded(materials), plastic }
+        let yielded = flows(materials).map(|(_, _, flow)| flow.tangent_ratio).reduce(f64::min);
+        Self { strain: deformation.strain(), turned, stress, finite, yielded, plastic }
     }
 
     /// The strains and the rotation that are not small.
@@ -110,19 +111,18 @@ fn place(material: &MaterialStress) -> String {
     material.group.as_ref().map_or_else(|| "the body".to_string(), |group| format!("group {group:?}"))
 }
 
-/// The least E_t/E of the materials that yielded.
-fn yielded(materials: &[MaterialStress]) -> Option<f64> {
-    let yielded = materials.iter().filter_map(|material| material.yielding.filter(|yielding| yielding.share > 0.0));
-    yielded.filter_map(|yielding| Some(yielding.plastic?.tangent_ratio)).reduce(f64::min)
+/// The materials that yielded, by a law with plasticity.
+fn flows(materials: &[MaterialStress]) -> impl Iterator<Item = (&MaterialStress, Yielding, PlasticFlow)> {
+    materials.iter().filter_map(|material| {
+        let yielding = material.yielding.filter(|yielding| yielding.share > 0.0)?;
+        Some((material, yielding, yielding.plastic?))
+    })
 }
 
 /// The plastic flow of the material with the largest plastic strain, in a sentence.
 fn flow(materials: &[MaterialStress]) -> Option<String> {
-    let flows = materials.iter().filter_map(|material| {
-        let yielding = material.yielding.filter(|yielding| yielding.share > 0.0)?;
-        Some((material, yielding, yielding.plastic?.equivalent_strain))
-    });
-    let (material, yielding, strain) = flows.max_by(|a, b| a.2.value.total_cmp(&b.2.value))?;
+    let largest = flows(materials).max_by(|a, b| a.2.equivalent_strain.value.total_cmp(&b.2.equivalent_strain.value));
+    let (material, yielding, PlasticFlow { equivalent_strain: strain, .. }) = largest?;
     Some(format!(
         "{} of {} yielded, first at {} s; the plastic strain is at most {}, in element {}.",
         percent(yielding.share),
