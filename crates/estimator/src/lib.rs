@@ -11,6 +11,7 @@
 
 mod acceleration;
 mod blocks;
+mod components;
 mod concentrated;
 mod contact_density;
 mod deformation;

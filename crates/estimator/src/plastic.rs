@@ -3,37 +3,22 @@
 //! ε* of a plastic strain is the strain in the plane with σ = K(ε − ε*). Formulas of linear elasticity serve where ε*
 //! is taken off a strain first.
 
+use crate::components::{COMPONENTS, components, subtract, tensor};
 use percute_core::material::{Elastic, Tensor, VonMises};
 use percute_core::problem::Problem;
 use percute_core::simd::lanes::{LANES, Lanes, Value};
 
 /// ε* of all elements, as xx, yy and xy.
-pub(crate) type EigenStrains = Vec<[f64; 3]>;
+pub(crate) type EigenStrains = Vec<[f64; COMPONENTS]>;
 
 /// ε* of the internal variables of all elements, in rows; none where no material yields.
 pub(crate) fn eigenstrains<const D: usize>(problem: &Problem<D>, internal: &[f64]) -> Option<EigenStrains> {
     if !problem.yields() || internal.is_empty() {
         return None;
     }
-    let laws: Vec<VonMises> = problem.materials().iter().map(VonMises::new).collect();
+    let laws = problem.yielding_laws();
     let rows = internal.chunks_exact(VonMises::count(D)).zip(problem.element_material());
     Some(rows.map(|(row, &law)| components(&laws[usize::from(law)].eigenstrain::<f64, D>(row))).collect())
-}
-
-/// The components of a symmetric tensor.
-pub(crate) fn components<const D: usize>(tensor: &Tensor<D>) -> [f64; 3] {
-    [tensor[0][0], tensor[D - 1][D - 1], tensor[0][D - 1]]
-}
-
-/// The symmetric tensor with these components.
-pub(crate) fn tensor<const D: usize>([xx, yy, xy]: [f64; 3]) -> Tensor<D> {
-    std::array::from_fn(|a| std::array::from_fn(|b| if a != b { xy } else { [xx, yy][a] }))
-}
-
-/// A displacement gradient less ε* of its element.
-pub(crate) fn elastic<const D: usize>(gradient: &Tensor<D>, eigenstrain: [f64; 3]) -> Tensor<D> {
-    let eigenstrain = tensor::<D>(eigenstrain);
-    std::array::from_fn(|a| std::array::from_fn(|b| gradient[a][b] - eigenstrain[a][b]))
 }
 
 /// ε* of all elements at some levels side by side.
@@ -49,10 +34,14 @@ impl<'l> EigenLevels<'l> {
         all.iter().any(Option::is_some).then_some(Self(all))
     }
 
-    /// A component of ε* of an element.
+    /// ε* of an element.
     #[inline(always)]
-    fn component(&self, element: usize, c: usize) -> Lanes {
-        Lanes::at_levels(|k| self.0[k].map_or(0.0, |strains| strains[element][c]))
+    fn of<T: Value<Stored = Lanes>, const D: usize>(&self, like: T, element: usize) -> [[T; D]; D] {
+        let component = |c: usize| Lanes::at_levels(|k| self.0[k].map_or(0.0, |strains| strains[element][c]));
+        tensor([0, 1, 2].map(
+            #[inline(always)]
+            |c| like.load(&component(c)),
+        ))
     }
 }
 
@@ -63,12 +52,8 @@ pub(crate) fn take_off<T: Value<Stored = Lanes>, const D: usize>(
     gradient: &mut [[T; D]; D],
     element: usize,
 ) {
-    let Some(eigen) = eigen else { return };
-    for a in 0..D {
-        for b in 0..D {
-            let c = if a != b { 2 } else { a };
-            gradient[a][b] -= gradient[a][b].load(&eigen.component(element, c));
-        }
+    if let Some(eigen) = eigen {
+        subtract(gradient, &eigen.of(gradient[0][0], element));
     }
 }
 
@@ -142,9 +127,6 @@ impl<const D: usize> PlasticMemory<D> {
     /// inverse law DA to its stress, and the flow of CA is measured under the forces of DA at the end of the interval.
     pub(crate) fn advance(&mut self, law: &Elastic, volume: f64, gradient: &Tensor<D>, stress: &Tensor<D>) {
         let (law, count) = (VonMises::new(law), VonMises::count(D));
-        if !law.yields() {
-            return;
-        }
         let (kinematic, dynamic) = (&mut self.kinematic[..count], &mut self.dynamic[..count]);
         let mut now = [0.0; 4];
         now[..count].copy_from_slice(kinematic);

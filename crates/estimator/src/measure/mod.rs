@@ -6,6 +6,7 @@ mod block_fields;
 mod element_error;
 mod equilibrium;
 
+use crate::components::subtract;
 use crate::concentrated::HatStress;
 use crate::deformation::Deformation;
 use crate::element::Element;
@@ -283,9 +284,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
     ) -> [[T; D]; D] {
         let mut gradient = self.element.gradient(motion.displacement());
         if let Some(part) = plastic {
-            for a in 0..D {
-                (0..D).for_each(|b| gradient[a][b] -= part.eigenstrain[a][b]);
-            }
+            subtract(&mut gradient, &part.eigenstrain);
         }
         gradient
     }

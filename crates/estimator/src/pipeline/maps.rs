@@ -2,12 +2,13 @@
 //! worked on, contributions as elements get there, the motion at contact when it is known.
 
 use crate::blocks::BLOCK;
+use crate::components::{COMPONENTS, subtract, tensor};
 use crate::element::Element;
 use crate::kinematic::{ContactMotion, common, settle};
 use crate::map::{AdmissibleFields, ElementMap};
 use crate::measure::{ElementError, ElementMeasure};
 use crate::options::Acceleration;
-use crate::plastic::elastic;
+use crate::plastic::EigenStrains;
 use crate::reconstruction::Concentration;
 use crate::request::{Request, RequestError};
 use crate::traction::{EquilibratedLevel, EquilibratedLevels, Equilibration};
@@ -36,6 +37,8 @@ pub(crate) struct Contribution {
 pub(crate) struct Maps {
     request: Request,
     made: Vec<ElementMap>,
+    /// ε* of σ_CA at each of them, where fields are requested and a material yields.
+    eigenstrains: Vec<EigenStrains>,
     /// How many of them have the motion at contact.
     settled: usize,
 }
@@ -48,7 +51,7 @@ impl Maps {
         let steps = request.steps.len();
         let bytes = (5 * elements + fields).saturating_mul(size_of::<f64>()).saturating_mul(steps);
         match Vec::<u8>::new().try_reserve_exact(bytes) {
-            Ok(()) => Ok(Self { request, made: Vec::new(), settled: 0 }),
+            Ok(()) => Ok(Self { request, made: Vec::new(), eigenstrains: Vec::new(), settled: 0 }),
             Err(_) => Err(RequestError::Memory { bytes, steps }),
         }
     }
@@ -72,6 +75,9 @@ impl Maps {
                 continue;
             }
             let fields = self.request.fields.then(|| fields(balance, &level));
+            if fields.is_some() && balance.problem.yields() {
+                self.eigenstrains.push(vec![[0.0; COMPONENTS]; zeros.len()]);
+            }
             self.made.push(ElementMap {
                 step: level.index(),
                 time: instants[level.index()],
@@ -93,10 +99,8 @@ impl Maps {
                 let map = &mut self.made[k];
                 (map.kinetic[e], map.elastic[e]) = (contribution.error.kinetic, contribution.error.elastic);
                 map.dissipation[e] = contribution.error.plastic;
-                // Until the displacement is known that the stress follows from.
-                if let Some(fields) = &mut map.fields {
-                    fields.compatible_stress.resize(3 * map.kinetic.len(), 0.0);
-                    fields.compatible_stress[3 * e..3 * e + 3].copy_from_slice(&contribution.eigenstrain);
+                if let Some(strains) = self.eigenstrains.get_mut(k) {
+                    strains[e] = contribution.eigenstrain;
                 }
                 (map.contact[e], map.accumulated[e]) = (contribution.contact, contribution.accumulated);
             }
@@ -132,14 +136,14 @@ impl Maps {
         problem: &Problem<D>,
         elements: &[Element<D, N>],
     ) -> Vec<ElementMap> {
-        for map in &mut self.made {
+        for (k, map) in self.made.iter_mut().enumerate() {
             let Some(fields) = &mut map.fields else { continue };
             let displacement = vectors::<D>(&fields.displacement);
-            let eigenstrains = std::mem::take(&mut fields.compatible_stress);
+            let eigenstrains = self.eigenstrains.get(k);
             let compatible = |(e, element): (usize, &Element<D, N>)| {
                 let mut gradient = element.gradient(&element.gather(displacement));
-                if let Some(&eigen) = eigenstrains.as_chunks::<3>().0.get(e) {
-                    gradient = elastic(&gradient, eigen);
+                if let Some(strains) = eigenstrains {
+                    subtract(&mut gradient, &tensor(strains[e]));
                 }
                 problem.material(ElementId::new(e)).stress(&gradient).into_iter().flatten()
             };

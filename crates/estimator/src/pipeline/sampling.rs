@@ -1,6 +1,7 @@
 //! η of one element at the samples of an interval, its integral over time, and the maps of it.
 
 use super::maps::{Contribution, Maps};
+use crate::components::components;
 use crate::concentrated::HatStress;
 use crate::contact_density::ResidualStress;
 use crate::element::Element;
@@ -9,7 +10,7 @@ use crate::kinematic::{ElementMotion, gather_common};
 use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, hat_energy, work};
 use crate::numbers::Reader;
 use crate::options::Acceleration;
-use crate::plastic::{PlasticPart, components};
+use crate::plastic::PlasticPart;
 use crate::residual::{Residuals, worse};
 use crate::stress::{ElementForm, Loading};
 use crate::time_level::{Side, Velocities};

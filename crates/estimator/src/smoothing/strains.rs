@@ -6,6 +6,7 @@
 
 use super::Smoothing;
 use crate::blocks::{BLOCK, ElementBlocks};
+use crate::components::{COMPONENTS, components, tensor};
 use crate::deformation::second_stress;
 use crate::element::Element;
 use crate::field_lanes::FieldLanes;
@@ -19,9 +20,6 @@ use percute_core::simd::Wide;
 use percute_core::simd::lanes::{Lanes, Value};
 use percute_core::simd::{Registers, Task, run_task};
 use rayon::prelude::*;
-
-/// Components of a strain: ε_xx, ε_yy, ε_xy.
-const COMPONENTS: usize = 3;
 
 /// The strains of which smoothed ones are made, of all elements at one level or some; Green strains of finite laws.
 #[derive(Clone, Debug, Default)]
@@ -216,20 +214,6 @@ fn averaged<T: Value, const D: usize>(law: &Elastic, gradient: &[[T; D]; D]) -> 
         return components(&green_strain(gradient));
     }
     [gradient[0][0], gradient[D - 1][D - 1], (gradient[0][D - 1] + gradient[D - 1][0]) * 0.5]
-}
-
-/// The components of a symmetric tensor.
-#[inline(always)]
-fn components<T: Value, const D: usize>(tensor: &[[T; D]; D]) -> [T; COMPONENTS] {
-    [tensor[0][0], tensor[D - 1][D - 1], tensor[0][D - 1]]
-}
-
-/// The symmetric tensor with these components.
-#[inline(always)]
-fn tensor<T: Value, const D: usize>([x, y, xy]: [T; COMPONENTS]) -> [[T; D]; D] {
-    let mut tensor = [[xy; D]; D];
-    (tensor[0][0], tensor[D - 1][D - 1]) = (x, y);
-    tensor
 }
 
 /// (1 − β)/3 S of the mean strain of edges, of which the first has this number; those within a material.

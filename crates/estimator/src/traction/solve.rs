@@ -3,11 +3,12 @@
 use super::star_solver::{Compatibility, StarSolver};
 use super::{EXPLAINED, EquilibratedLevel, EquilibratedLevels, Equilibration, MassTerm};
 use crate::blocks::{BLOCK, MeshPart, StarBlock};
+use crate::components::{subtract, tensor};
 use crate::deformation::Deformation;
 use crate::element::Element;
 use crate::field_lanes::FieldLanes;
 use crate::inertia::{add_lumping_stress, arms, lumping_stress};
-use crate::plastic::{EigenLevels, elastic, take_off};
+use crate::plastic::{EigenLevels, take_off};
 use crate::residual::worse;
 use crate::smoothing::{Smoothed, SmoothedStrains, Smoothing, StrainLevel};
 use crate::time_level::{ForcesKnown, Side, TimeLevel};
@@ -274,7 +275,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         let data = &self.elements[element.index()];
         let mut gradient = data.gradient(&data.gather(&forces.level.displacement));
         if let Some(strains) = &forces.level.plastic {
-            gradient = elastic(&gradient, strains[element.index()]);
+            subtract(&mut gradient, &tensor(strains[element.index()]));
         }
         self.problem.material(element).respond(&gradient, &mut []).0
     }

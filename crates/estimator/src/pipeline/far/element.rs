@@ -3,11 +3,12 @@
 use super::FarLevels;
 use super::fields::{BlockFields, VelocityLanes};
 use super::{FarCourse, FarSamples};
+use crate::components::components;
 use crate::kinematic::ElementMotion;
 use crate::measure::{AdmissibleStress, Balanced, ElementError, ElementMeasure, NodalBalance, at_places};
 use crate::pipeline::maps::Contribution;
 use crate::pipeline::sampling::{Course, ElementSample};
-use crate::plastic::{PlasticMemory, PlasticPart, components};
+use crate::plastic::{PlasticMemory, PlasticPart};
 use crate::residual::Residuals;
 use crate::stress::EnergyForm;
 use percute_core::ids::ElementId;

@@ -13,6 +13,7 @@
 use super::approach::{ContactElements, Foreseen, FreeFlight};
 use super::balance::{EnergyBalance, half_work};
 use super::blocks::Blocks;
+use super::internal_forces::{add_internal_forces, corner};
 use super::pairs::Pairs;
 use super::patch::{Factors, PatchOperator};
 use super::surface::SurfaceForces;
@@ -170,17 +171,7 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
         });
         *inside_out |= turned.into_inner();
         *large |= strained.into_inner();
-        let stars = problem.mesh().stars();
-        by_pieces(force, &|first, force| {
-            for (k, force) in force.iter_mut().enumerate() {
-                let node = NodeId::new(first + k);
-                for element in stars.star(node).elements {
-                    let (own, stress) = (&elements[element.index()], &stresses[element.index()]);
-                    let internal = own.internal_force(corner(own, node), stress);
-                    (0..D).for_each(|c| force[c] -= internal[c]);
-                }
-            }
-        });
+        add_internal_forces((problem.mesh(), elements), stresses, -1.0, force);
     }
 
     /// Foresees the motion at all contact nodes until t_{n+1}, after `begin`: without contact forces that of the whole
@@ -406,11 +397,6 @@ fn add<const D: usize>(field: &mut [[f64; D]], few: &FewNodes<D>, factor: f64) {
 /// m/(D+2) of an element (kg).
 fn lumped_share<const D: usize, const N: usize>(element: &Element<D, N>) -> f64 {
     element.nodal_mass * N as f64 / (D + 2) as f64
-}
-
-/// The local number of a node of an element.
-pub(super) fn corner<const D: usize, const N: usize>(element: &Element<D, N>, node: NodeId) -> usize {
-    element.nodes.iter().position(|own| *own == node).unwrap_or(0)
 }
 
 #[cfg(test)]

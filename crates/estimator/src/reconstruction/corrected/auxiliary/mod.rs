@@ -38,6 +38,7 @@ mod comparison;
 mod either;
 mod energies;
 mod finite;
+mod internal_forces;
 mod lanes;
 mod pairs;
 mod parts;

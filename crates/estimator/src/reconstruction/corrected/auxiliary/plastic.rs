@@ -3,11 +3,12 @@
 //! Each element has the law of its own strain. The forces of the auxiliary solution are those of the smoothed elastic
 //! strains, K_s u less B̄ᵀK̄ε* of the plastic ones, with the same means. Without flow nothing changes.
 
-use super::finite::corner;
+use super::internal_forces::add_internal_forces;
 use super::lanes::Nodal;
+use crate::components::{components, tensor};
 use crate::element::Element;
 use crate::parallel::by_pieces;
-use crate::plastic::{EigenStrains, components, tensor};
+use crate::plastic::EigenStrains;
 use crate::smoothing::{Smoothed, SmoothedStrains, Smoothing};
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::material::{PointLaw, Tensor, VonMises};
@@ -32,7 +33,7 @@ impl<const D: usize, const N: usize> PlasticStrains<D, N> {
     /// Those of a problem in which a material yields.
     pub(super) fn new(problem: &Problem<D>, elements: &[Element<D, N>]) -> Option<Self> {
         problem.yields().then(|| Self {
-            laws: problem.materials().iter().map(VonMises::new).collect(),
+            laws: problem.yielding_laws(),
             elements: elements.to_vec(),
             internal: vec![[0.0; 4]; elements.len()],
             eigen: vec![[0.0; 3]; elements.len()],
@@ -85,16 +86,6 @@ impl<const D: usize, const N: usize> PlasticStrains<D, N> {
                 *stress = problem.material(id).respond(&strain, &mut []).0;
             }
         });
-        let stars = problem.mesh().stars();
-        by_pieces(external, &|first, external| {
-            for (k, force) in external.iter_mut().enumerate() {
-                let node = NodeId::new(first + k);
-                for element in stars.star(node).elements {
-                    let own = &elements[element.index()];
-                    let internal = own.internal_force(corner(own, node), &stresses[element.index()]);
-                    (0..D).for_each(|c| force[c] += internal[c]);
-                }
-            }
-        });
+        add_internal_forces((problem.mesh(), elements), stresses, 1.0, external);
     }
 }
