@@ -136,7 +136,8 @@ def _span(history: Steps, name: object, steps: list[int], scale: float) -> tuple
     """Give the range of the values at all instants, and the outermost places of the body."""
     low, high, colours = np.inf, -np.inf, ""
     planes = [np.asarray(plane.normal, dtype=np.float64).ravel() for plane in history.problem.obstacles]
-    sides = np.vstack([np.eye(history.problem.mesh.dimension), *planes])
+    dimension = history.problem.mesh.dimension
+    sides = np.vstack([np.eye(dimension), *([view(np.eye(3)).T] if dimension == 3 else []), *planes])
     outermost = []
     for step in steps:
         values, _, _, colours = field(history, name, step)
@@ -146,7 +147,7 @@ def _span(history: Steps, name: object, steps: list[int], scale: float) -> tuple
         outermost.append(places[np.concatenate([along.argmin(axis=0), along.argmax(axis=0)])])
     if colours == SIGNED:
         low, high = -max(-low, high), max(-low, high)
-    elif history.problem.mesh.dimension == 2:
+    elif dimension > 1:
         low = min(0.0, low)
     if not low < high:
         low, high = low - 0.5, high + 0.5

@@ -121,7 +121,7 @@ def _point(mesh: Mesh, where: object, nodal: bool) -> Place:
     """Find the element with a point: its nodes with their shape functions there, or the element itself."""
     point = np.atleast_1d(numbers("where", where, most=1, finite=True))
     if point.shape != (mesh.dimension,):
-        needed = "one coordinate (m)" if mesh.dimension == 1 else "two coordinates (m)"
+        needed = ("one coordinate (m)", "two coordinates (m)", "three coordinates (m)")[mesh.dimension - 1]
         raise wrong("where", where, f"a point of {needed}, or the name of a group: {_names(mesh)}")
     corners = mesh.points[mesh.cells]
     edges = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
@@ -140,11 +140,14 @@ def _point(mesh: Mesh, where: object, nodal: bool) -> Place:
 def _nearest(mesh: Mesh, point: Floats, where: object) -> tuple[int, Floats]:
     """Give the nearest point of the boundary, and its element; a point farther away than rounding is an error."""
     edges, owners = boundary(mesh.cells)
-    start = mesh.points[edges[:, 0]]
-    along = mesh.points[edges[:, -1]] - start
-    squares = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
-    part = np.clip(((point - start) * along).sum(axis=1) / squares, 0.0, 1.0)
-    feet = start + part[:, None] * along
+    corners = mesh.points[edges]
+    if mesh.dimension == 3:
+        feet = _feet_in_triangles(corners, point)
+    else:
+        start, along = corners[:, 0], corners[:, -1] - corners[:, 0]
+        squares = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
+        part = np.clip(((point - start) * along).sum(axis=1) / squares, 0.0, 1.0)
+        feet = start + part[:, None] * along
     distances = np.linalg.norm(feet - point, axis=1)
     nearest = int(np.argmin(distances))
     if distances[nearest] > OUTSIDE * mesh.size:
@@ -155,6 +158,15 @@ def _nearest(mesh: Mesh, point: Floats, where: object) -> tuple[int, Floats]:
     return int(owners[nearest]), feet[nearest]
 
 
+def _feet_in_triangles(corners: Floats, point: Floats) -> Floats:
+    """Give a point of each triangle near a point: the foot of the perpendicular, drawn into the triangle where it is outside."""
+    sides = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
+    gram = np.swapaxes(sides, 1, 2) @ sides
+    inner = np.linalg.solve(gram, np.swapaxes(sides, 1, 2) @ (point - corners[:, 0])[..., None])[..., 0]
+    shapes = np.clip(np.column_stack([1.0 - inner.sum(axis=1), inner]), 0.0, None)
+    return np.einsum("ij,ijk->ik", shapes / shapes.sum(axis=1, keepdims=True), corners)
+
+
 def _names(mesh: Mesh) -> str:
     return ", ".join(repr(name) for name in [*mesh.edge_groups, *mesh.element_groups]) or "the mesh has none"
 
@@ -163,7 +175,7 @@ def _group(mesh: Mesh, name: str, nodal: bool) -> Place:
     """Give the nodes or the elements of a group, with weights of the mean over its edges or its elements."""
     if name in mesh.edge_groups:
         edges = mesh.edge_groups[name]
-        lengths = np.ones(len(edges)) if mesh.dimension == 1 else np.linalg.norm(np.diff(mesh.points[edges], axis=1)[:, 0], axis=1)
+        lengths = _sizes(mesh.points[edges])
         if nodal:
             return _weighted(edges, lengths)
         outer, owners = boundary(mesh.cells)
@@ -175,6 +187,14 @@ def _group(mesh: Mesh, name: str, nodal: bool) -> Place:
         sizes = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1]))
         return _weighted(mesh.cells[elements] if nodal else elements[:, None], sizes)
     raise InputError(f"`where` is {name!r}; it must be a point or the name of a group: {_names(mesh)}")
+
+
+def _sizes(corners: Floats) -> Floats:
+    """Give lengths of edges or areas of faces, and 1 for ends of bars."""
+    sides = corners[:, 1:] - corners[:, :1]
+    if corners.shape[2] == 3:
+        return np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    return np.ones(len(corners)) if corners.shape[2] == 1 else np.linalg.norm(sides[:, 0], axis=1)
 
 
 def _weighted(members: NDArray[Any], sizes: Floats) -> Place:

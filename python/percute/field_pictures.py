@@ -25,6 +25,7 @@ from percute.pictures.canvas import (
     save_figure,
     writable,
 )
+from percute.pictures.surface import draw_solid
 from percute.steps import Steps
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ WORKS = {
 
 MOTION = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s²"}
 STRESSES = {"stress_xx": (0, 0), "stress_yy": (1, 1), "stress_xy": (0, 1)}
+OF_SOLIDS = {"stress_zz": (2, 2), "stress_yz": (1, 2), "stress_xz": (0, 2)}
 SCALARS = {
     "von_mises": ("von Mises stress", "Pa", FIELD),
     "pressure": ("pressure", "Pa", SIGNED),
@@ -51,15 +53,15 @@ SCALARS = {
 
 def field(history: Steps, quantity: object, step: int) -> tuple[Floats, str, str, str]:
     """Give the values of a quantity at an instant, with its name, unit and colours."""
-    bar = history.problem.mesh.dimension == 1
-    name = one_of("quantity", quantity, (*MOTION, *(("stress", *list(SCALARS)[2:]) if bar else (*SCALARS, *STRESSES))))
+    bar, stresses = history.problem.mesh.dimension == 1, STRESSES | (OF_SOLIDS if history.problem.mesh.dimension == 3 else {})
+    name = one_of("quantity", quantity, (*MOTION, *(("stress", *list(SCALARS)[2:]) if bar else (*SCALARS, *stresses))))
     if name in MOTION:
         vectors: Floats = getattr(history, name)[step]
         return vectors[:, 0] if bar else np.linalg.norm(vectors, axis=1), name, MOTION[name], FIELD
     if name == "stress":
         return element_field(history, name, step)[:, 0, 0], name, "Pa", FIELD
-    if name in STRESSES:
-        row, column = STRESSES[name]
+    if name in stresses:
+        row, column = stresses[name]
         return element_field(history, "stress", step)[:, row, column], f"stress σ$_{{{name[-2:]}}}$", "Pa", SIGNED
     told, of, colours = SCALARS[name]
     values = element_field(history, name, step)
@@ -99,7 +101,8 @@ def draw_field(
         draw_bar(axes, mesh.points, mesh.cells, values / factor, label, scale=limits, planes=planes)
     else:
         places = mesh.points + scale * history._displacement_at(np.array([step]))[0]
-        draw_body(axes, places, mesh.cells, values / factor, label, colours=colours, scale=limits, planes=planes, extent=extent)
+        draw = draw_solid if mesh.dimension == 3 else draw_body
+        draw(axes, places, mesh.cells, values / factor, label, colours=colours, scale=limits, planes=planes, extent=extent)
     seconds, small = prefixed(history.time[step : step + 1])
     told = "" if mesh.dimension == 1 else f", {exaggerated(scale)}"
     axes.set_title(f"t = {history.time[step] / seconds:.4g} {small}s{told}", fontsize="medium")

@@ -1,4 +1,4 @@
-"""Meshes of bars and triangles."""
+"""Meshes of bars, triangles and tetrahedra."""
 
 from __future__ import annotations
 
@@ -21,23 +21,25 @@ from percute.statement import Vector, vector_of
 __all__ = ["Mesh"]
 
 MOST_REFINEMENTS = 30
-MOST, MOST_RINGS = 20_000_000, 1825
-"""Largest numbers of elements, and of rings of a disc, in a generated mesh."""
+MOST, MOST_RINGS, MOST_OF_BALL = 20_000_000, 1825, 100
+"""Largest numbers of elements, and of rings of a disc and of a ball, in a generated mesh."""
 
 
 class Mesh(MeshArrays):
-    """A mesh of 2-node bars or 3-node triangles, checked once at its creation.
+    """A mesh of 2-node bars, 3-node triangles or 4-node tetrahedra, checked once at its creation.
 
     Parameters
     ----------
-    points : (nodes,), (nodes, 1) or (nodes, 2) floats
-        Coordinates of the nodes (m). One coordinate makes a mesh of bars, two make one of triangles.
-    cells : (elements, 2) or (elements, 3) ints
-        Nodes of each element, counted from 0. Clockwise elements (a bar: backwards) are reoriented.
+    points : (nodes,), (nodes, 1), (nodes, 2) or (nodes, 3) floats
+        Coordinates of the nodes (m). One coordinate makes a mesh of bars, two make one of triangles, three one of tetrahedra.
+    cells : (elements, 2), (elements, 3) or (elements, 4) ints
+        Nodes of each element, counted from 0. Elements of negative orientation are reoriented.
     edge_groups : dict of str to (edges, 2) ints, optional
         Named groups of boundary edges, each by its two nodes; of a bar: (ends,) or (ends, 1).
     element_groups : dict of str to (n,) ints, optional
         Named groups of elements.
+    face_groups : dict of str to (faces, 3) ints, optional
+        Of a solid, named groups of boundary faces, each by its three nodes.
 
     Raises
     ------
@@ -52,19 +54,26 @@ class Mesh(MeshArrays):
         cells: ArrayLike,
         edge_groups: Mapping[str, ArrayLike] | None = None,
         element_groups: Mapping[str, ArrayLike] | None = None,
+        face_groups: Mapping[str, ArrayLike] | None = None,
     ) -> None:
         places = numbers("points", points, most=2)
         places = places[:, None] if places.ndim == 1 else places
-        if places.ndim != 2 or places.shape[1] not in (1, 2):
-            way_out = transposed("points", places, 1, 2) or "; leave out z"
-            raise InputError(f"`points` has the shape {places.shape}; it must have (nodes,), (nodes, 1) or (nodes, 2){way_out}")
+        if places.ndim != 2 or places.shape[1] not in (1, 2, 3):
+            way_out = transposed("points", places, 1, 2, 3)
+            raise InputError(f"`points` has the shape {places.shape}; it must have (nodes,), (nodes, 1), (nodes, 2) or (nodes, 3){way_out}")
         dimension = places.shape[1]
-        edges = {} if edge_groups is None else table("edge_groups", edge_groups, "edges")
+        if dimension == 3 and np.shape(cells)[1:] == (3,):
+            raise InputError(f"`points` has the shape {places.shape}; for elements of three nodes it must have (nodes, 2); leave out z")
+        given, other = ("edge_groups", "face_groups") if dimension < 3 else ("face_groups", "edge_groups")
+        wanted, refused = (edge_groups, face_groups) if dimension < 3 else (face_groups, edge_groups)
+        if refused is not None:
+            raise InputError(f"`{other}` does not apply to points with {counted(dimension, 'coordinate')}; name the groups by `{given}`")
+        edges = {} if wanted is None else table(given, wanted, "edges")
         elements = {} if element_groups is None else table("element_groups", element_groups, "elements")
         self._data = _percute.MeshData.from_arrays(
             places,
             integers("cells", cells, dimension + 1),
-            {name: integers(f"edge_groups[{name!r}]", each, dimension) for name, each in edges.items()},
+            {name: integers(f"{given}[{name!r}]", each, dimension) for name, each in edges.items()},
             {name: integers(f"element_groups[{name!r}]", each, None) for name, each in elements.items()},
         )
 
@@ -116,8 +125,53 @@ class Mesh(MeshArrays):
         """
         return cls._of(_percute.MeshData.bar(number("length", length), whole("elements", elements, most=MOST)))
 
+    @classmethod
+    def box(cls, size: ArrayLike, *, cells: ArrayLike) -> Mesh:
+        """Make the box [0, a] × [0, b] × [0, c] of tetrahedra.
+
+        Parameters
+        ----------
+        size : (3,) floats
+            Lengths of the sides a, b and c (m).
+        cells : (3,) ints
+            Numbers of cells along x, y and z, of six tetrahedra each.
+
+        Returns
+        -------
+        Mesh
+            Its sides are the groups ``left`` and ``right`` (x), ``front`` and ``back`` (y), ``bottom`` and ``top`` (z).
+        """
+        sides = vector_of("size", size, 3, "m")
+        counts = integers("cells", cells, None)
+        if counts.shape != (3,):
+            raise wrong("cells", cells, "three numbers of cells, along x, y and z")
+        return cls._of(_percute.MeshData.box(sides, [whole("cells", count, most=MOST) for count in counts.tolist()]))
+
+    @classmethod
+    def cylinder(cls, radius: float, height: float, *, rings: int, layers: int) -> Mesh:
+        """Make a cylinder on the plane z = 0 around the axis z, of 18 ``rings ** 2 * layers`` tetrahedra.
+
+        Returns
+        -------
+        Mesh
+            Its surface is the groups ``bottom``, ``top`` and ``side``.
+        """
+        sides = number("radius", radius), number("height", height)
+        return cls._of(_percute.MeshData.cylinder(*sides, whole("rings", rings, most=MOST_RINGS), whole("layers", layers, most=MOST)))
+
+    @classmethod
+    def ball(cls, radius: float, *, rings: int) -> Mesh:
+        """Make a ball of this radius (m) around the origin, of 20 ``rings ** 3`` tetrahedra; rings are spheres of nodes.
+
+        Returns
+        -------
+        Mesh
+            Its surface, which has a node at the lowest point, is the group ``boundary``.
+        """
+        return cls._of(_percute.MeshData.ball(number("radius", radius), whole("rings", rings, most=MOST_OF_BALL)))
+
     def refine(self, times: int = 1, *, where: ArrayLike | None = None) -> Mesh:
-        """Cut each element into halves (a bar) or quarters, repeatedly; or only some elements, once.
+        """Cut each element into halves (a bar), quarters or eighths (a solid), repeatedly; or only some elements, once.
 
         Nodes keep their numbers and groups their edges and elements, so that the mesh is nested in the finer one: `History.error`
         compares runs on both.
@@ -147,7 +201,7 @@ class Mesh(MeshArrays):
 
         Parameters
         ----------
-        by : (2,) floats or, of a bar, float
+        by : (dimension,) floats or, of a bar, float
             By how much (m).
 
         Returns
@@ -174,8 +228,9 @@ class Mesh(MeshArrays):
             With the same elements and groups.
         """
         angle = number("degrees", degrees, finite=True, unit="degrees")
-        if self.dimension == 1:
-            raise InputError(f"`degrees` is {angle}; a bar cannot be turned")
+        if self.dimension != 2:
+            told = "a bar cannot be turned" if self.dimension == 1 else "a solid has no angle in the plane: turn its `points`"
+            raise InputError(f"`degrees` is {angle}; {told}")
         x, y = centre = vector_of("about", about, 2, "m")
         cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
         return self._placed("about", centre, (x - cos * x + sin * y, y - sin * x - cos * y), angle)

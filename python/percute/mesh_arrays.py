@@ -30,8 +30,18 @@ class MeshArrays(Immutable):
 
     @property
     def dimension(self) -> int:
-        """1 for bars, 2 for triangles."""
+        """1 for bars, 2 for triangles, 3 for tetrahedra."""
         return self._data.dimension
+
+    @property
+    def kind(self) -> str:
+        """The elements: "bar", "triangle" or "tetrahedron"."""
+        return ("bar", "triangle", "tetrahedron")[self.dimension - 1]
+
+    @property
+    def face(self) -> str:
+        """A part of the boundary of an element: "end" of a bar, "edge" of a triangle or "face" of a tetrahedron."""
+        return ("end", "edge", "face")[self.dimension - 1]
 
     @cached_property
     def points(self) -> NDArray[np.float64]:
@@ -40,12 +50,17 @@ class MeshArrays(Immutable):
 
     @cached_property
     def cells(self) -> NDArray[np.uint32]:
-        """Nodes of each element, counterclockwise, shape (elements, dimension + 1); a read-only view."""
+        """Nodes of each element, positively oriented, shape (elements, dimension + 1); a read-only view."""
         return self._data.cells
 
     @cached_property
     def edge_groups(self) -> Mapping[str, NDArray[np.int64]]:
-        """Named groups of boundary edges, each by its nodes: arrays (edges, dimension)."""
+        """Named groups of boundary edges, each by its nodes: arrays (edges, dimension); of a solid those of `face_groups`."""
+        return self.face_groups
+
+    @cached_property
+    def face_groups(self) -> Mapping[str, NDArray[np.int64]]:
+        """Named groups of faces of the boundary, each by its nodes: arrays (faces, dimension). Faces of plane bodies are edges."""
         return MappingProxyType(self._data.edge_groups)
 
     @cached_property
@@ -60,21 +75,21 @@ class MeshArrays(Immutable):
 
     @cached_property
     def areas(self) -> NDArray[np.float64]:
-        """Area of each triangle (m²), of a bar the length of each element (m), shape (elements,)."""
+        """Area of each triangle (m²), of a bar the length (m) and of a solid the volume (m³) of each element, shape (elements,)."""
         return self._data.areas()
 
     @cached_property
     def sizes(self) -> NDArray[np.float64]:
-        """Size of each element (m), shape (elements,): the root of the area of a triangle, the length of a bar."""
+        """Size of each element (m), shape (elements,): the root of the area of a triangle, the cube root of the volume of a tetrahedron, the length of a bar."""
         if self.dimension == 1:
             return self.areas
-        sizes = np.sqrt(self.areas)
+        sizes = np.sqrt(self.areas) if self.dimension == 2 else np.cbrt(self.areas)
         sizes.flags.writeable = False
         return sizes
 
     @cached_property
     def outline(self) -> tuple[NDArray[np.int64], ...]:
-        """The closed lines around the bodies and their holes, each by its nodes in order: arrays (n,); none of a bar.
+        """The closed lines around the bodies and their holes, each by its nodes in order: arrays (n,); none of a bar or a solid.
 
         They go counterclockwise around a body and clockwise around a hole, each from its smallest number on.
         """
@@ -108,11 +123,12 @@ class MeshArrays(Immutable):
         return hash(((self.points + 0.0).tobytes(), self.cells.tobytes()))
 
     def __repr__(self) -> str:
-        kind = "bar" if self.dimension == 1 else "triangle"
-        return f"<percute.Mesh: {counted(len(self.cells), kind)}, {counted(len(self.points), 'node')}>"
+        elements = f"{len(self.cells)} tetrahedra" if self.dimension == 3 and len(self.cells) != 1 else counted(len(self.cells), self.kind)
+        return f"<percute.Mesh: {elements}, {counted(len(self.points), 'node')}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.points.copy(), self.cells.copy(), dict(self.edge_groups), dict(self.element_groups))
+        groups = (dict(self.face_groups), dict(self.element_groups), None) if self.dimension < 3 else (None, dict(self.element_groups), dict(self.face_groups))
+        return type(self), (self.points.copy(), self.cells.copy(), *groups)
 
 
 def _same_groups(first: Mapping[str, NDArray[np.int64]], second: Mapping[str, NDArray[np.int64]]) -> bool:
@@ -121,7 +137,7 @@ def _same_groups(first: Mapping[str, NDArray[np.int64]], second: Mapping[str, ND
 
 
 def boundary(cells: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Give the edges that belong to one element only (of a bar: nodes), and this element."""
+    """Give the edges that belong to one element only (of a bar: nodes, of a solid: faces), and this element."""
     edges = np.concatenate([np.delete(cells, k, axis=1) for k in range(cells.shape[1])]).astype(np.int64)
     _, first, times = np.unique(np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True)
     outer = first[times == 1]

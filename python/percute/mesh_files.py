@@ -31,7 +31,7 @@ from percute.words import counted
 M = TypeVar("M", bound=MeshArrays)
 _Integers = NDArray[np.int64]
 
-KINDS = {"vertex": 0, "line": 1, "triangle": 2}
+KINDS = {"vertex": 0, "line": 1, "triangle": 2, "tetra": 3}
 """Supported kinds of cells, with their dimensions."""
 
 LARGE = 10.0
@@ -138,7 +138,7 @@ class _Reader:
                 raise refused(name, len(data), kind)
         self.dimension = max((KINDS[kind] for kind, data in self.blocks if len(data)), default=0)
         if self.dimension == 0:
-            raise FileFormatError(f"{name}: the file has neither triangles nor lines; it must have the mesh of a body")
+            raise FileFormatError(f"{name}: the file has neither tetrahedra nor triangles nor lines; it must have the mesh of a body")
         self.sets = _sets(found)
         self.points_of = {str(name): np.asarray(nodes, np.int64) for name, nodes in found.point_sets.items() if str(name) not in self.sets}
         if self.dimension == 2 and self.points_of:

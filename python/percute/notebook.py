@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from percute.mesh_arrays import MeshArrays, boundary
 from percute.pictures.body import Scale, scale_of
 from percute.pictures.canvas import prefixed
+from percute.pictures.surface import FROM, surface, view
 from percute.words import counted
 
 Floats = NDArray[np.float64]
@@ -36,11 +37,11 @@ def page(kind: str, rows: Rows, picture: str) -> str:
 
 def mesh_rows(mesh: MeshArrays) -> Rows:
     """Tell the numbers of elements and nodes, the size, and the groups."""
-    kind = "bar" if mesh.dimension == 1 else "triangle"
+    kind = mesh.kind
     factor, prefix = prefixed(mesh.points)
     sides = " × ".join(f"{side:.4g}" for side in np.ptp(mesh.points, axis=0) / factor)
     rows = [("mesh", f"{counted(len(mesh.cells), kind)}, {counted(len(mesh.points), 'node')}"), ("size", f"{sides} {prefix}m")]
-    for name, groups in (("edge groups", mesh.edge_groups), ("element groups", mesh.element_groups)):
+    for name, groups in ((f"{mesh.face} groups", mesh.face_groups), ("element groups", mesh.element_groups)):
         if groups:
             rows.append((name, ", ".join(f"{group} ({len(members)})" for group, members in groups.items())))
     return rows
@@ -59,11 +60,20 @@ def time(seconds: float) -> str:
 
 def _pixels(mesh: MeshArrays) -> tuple[Floats, float, float]:
     """Give the places of the nodes (pixels, y downwards; a bar as a strip), and width and height."""
-    points = np.column_stack([mesh.points, np.zeros((len(mesh.points), 2 - mesh.dimension))])
+    flat = view(mesh.points)[:, :2] if mesh.dimension == 3 else mesh.points
+    points = np.column_stack([flat, np.zeros((len(mesh.points), max(2 - mesh.dimension, 0)))])
     low, high = points.min(axis=0), points.max(axis=0)
     scale = (SIDE - 2 * EDGE) / float((high - low).max())
     width, height = scale * (high - low) + 2 * EDGE
     return np.column_stack([scale * (points[:, 0] - low[0]) + EDGE, scale * (high[1] - points[:, 1]) + EDGE]), float(width), float(height)
+
+
+def _faces(mesh: MeshArrays) -> NDArray[Any]:
+    """Give the elements of a plane body, or the faces of a solid that are seen."""
+    if mesh.dimension < 3:
+        return mesh.cells
+    faces, _, normals = surface(mesh.points, mesh.cells)
+    return faces[normals @ FROM > 0.0]
 
 
 def _svg(width: float, height: float, body: str) -> str:
@@ -79,8 +89,9 @@ def outline(mesh: MeshArrays) -> str:
     places, width, height = _pixels(mesh)
     if mesh.dimension == 1:
         return _strip(places, mesh.cells, ["none"] * len(mesh.cells), width)
-    every = len(mesh.cells) <= MOST
-    lines = _path(places, mesh.cells, True) if every else _path(places, boundary(mesh.cells)[0], False)
+    shown = _faces(mesh)
+    every = len(shown) <= MOST
+    lines = _path(places, shown, True) if every else _path(places, boundary(mesh.cells)[0], mesh.dimension == 3)
     return _svg(width, height, f'<path d="{lines}" fill="none" stroke="currentColor" stroke-width="{0.5 if every else 1}"/>')
 
 

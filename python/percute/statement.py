@@ -19,7 +19,7 @@ from percute.words import counted
 
 __all__ = ["BodyForce", "Elastic", "Plane", "Support", "Traction"]
 
-AXES = """"x", "y" or, for both, ("x", "y")"""
+AXES = """"x", "y" (of a solid also "z") or, for both, ("x", "y")"""
 """The components that a support may have."""
 
 Vector = tuple[float, ...]
@@ -36,7 +36,7 @@ def vector_of(name: str, value: object, dimension: int, unit: str) -> Vector:
     if not np.isfinite(made).all():
         raise InputError(f"`{name}` is {made}; it must be finite ({unit})")
     if len(made) != dimension:
-        needed = "one number for a bar" if dimension == 1 else "two numbers, x and y"
+        needed = ("one number for a bar", "two numbers, x and y", "three numbers, x, y and z")[dimension - 1]
         raise InputError(f"`{name}` has {len(made)} numbers; it must have {needed} ({unit})")
     return made
 
@@ -72,9 +72,9 @@ class Elastic:
     density : float
         Mass per volume ρ (kg/m³).
     poisson : float, optional
-        Poisson's ratio ν, above -1 and below 0.5. Plane bodies need it, bars have none.
+        Poisson's ratio ν, above -1 and below 0.5. Plane bodies and solids need it, bars have none.
     plane : {"stress", "strain"}, optional
-        Plane stress or plane strain. Required for plane bodies, not allowed for bars.
+        Plane stress or plane strain. Required for plane bodies, not allowed for bars and solids.
     thickness : float, default: 1.0
         Thickness of a plane body (m). With 1 m, energies and forces are per metre.
     section : float, optional

@@ -101,6 +101,10 @@ impl ElementState {
         if self.dimension == 1 {
             return self.strain[0][0];
         }
+        if self.dimension == 3 {
+            let principal = principal_values(&self.strain);
+            return if principal[0] + principal[2] < 0.0 { principal[0] } else { principal[2] };
+        }
         let (xx, yy, xy) = (self.strain[0][0], self.strain[1][1], self.strain[0][1]);
         let (mean, radius) = (0.5 * (xx + yy), (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
         if mean < 0.0 { mean - radius } else { mean + radius }
@@ -119,6 +123,26 @@ impl ElementState {
 }
 
 /// A tensor with three rows and columns.
+/// The eigenvalues of a symmetric tensor, ascending.
+#[must_use]
+pub fn principal_values(tensor: &Tensor<3>) -> [f64; 3] {
+    let mean = (tensor[0][0] + tensor[1][1] + tensor[2][2]) / 3.0;
+    let deviator: Tensor<3> =
+        std::array::from_fn(|a| std::array::from_fn(|b| tensor[a][b] - if a == b { mean } else { 0.0 }));
+    let size = (deviator.iter().flatten().map(|x| x * x).sum::<f64>() / 6.0).sqrt();
+    if size == 0.0 {
+        return [mean; 3];
+    }
+    // Of s = deviator/size, det s = 2 cos 3θ.
+    let s = deviator.map(|row| row.map(|x| x / size));
+    let determinant = s[0][0] * (s[1][1] * s[2][2] - s[1][2] * s[2][1])
+        - s[0][1] * (s[1][0] * s[2][2] - s[1][2] * s[2][0])
+        + s[0][2] * (s[1][0] * s[2][1] - s[1][1] * s[2][0]);
+    let angle = (0.5 * determinant).clamp(-1.0, 1.0).acos() / 3.0;
+    let value = |k: f64| mean + 2.0 * size * (angle + k * std::f64::consts::TAU / 3.0).cos();
+    [value(1.0), value(2.0), value(0.0)]
+}
+
 fn in_space<const D: usize>(tensor: &Tensor<D>) -> Tensor<3> {
     std::array::from_fn(|a| std::array::from_fn(|b| if a < D && b < D { tensor[a][b] } else { 0.0 }))
 }

@@ -81,6 +81,8 @@ pub fn memory<'p>(problem: impl Into<ProblemRef<'p>>, times: &TimeGrid, options:
         match problem {
             ProblemRef::D1(bar) => pipeline::memory::<1, 2>(bar, times, options),
             ProblemRef::D2(plane) => pipeline::memory::<2, 3>(plane, times, options),
+            // An estimate is refused.
+            ProblemRef::D3(_) => 0,
         }
     }
     of(problem.into(), times, options)

@@ -72,6 +72,7 @@ impl Smoothing {
             Self { bodies: Vec::new(), body_of_node, starts: Vec::new(), materials: Vec::new(), weights: Vec::new() };
         match mesh.kind() {
             CellKind::Bar => made.bodies = vec![Coefficients::BAR; mesh.parts()],
+            CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
             CellKind::Triangle => {
                 let asymmetry = made.asymmetry(problem);
                 made.bodies = asymmetry.into_iter().map(Coefficients::of_triangles).collect();

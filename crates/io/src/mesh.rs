@@ -9,7 +9,7 @@ use hdf5::types::FixedAscii;
 use percute_core::mesh::{ElementGroups, FaceRows, Mesh};
 
 /// Numbers and names of the elements in VTK, by dimension from 1.
-pub(crate) const VTK_TYPES: [(u8, &str); 2] = [(3, "VTK_LINE"), (5, "VTK_TRIANGLE")];
+pub(crate) const VTK_TYPES: [(u8, &str); 3] = [(3, "VTK_LINE"), (5, "VTK_TRIANGLE"), (10, "VTK_TETRA")];
 
 /// Name of the field with the number of the body of each element.
 pub(crate) const BODY: &str = "body";

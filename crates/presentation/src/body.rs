@@ -54,10 +54,10 @@ impl Body {
     }
 
     /// The lines around the body and its holes, counterclockwise and clockwise, each with its first node at the end
-    /// again; none of a bar.
+    /// again; none of a bar or a solid.
     #[must_use]
     pub fn outline(&self) -> Vec<Vec<usize>> {
-        if self.dimension == 1 {
+        if self.dimension != 2 {
             return Vec::new();
         }
         let sides = self.cells.chunks_exact(3).flat_map(|c| [[c[0], c[1]], [c[1], c[2]], [c[2], c[0]]]);

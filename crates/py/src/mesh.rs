@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A checked mesh of either dimension.
+/// A checked mesh of any dimension.
 #[pyclass(frozen, module = "percute._percute")]
 pub(crate) struct MeshData {
     pub(crate) mesh: Arc<Mesh>,
@@ -41,13 +41,28 @@ impl MeshData {
         made(py, move || Mesh::uniform_bar(length, elements))
     }
 
-    /// The mesh with each element cut into halves (a bar) or quarters, so many times.
+    #[staticmethod]
+    fn r#box(py: Python<'_>, size: [f64; 3], cells: [usize; 3]) -> PyResult<Self> {
+        made(py, move || Mesh::cuboid(size, cells))
+    }
+
+    #[staticmethod]
+    fn cylinder(py: Python<'_>, radius: f64, height: f64, rings: usize, layers: usize) -> PyResult<Self> {
+        made(py, move || Mesh::cylinder(radius, height, rings, layers))
+    }
+
+    #[staticmethod]
+    fn ball(py: Python<'_>, radius: f64, rings: usize) -> PyResult<Self> {
+        made(py, move || Mesh::ball(radius, rings))
+    }
+
+    /// The mesh with each element cut into halves (a bar), quarters or eighths, so many times.
     fn refined(&self, py: Python<'_>, times: usize) -> PyResult<Self> {
         let mesh = self.mesh.clone();
         made(py, move || (0..times).try_fold(Mesh::clone(&mesh), |mesh, _| mesh.refined()))
     }
 
-    /// The mesh with the chosen elements cut into halves (a bar) or quarters, and the neighbours that must be cut too.
+    /// The mesh with the chosen elements cut into halves (a bar), quarters or eighths, and the neighbours that must be cut.
     fn refined_where(&self, py: Python<'_>, chosen: Vec<bool>) -> PyResult<Self> {
         let mesh = self.mesh.clone();
         made(py, move || mesh.refined_where(|e| chosen[e.index()]))
@@ -67,7 +82,7 @@ impl MeshData {
         let cells = indices(py, "cells", cells.as_slice()?, dimension + 1)?;
         let (mut edges, mut elements) = (FaceRows::new(), ElementGroups::new());
         for (name, members) in edge_groups {
-            let told = format!("edge_groups[{name:?}]");
+            let told = format!("{}_groups[{name:?}]", if dimension == 3 { "face" } else { "edge" });
             edges.insert(name, indices(py, &told, members.as_slice()?, dimension)?);
         }
         for (name, members) in element_groups {
@@ -136,7 +151,7 @@ impl MeshData {
         lines.iter().map(|line| view::column(py, &line[..line.len() - 1], |&node| node as i64)).collect()
     }
 
-    /// Area (m²) or length (m) of each element.
+    /// Area (m²), length (m) or volume (m³) of each element.
     fn areas<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let areas = self.mesh.volumes();
         view::column(py, &areas, |&area| area)

@@ -58,8 +58,8 @@ fn compared<'py>(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Vec<TrueErrorColumns<'py>>, Option<String>)> {
     if histories.iter().any(|history| history.run.problem.dimension() != fine.dimension()) {
-        let [one, other] = if fine.dimension() == 1 { ["a bar", "a plane body"] } else { ["a plane body", "a bar"] };
-        return Err(errors::input(py, format!("the reference is that of {one}, the history that of {other}")));
+        let told = "the reference is a body of another dimension than that of the history";
+        return Err(errors::input(py, told));
     }
     let runs: Vec<_> = histories.iter().map(|history| history.run.clone()).collect();
     let varies = times.varies();

@@ -20,7 +20,11 @@ fn wrong(py: Python<'_>, name: &str, message: impl std::fmt::Display) -> PyErr {
 /// A vector with a component for each axis of the mesh.
 fn vector(py: Python<'_>, name: &str, given: &[f64], dimension: usize) -> PyResult<Vector> {
     if given.len() != dimension {
-        let needed = if dimension == 1 { "one number for a bar" } else { "two numbers, x and y, for a plane body" };
+        let needed = match dimension {
+            1 => "one number for a bar",
+            2 => "two numbers, x and y, for a plane body",
+            _ => "three numbers, x, y and z, for a solid",
+        };
         return Err(wrong(py, name, format!("has {} numbers; it must have {needed}", given.len())));
     }
     Ok(row(given, 0, dimension))
@@ -63,6 +67,20 @@ pub(crate) fn material(name: &str, given: &Bound<'_, PyAny>, dimension: usize) -
         let section = section.ok_or_else(|| bad("section", "is missing: a bar needs it (m²)"))?;
         let law = Elastic::bar(young, density, section);
         return law.and_then(yielding).map_err(refused);
+    }
+    if dimension == 3 {
+        for (key, there) in
+            [("section", section.is_some()), ("plane", plane.is_some()), ("thickness", thickness != 1.0)]
+        {
+            if there {
+                return Err(bad(
+                    key,
+                    "does not apply to a solid, which is whole in all three dimensions; leave it out",
+                ));
+            }
+        }
+        let poisson = poisson.ok_or_else(|| bad("poisson", "is missing: a solid needs it"))?;
+        return Elastic::solid(young, poisson, density).and_then(yielding).map_err(refused);
     }
     if section.is_some() {
         return Err(bad("section", "applies to bars only; a plane body has a `thickness` (m)"));
@@ -194,6 +212,9 @@ pub(crate) fn material_arguments<'py>(py: Python<'py>, law: &Elastic) -> PyResul
         return Ok(arguments);
     }
     arguments.set_item("poisson", law.poisson())?;
+    if law.hypothesis() == Hypothesis::Solid {
+        return Ok(arguments);
+    }
     arguments.set_item("plane", if law.hypothesis() == Hypothesis::PlaneStress { "stress" } else { "strain" })?;
     arguments.set_item("thickness", law.extent())?;
     Ok(arguments)

@@ -105,10 +105,10 @@ def draw_body(
         axes.add_collection(lines)
     axes.set(aspect="equal", xlabel=f"x ({prefix}m)", ylabel=f"y ({prefix}m)")
     _frame(axes, held / factor, [(np.asarray(at, float) / factor, np.asarray(normal, float)) for at, normal in planes])
-    _colour_bar(axes, drawn, label, shown)
+    colour_bar(axes, drawn, label, shown)
 
 
-def _colour_bar(axes: Axes, drawn: ScalarMappable, label: str, scale: Scale) -> None:
+def colour_bar(axes: Axes, drawn: ScalarMappable, label: str, scale: Scale) -> None:
     """Draw the scale of colours: as high as the body, or below a slim one."""
     width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
     if height < SLIM * width:

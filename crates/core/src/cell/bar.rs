@@ -24,6 +24,10 @@ impl Cell<1, 2> for Bar {
         [[Some(1), None], [None, Some(0)]]
     }
 
+    fn angle_around(&self, _: &[[f64; 1]; 2], _: &[usize]) -> f64 {
+        1.0
+    }
+
     fn children(&self) -> &'static [Child<2>] {
         &[[[0, 0], [0, 1]], [[0, 1], [1, 1]]]
     }

@@ -1,9 +1,10 @@
 //! The elements: all that depends on the dimension.
 //!
-//! [`Cell`] is written once for each kind: [`Bar`] and [`Triangle`]. A mesh stores its [`CellKind`]; code that exists
+//! [`Cell`] is written once for each kind: [`Bar`], [`Triangle`] and [`Tetrahedron`]. A mesh stores its [`CellKind`]; code that exists
 //! for some kinds only matches on it, so that a new kind does not compile before each of these matches has its case.
 
 mod bar;
+mod tetrahedron;
 mod triangle;
 
 use std::any::Any;
@@ -17,6 +18,8 @@ pub struct Element<const D: usize, const N: usize>;
 pub type Bar = Element<1, 2>;
 /// The 3-node triangle.
 pub type Triangle = Element<2, 3>;
+/// The 4-node tetrahedron.
+pub type Tetrahedron = Element<3, 4>;
 
 /// The kind of the elements of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +28,8 @@ pub enum CellKind {
     Bar,
     /// A plane triangle of three nodes.
     Triangle,
+    /// A tetrahedron of four nodes.
+    Tetrahedron,
 }
 
 impl CellKind {
@@ -35,6 +40,7 @@ impl CellKind {
         match self {
             Self::Bar => 1,
             Self::Triangle => 2,
+            Self::Tetrahedron => 3,
         }
     }
 
@@ -45,6 +51,7 @@ impl CellKind {
         match self {
             Self::Bar => 2,
             Self::Triangle => 3,
+            Self::Tetrahedron => 4,
         }
     }
 }
@@ -58,7 +65,8 @@ impl CellKind {
 pub fn cell<const D: usize, const N: usize>() -> &'static dyn Cell<D, N> {
     const BAR: &dyn Cell<1, 2> = &Element;
     const TRIANGLE: &dyn Cell<2, 3> = &Element;
-    let all: [&dyn Any; 2] = [&BAR, &TRIANGLE];
+    const TETRAHEDRON: &dyn Cell<3, 4> = &Element;
+    let all: [&dyn Any; 3] = [&BAR, &TRIANGLE, &TETRAHEDRON];
     let Some(found) = all.into_iter().find_map(|one| one.downcast_ref()) else {
         unreachable!("no element of dimension {D} with {N} nodes")
     };
@@ -93,6 +101,7 @@ mod sealed {
     pub trait Sealed {}
     impl Sealed for super::Bar {}
     impl Sealed for super::Triangle {}
+    impl Sealed for super::Tetrahedron {}
 }
 
 /// One kind of element. Face k lies opposite to node k.
@@ -100,7 +109,7 @@ pub trait Cell<const D: usize, const N: usize>: sealed::Sealed + Debug + Send + 
     /// Its kind.
     fn kind(&self) -> CellKind;
 
-    /// Length (m) or area (m²), negative if the corners are in the wrong order.
+    /// Length (m), area (m²) or volume (m³), negative if the corners are in the wrong order.
     fn signed_volume(&self, points: &[[f64; D]; N]) -> f64;
 
     /// ∇φ_k (1/m) of a node other than the first, in an element of this volume.
@@ -110,8 +119,12 @@ pub trait Cell<const D: usize, const N: usize>: sealed::Sealed + Debug + Send + 
     fn separating_directions(&self, a: &[[f64; D]; N], b: &[[f64; D]; N]) -> Vec<[f64; D]>;
 
     /// For each node, the first and the last face of the element at it, in counterclockwise order around the node; a
-    /// bar has one of them.
+    /// bar has one of them, and a tetrahedron none, as no order goes around a node of a solid.
     fn faces_around(&self) -> [[Option<usize>; 2]; N];
+
+    /// The part of a small circle or sphere around a point that an element has: an angle (rad) or solid angle (sr). The
+    /// point is where the shape functions of these nodes alone are not 0. In a bar elements have equal parts, 1.
+    fn angle_around(&self, points: &[[f64; D]; N], nodes: &[usize]) -> f64;
 
     /// The elements that an element is cut into by the middles of its edges.
     fn children(&self) -> &'static [Child<N>];
@@ -120,7 +133,7 @@ pub trait Cell<const D: usize, const N: usize>: sealed::Sealed + Debug + Send + 
     fn face_children(&self) -> &'static [Child<D>];
 
     /// Whether a point is in the element with these corners, positively oriented: with the point in place of a corner,
-    /// no signed volume is below `least` (m or m²).
+    /// no signed volume is below `least` (m, m² or m³).
     fn encloses(&self, corners: &[[f64; D]; N], point: &[f64; D], least: f64) -> bool {
         (0..N).all(|k| {
             let mut part = *corners;
@@ -146,7 +159,7 @@ pub trait Cell<const D: usize, const N: usize>: sealed::Sealed + Debug + Send + 
 /// Volume and shape-function gradients of a P1 simplex.
 #[derive(Clone, Copy, Debug)]
 pub struct CellGeometry<const D: usize, const N: usize> {
-    /// Length (m) or area (m²), without section or thickness.
+    /// Length (m), area (m²) or volume (m³), without section or thickness.
     pub volume: f64,
     /// ∇φ_i of each node (1/m); they sum to zero.
     pub gradients: [[f64; D]; N],

@@ -1,6 +1,7 @@
 //! The triangle of three nodes.
 
 use super::{Cell, CellKind, Child, Triangle};
+use std::f64::consts::PI;
 
 impl Cell<2, 3> for Triangle {
     fn kind(&self) -> CellKind {
@@ -26,6 +27,18 @@ impl Cell<2, 3> for Triangle {
 
     fn faces_around(&self) -> [[Option<usize>; 2]; 3] {
         [[Some(2), Some(1)], [Some(0), Some(2)], [Some(1), Some(0)]]
+    }
+
+    fn angle_around(&self, points: &[[f64; 2]; 3], nodes: &[usize]) -> f64 {
+        match *nodes {
+            [k] => {
+                let side = |to: usize| [0, 1].map(|c| points[to % 3][c] - points[k][c]);
+                let (a, b) = (side(k + 1), side(k + 2));
+                (a[0] * b[1] - a[1] * b[0]).abs().atan2(a[0] * b[0] + a[1] * b[1])
+            }
+            [_, _] => PI,
+            _ => 2.0 * PI,
+        }
     }
 
     fn children(&self) -> &'static [Child<3>] {

@@ -1,16 +1,18 @@
-//! Obstacles and the nodes that face them, of either dimension.
+//! Obstacles and the nodes that face them, of any dimension.
 
 use super::{ContactConfiguration, Coulomb, Frame, Obstacle, ObstacleError, Plane};
 use crate::border::{Vector, cut, padded, vectors};
 use std::any::Any;
 
-/// An obstacle of either dimension.
+/// An obstacle of any dimension.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AnyObstacle {
     /// Of a bar.
     D1(Obstacle<1>),
     /// Of a plane body.
     D2(Obstacle<2>),
+    /// Of a solid.
+    D3(Obstacle<3>),
 }
 
 macro_rules! on {
@@ -18,6 +20,7 @@ macro_rules! on {
         match $any {
             Self::D1($inner) => $body,
             Self::D2($inner) => $body,
+            Self::D3($inner) => $body,
         }
     };
 }
@@ -31,6 +34,12 @@ impl From<Obstacle<1>> for AnyObstacle {
 impl From<Obstacle<2>> for AnyObstacle {
     fn from(obstacle: Obstacle<2>) -> Self {
         Self::D2(obstacle)
+    }
+}
+
+impl From<Obstacle<3>> for AnyObstacle {
+    fn from(obstacle: Obstacle<3>) -> Self {
+        Self::D3(obstacle)
     }
 }
 
@@ -68,7 +77,8 @@ impl AnyObstacle {
         }
         match dimension {
             1 => made(place, normal, friction, group).map(Self::D1),
-            _ => made(place, normal, friction, group).map(Self::D2),
+            2 => made(place, normal, friction, group).map(Self::D2),
+            _ => made(place, normal, friction, group).map(Self::D3),
         }
     }
 
@@ -123,13 +133,15 @@ impl AnyObstacle {
     }
 }
 
-/// The contact surface at an instant, in either dimension. Fields are in rows.
+/// The contact surface at an instant, in any dimension. Fields are in rows.
 #[derive(Clone, Debug)]
 pub enum AnyContactConfiguration<'a> {
     /// Of a bar.
     D1(ContactConfiguration<'a, 1>),
     /// Of a plane body.
     D2(ContactConfiguration<'a, 2>),
+    /// Of a solid.
+    D3(ContactConfiguration<'a, 3>),
 }
 
 impl AnyContactConfiguration<'_> {

@@ -3,12 +3,17 @@
 //! The normal problem of one plane depends on the friction on the other. There are few cases, each with a closed form:
 //! either plane alone, or both, where each part slides or sticks. Parts that stick are not unique; those with the least
 //! friction are. They depend on the sum of both alone, and not on the order of the planes.
+//!
+//! In a solid both planes meet along an edge. Across it, all is as in the plane of both normals. Along it, friction
+//! stops the node as far as what the cones have left allows.
 
 use super::constraint::Constraint;
 use super::frame::dot;
 
 /// Such a part of the force is rounding.
 const ROUNDING: f64 = 1e-12;
+/// Rounds of [`in_turn`] at the most: with an opening of 165° each leaves about 0.93 of the misfit.
+const ROUNDS: usize = 500;
 
 /// The reactions (N) of the two constraints of a node, of which the step violates at least one, for a step of these
 /// Δt_n and h_n (s). Gaps within the tolerance (m) are none.
@@ -31,7 +36,35 @@ pub(super) fn reactions<const D: usize>(pair: &[Constraint<D>; 2], steps: [f64; 
         return found;
     }
     let (violation, parts) = together(pair, steps, tolerance);
-    if violation > 0.0 { least(closed).unwrap_or(parts) } else { parts }
+    if violation == 0.0 {
+        return parts;
+    }
+    // Across the edge, friction of a node that slides along it is less than in the plane of the normals.
+    least(closed).unwrap_or_else(|| if D == 3 { in_turn(pair, steps) } else { parts })
+}
+
+/// Each reaction in turn for that of the other plane, until both stay.
+fn in_turn<const D: usize>(pair: &[Constraint<D>; 2], steps: [f64; 2]) -> [[f64; D]; 2] {
+    let [dt, h] = steps;
+    let mut forces = [[0.0; D]; 2];
+    for _ in 0..ROUNDS {
+        let before = forces;
+        for i in 0..2 {
+            let other = &forces[1 - i];
+            let mut one = pair[i];
+            one.gap += dt * h / one.mass * dot(other, one.frame.normal());
+            (0..D).for_each(|c| one.velocity[c] += h / one.mass * other[c]);
+            forces[i] = if one.gap < 0.0 { one.alone(steps) } else { [0.0; D] };
+        }
+        let [changes, sizes] = [true, false].map(|change| {
+            let difference = |(now, before): (&f64, &f64)| if change { (now - before).abs() } else { now.abs() };
+            forces.as_flattened().iter().zip(before.as_flattened()).map(difference).fold(0.0, f64::max)
+        });
+        if changes <= ROUNDING * sizes {
+            break;
+        }
+    }
+    forces
 }
 
 /// The reactions with the least squares.
@@ -65,11 +98,12 @@ impl ForcePart {
 
 /// The reactions that bring the node to both planes, and by how much they violate the cones, over their sum.
 fn together<const D: usize>(pair: &[Constraint<D>; 2], [dt, h]: [f64; 2], tolerance: f64) -> (f64, [[f64; D]; 2]) {
-    let normals = pair.each_ref().map(|one| planar(one.frame.normal()));
+    let across = Across::new(pair.each_ref().map(|one| one.frame.normal()));
+    let normals = pair.each_ref().map(|one| across.planar(one.frame.normal()));
     // The change of velocity that closes both gaps.
     let change =
         solve([[normals[0][0], normals[1][0]], [normals[0][1], normals[1][1]]], [0, 1].map(|i| -pair[i].gap / dt));
-    let velocity = planar(&pair[0].velocity);
+    let velocity = across.planar(&pair[0].velocity);
     let after = [0, 1].map(|c| velocity[c] + change[c]);
     let total = change.map(|v| pair[0].mass * v / h);
     let parts = [0, 1].map(|i| {
@@ -87,7 +121,66 @@ fn together<const D: usize>(pair: &[Constraint<D>; 2], [dt, h]: [f64; 2], tolera
         [true, _] => [[0.0; 2], total],
         [_, true] => [total, [0.0; 2]],
     };
-    (violation, forces.map(|force| std::array::from_fn(|c| force.get(c).copied().unwrap_or(0.0))))
+    let along = across.friction_along(&parts, &forces, pair[0].mass / h, &pair[0].velocity);
+    (violation, [0, 1].map(|i| across.in_space(&forces[i], along[i])))
+}
+
+/// The plane of two normals, and the direction across it.
+struct Across<const D: usize> {
+    axes: [[f64; D]; 2],
+    edge: Option<[f64; D]>,
+}
+
+impl<const D: usize> Across<D> {
+    /// In a plane body that of the body.
+    fn new([one, two]: [&[f64; D]; 2]) -> Self {
+        if D < 3 {
+            return Self { axes: [0, 1].map(|k| std::array::from_fn(|c| f64::from(u8::from(c == k)))), edge: None };
+        }
+        let along = dot(one, two);
+        let rest: [f64; D] = std::array::from_fn(|c| two[c] - along * one[c]);
+        let length = dot(&rest, &rest).sqrt();
+        let second = rest.map(|x| x / length);
+        let next = |c: usize, by: usize| (c + by) % D;
+        let edge = std::array::from_fn(|c| one[next(c, 1)] * second[next(c, 2)] - one[next(c, 2)] * second[next(c, 1)]);
+        Self { axes: [*one, second], edge: Some(edge) }
+    }
+
+    fn planar(&self, vector: &[f64; D]) -> [f64; 2] {
+        if self.edge.is_some() {
+            return self.axes.each_ref().map(|axis| dot(axis, vector));
+        }
+        [0, 1].map(|c| vector.get(c).copied().unwrap_or(0.0))
+    }
+
+    /// The forces of both parts along the edge (N) that stop a node of this mass over h (kg/s) there, or slow it down as
+    /// far as the cones of parts with these forces allow, in proportion to what each has left.
+    fn friction_along(
+        &self,
+        parts: &[ForcePart; 2],
+        forces: &[[f64; 2]; 2],
+        rate: f64,
+        velocity: &[f64; D],
+    ) -> [f64; 2] {
+        let Some(edge) = &self.edge else { return [0.0; 2] };
+        let left = [0, 1].map(|i| {
+            let [normal, aside] = [&parts[i].normal, &parts[i].tangent].map(|axis| dot(axis, &forces[i]));
+            let limit = parts[i].friction * normal.max(0.0);
+            (limit * limit - aside * aside).max(0.0).sqrt()
+        });
+        let (stop, all) = (-rate * dot(edge, velocity), left[0] + left[1]);
+        let share = if all > 0.0 { (stop.abs() / all).min(1.0) * stop.signum() } else { 0.0 };
+        left.map(|left| share * left)
+    }
+
+    fn in_space(&self, force: &[f64; 2], along: f64) -> [f64; D] {
+        match &self.edge {
+            Some(edge) => {
+                std::array::from_fn(|c| force[0] * self.axes[0][c] + force[1] * self.axes[1][c] + along * edge[c])
+            }
+            None => std::array::from_fn(|c| force.get(c).copied().unwrap_or(0.0)),
+        }
+    }
 }
 
 /// λ and the sticking part of τ of both parts of a force: in the cones, with the least friction where it sticks; and by
@@ -143,11 +236,6 @@ fn split(parts: &[ForcePart; 2], total: [f64; 2]) -> (f64, [[f64; 2]; 2]) {
 fn solve([a, c]: [[f64; 2]; 2], b: [f64; 2]) -> [f64; 2] {
     let determinant = a[0] * c[1] - a[1] * c[0];
     [(b[0] * c[1] - b[1] * c[0]) / determinant, (a[0] * b[1] - a[1] * b[0]) / determinant]
-}
-
-/// The first two components.
-fn planar<const D: usize>(vector: &[f64; D]) -> [f64; 2] {
-    [0, 1].map(|c| vector.get(c).copied().unwrap_or(0.0))
 }
 
 #[cfg(test)]

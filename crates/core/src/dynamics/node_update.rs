@@ -27,8 +27,19 @@ pub(super) enum NodeMotion<'a, const D: usize> {
     Combine([f64; 3]),
 }
 
+/// Whether eight numbers hold whole nodes. Those of a solid do not: its nodes are worked on one after the other.
+const fn fits(dimension: usize) -> bool {
+    8 % dimension == 0
+}
+
+/// The lane of a component of the i-th node of a run.
+#[inline(always)]
+const fn lane<const D: usize>(i: usize, c: usize) -> usize {
+    if fits(D) { (D * i + c) % 8 } else { D * (i % (8 / D)) + c }
+}
+
 /// The sums over the nodes and elements of a strip, in lanes: component c of node i of a run has lane D i + c, modulo
-/// 8.
+/// 8, or modulo D (8/D).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StripSums<const D: usize> {
     /// Twice the strain energy (J).
@@ -63,7 +74,7 @@ impl<const D: usize> StripSums<D> {
     pub(super) fn add(&mut self, i: usize, [mass, inverse]: [f64; 2], back: f64, v: &[f64; D], force: &[f64; D]) {
         for c in 0..D {
             // m v_n.
-            let (p, lane) = (mass * v[c] + back * force[c], (D * i + c) % 8);
+            let (p, lane) = (mass * v[c] + back * force[c], lane::<D>(i, c));
             self.momentum[lane] += p;
             self.kinetic[lane] += p * p * inverse;
         }
@@ -99,11 +110,11 @@ pub(super) struct Nodes<'a, const D: usize> {
 
 /// The numbers of all nodes in eights, but for the last few nodes.
 macro_rules! eights {
-    ($field:expr) => {
-        $field.as_flattened().as_chunks::<8>().0.iter()
+    ($field:expr, $rest:expr) => {
+        $field[..$rest.start].as_flattened().as_chunks::<8>().0.iter()
     };
-    (mut $field:expr) => {
-        $field.as_flattened_mut().as_chunks_mut::<8>().0.iter_mut()
+    (mut $field:expr, $rest:expr) => {
+        $field[..$rest.start].as_flattened_mut().as_chunks_mut::<8>().0.iter_mut()
     };
 }
 
@@ -111,7 +122,8 @@ impl<const D: usize> Nodes<'_, D> {
     /// The last nodes, which do not fill eight numbers.
     #[inline(always)]
     fn rest(&self) -> Range<usize> {
-        self.velocity.len() - self.velocity.len() % (8 / D)..self.velocity.len()
+        let eights = if fits(D) { self.velocity.len() - self.velocity.len() % (8 / D) } else { 0 };
+        eights..self.velocity.len()
     }
 
     /// Moves the nodes, with these numbers, and sets their forces to zero.
@@ -143,7 +155,9 @@ impl<const D: usize> Nodes<'_, D> {
     fn step<L: Registers>(self, l: L, h: f64, dt: f64) {
         let rest = self.rest();
         let (factor, length, none) = (l.splat(h), l.splat(dt), l.store(l.splat(0.0)));
-        let fields = eights!(mut self.displacement).zip(eights!(mut self.velocity)).zip(eights!(mut self.force));
+        let fields = eights!(mut self.displacement, rest)
+            .zip(eights!(mut self.velocity, rest))
+            .zip(eights!(mut self.force, rest));
         for (((u, v), force), inverse) in fields.zip(self.inverse_mass.chunks_exact(8 / D)) {
             let acceleration = l.mul(of_nodes::<L, D>(l, inverse), l.load(force));
             let velocity = l.add(l.load(v), l.mul(factor, acceleration));
@@ -166,7 +180,8 @@ impl<const D: usize> Nodes<'_, D> {
         let rest = self.rest();
         let (of_force, of_v, of_u, none) = (l.splat(a), l.splat(b), l.splat(c), l.store(l.splat(0.0)));
         let mut kinetic = l.load(&sums.kinetic);
-        let fields = eights!(mut self.displacement).zip(eights!(self.velocity)).zip(eights!(mut self.force));
+        let fields =
+            eights!(mut self.displacement, rest).zip(eights!(self.velocity, rest)).zip(eights!(mut self.force, rest));
         let masses = self.mass.chunks_exact(8 / D).zip(self.inverse_mass.chunks_exact(8 / D));
         for (((u, v), force), (mass, inverse)) in fields.zip(masses) {
             let acceleration = l.mul(of_nodes::<L, D>(l, inverse), l.load(force));
@@ -181,7 +196,7 @@ impl<const D: usize> Nodes<'_, D> {
             for k in 0..D {
                 let acceleration = self.inverse_mass[i] * self.force[i][k];
                 let sum = a * acceleration + (b * self.velocity[i][k] + c * self.displacement[i][k]);
-                sums.kinetic[(D * i + k) % 8] += sum * sum * self.mass[i];
+                sums.kinetic[lane::<D>(i, k)] += sum * sum * self.mass[i];
                 self.displacement[i][k] = sum;
                 self.force[i][k] = 0.0;
             }
@@ -194,7 +209,7 @@ impl<const D: usize> Nodes<'_, D> {
         let rest = self.rest();
         let (factor, mut momentum, mut kinetic) = (l.splat(back), l.load(&sums.momentum), l.load(&sums.kinetic));
         let masses = self.mass.chunks_exact(8 / D).zip(self.inverse_mass.chunks_exact(8 / D));
-        for ((v, force), (mass, inverse)) in eights!(self.velocity).zip(eights!(self.force)).zip(masses) {
+        for ((v, force), (mass, inverse)) in eights!(self.velocity, rest).zip(eights!(self.force, rest)).zip(masses) {
             // m v_n.
             let p = l.add(l.mul(of_nodes::<L, D>(l, mass), l.load(v)), l.mul(factor, l.load(force)));
             momentum = l.add(momentum, p);

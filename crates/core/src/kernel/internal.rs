@@ -13,6 +13,7 @@ pub struct InternalForces(OfDimension);
 enum OfDimension {
     One(ProblemKernel<1>),
     Two(ProblemKernel<2>),
+    Three(ProblemKernel<3>),
 }
 
 impl InternalForces {
@@ -22,6 +23,17 @@ impl InternalForces {
         Self(match problem.into() {
             ProblemRef::D1(problem) => OfDimension::One(ProblemKernel::new(problem)),
             ProblemRef::D2(problem) => OfDimension::Two(ProblemKernel::new(problem)),
+            ProblemRef::D3(problem) => OfDimension::Three(ProblemKernel::new(problem)),
+        })
+    }
+
+    /// The same with Hooke's law, whatever the materials are.
+    #[must_use]
+    pub fn linear<'p>(problem: impl Into<ProblemRef<'p>>) -> Self {
+        Self(match problem.into() {
+            ProblemRef::D1(problem) => OfDimension::One(ProblemKernel::linear(problem)),
+            ProblemRef::D2(problem) => OfDimension::Two(ProblemKernel::linear(problem)),
+            ProblemRef::D3(problem) => OfDimension::Three(ProblemKernel::linear(problem)),
         })
     }
 
@@ -30,6 +42,7 @@ impl InternalForces {
         match &self.0 {
             OfDimension::One(kernel) => kernel.subtract_from_rest(vectors(displacement), force.as_chunks_mut().0),
             OfDimension::Two(kernel) => kernel.subtract_from_rest(vectors(displacement), force.as_chunks_mut().0),
+            OfDimension::Three(kernel) => kernel.subtract_from_rest(vectors(displacement), force.as_chunks_mut().0),
         }
     }
 }

@@ -1,57 +1,35 @@
-//! Internal forces of P1 elements with linear laws.
+//! Internal forces of bars and triangles with linear laws.
 
 use super::pairs::{ChunkData, ElementPairs, PairNodes};
 use super::{Kernel, Reach};
-use crate::border::vectors;
-use crate::cell::CellKind;
 use crate::mesh::Strips;
-use crate::on_problem;
-use crate::problem::{Problem, ProblemRef};
+use crate::problem::Problem;
 use crate::simd::{Eight, Registers};
 
-/// The stiffness of a problem, applied element by element. Its scaled gradients are valid for linear laws only.
+/// The stiffness of a bar or a plane body, applied element by element. Its scaled gradients are valid for linear laws only.
 ///
 /// The sweep goes over pairs of elements that share a face: a pair has four nodes to read and write where two
 /// triangles have six. First all even strips are swept, then all odd ones.
 #[derive(Clone, Debug)]
-pub struct Stiffness {
-    kind: CellKind,
+pub(crate) struct LinearKernel {
     strips: Strips,
     pairs: ElementPairs,
 }
 
-impl Stiffness {
-    /// Prepares the elements of a problem.
-    #[must_use]
-    pub fn new<'p>(problem: impl Into<ProblemRef<'p>>) -> Self {
-        Self::of(problem.into())
-    }
-
-    fn of(problem: ProblemRef<'_>) -> Self {
-        on_problem!(problem, problem => Self::on_strips(problem, Strips::new(problem.mesh())))
+impl LinearKernel {
+    /// Prepares the elements of a bar or a plane body.
+    pub(crate) fn new<const D: usize>(problem: &Problem<D>) -> Self {
+        Self::on_strips(problem, Strips::new(problem.mesh()))
     }
 
     /// The same with a cut of its own.
     fn on_strips<const D: usize>(problem: &Problem<D>, strips: Strips) -> Self {
         let pairs = ElementPairs::new(problem, &strips);
-        Self { kind: problem.mesh().kind(), strips, pairs }
-    }
-
-    /// Subtracts K u from `force` (N), both in rows, and returns the strain energy ½ u·K u (J).
-    pub fn subtract_from_rows(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
-        match self.kind {
-            CellKind::Bar => self.subtract_internal_forces::<1>(vectors(displacement), force.as_chunks_mut().0),
-            CellKind::Triangle => self.subtract_internal_forces::<2>(vectors(displacement), force.as_chunks_mut().0),
-        }
-    }
-
-    /// Subtracts K u from `force` (N) and returns the strain energy ½ u·K u (J).
-    pub fn subtract_internal_forces<const D: usize>(&self, displacement: &[[f64; D]], force: &mut [[f64; D]]) -> f64 {
-        self.subtract(displacement, &mut [], force)
+        Self { strips, pairs }
     }
 }
 
-impl<const D: usize> Kernel<D> for Stiffness {
+impl<const D: usize> Kernel<D> for LinearKernel {
     type Chunk<'a> = ChunkData<'a>;
 
     fn strips(&self) -> &Strips {
@@ -73,12 +51,11 @@ impl<const D: usize> Kernel<D> for Stiffness {
         force: &mut [[f64; D]],
         energy: &mut Eight,
     ) {
-        match self.kind {
-            CellKind::Bar => any(chunk, displacement, force, energy),
-            CellKind::Triangle => {
-                let force = force[..displacement.len()].as_flattened_mut().as_chunks_mut().0;
-                triangles(lanes, chunk, displacement.as_flattened().as_chunks().0, force, energy);
-            }
+        if D == 2 {
+            let force = force[..displacement.len()].as_flattened_mut().as_chunks_mut().0;
+            triangles(lanes, chunk, displacement.as_flattened().as_chunks().0, force, energy);
+        } else {
+            any(chunk, displacement, force, energy);
         }
     }
 }
@@ -225,10 +202,10 @@ mod tests {
             .iter()
             .map(|_| std::array::from_fn(|_| random.between(-1.0, 1.0)))
             .collect();
-        let stiffness = Stiffness::on_strips(problem, strips);
+        let stiffness = LinearKernel::on_strips(problem, strips);
         let (expected, energy) = plain(problem, &u);
         let mut force = vec![[0.0; D]; u.len()];
-        let found = stiffness.subtract_internal_forces(&u, &mut force);
+        let found = stiffness.subtract(&u, &mut [], &mut force);
         let scale = expected.iter().flatten().fold(0.0_f64, |m, f| m.max(f.abs()));
         for (found, expected) in force.iter().flatten().zip(expected.iter().flatten()) {
             assert!((found - expected).abs() <= 1e-14 * scale, "{found} against {expected}, scale {scale}");
@@ -262,7 +239,7 @@ mod tests {
         let mesh = random_mesh(30, 3);
         let law = Elastic::plane_stress(7.0, 0.3, 2.0, 1.0).unwrap();
         let problem = Problem::<2>::builder(mesh).material(law).build().unwrap();
-        let (stiffness, mut random) = (Stiffness::new(&problem), Random::new(6));
+        let (stiffness, mut random) = (LinearKernel::new(&problem), Random::new(6));
         let u: Vec<[f64; 2]> = problem
             .mesh()
             .points_in::<2>()

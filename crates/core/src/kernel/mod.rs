@@ -3,14 +3,16 @@
 //! A kernel cuts the elements of a strip into chunks. The pass moves the nodes that a chunk needs, sweeps its elements,
 //! and sums up the nodes that no later chunk has.
 
+mod elements;
 mod internal;
 mod linear;
 mod pairs;
 mod points;
 mod reach;
 
+pub(crate) use elements::ElementKernel;
 pub use internal::InternalForces;
-pub use linear::Stiffness;
+use linear::LinearKernel;
 pub(crate) use points::PointKernel;
 pub(crate) use reach::Reach;
 
@@ -74,19 +76,31 @@ pub(crate) trait Kernel<const D: usize>: Sync {
 #[derive(Clone, Debug)]
 pub(crate) enum ProblemKernel<const D: usize> {
     /// All laws are linear.
-    Linear(Stiffness),
+    Linear(LinearKernel),
     /// Those of bodies that may turn.
     Points(PointKernel<Elastic, D>),
     /// Some materials yield.
     Yielding(PointKernel<VonMises, D>),
+    /// Those of solids.
+    Solid(ElementKernel<Elastic, D>),
 }
 
 impl<const D: usize> ProblemKernel<D> {
     pub(crate) fn new(problem: &Problem<D>) -> Self {
         match (problem.is_finite(), problem.yields()) {
-            (false, false) => Self::Linear(Stiffness::new(problem)),
+            _ if D == 3 => Self::linear(problem),
+            (false, false) => Self::linear(problem),
             (true, _) => Self::Points(PointKernel::new(problem, |law| *law)),
             (false, true) => Self::Yielding(PointKernel::new(problem, VonMises::new)),
+        }
+    }
+
+    /// The kernel of Hooke's law, whatever the materials are.
+    pub(crate) fn linear(problem: &Problem<D>) -> Self {
+        if D == 3 {
+            Self::Solid(ElementKernel::new(problem, |law| *law))
+        } else {
+            Self::Linear(LinearKernel::new(problem))
         }
     }
 
@@ -107,6 +121,7 @@ macro_rules! on_kernel {
             $crate::kernel::ProblemKernel::Linear($kernel) => $result,
             $crate::kernel::ProblemKernel::Points($kernel) => $result,
             $crate::kernel::ProblemKernel::Yielding($kernel) => $result,
+            $crate::kernel::ProblemKernel::Solid($kernel) => $result,
         }
     };
 }

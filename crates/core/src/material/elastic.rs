@@ -1,4 +1,4 @@
-//! Isotropic linear elasticity in 1D and 2D, eq. \[9\].
+//! Isotropic linear elasticity, eq. \[9\].
 
 use super::hardening::Hardening;
 use super::hyperelastic::{HyperelasticLaw, Moduli, Response, dilatation, green_strain, present_stress, volume_ratio};
@@ -15,12 +15,14 @@ pub enum Hypothesis {
     PlaneStress,
     /// Two dimensions, no strain across them.
     PlaneStrain,
+    /// Three dimensions: none is left out.
+    Solid,
 }
 
 /// A Hooke law σ = λ tr ε 1 + 2G ε in the dimension of the mesh, with density and the extent of
 /// the body across the mesh.
 ///
-/// A bar is the case λ = 0, 2G = E; plane stress and plane strain differ in λ only.
+/// A bar is the case λ = 0, 2G = E; plane stress and plane strain differ in λ only, and a solid has that of plane strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Elastic {
     hypothesis: Hypothesis,
@@ -75,6 +77,14 @@ impl Elastic {
     pub fn plane_strain(young: f64, poisson: f64, density: f64, thickness: f64) -> Result<Self, MaterialError> {
         let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
         Self::plane(Hypothesis::PlaneStrain, [young, poisson, density, thickness], lambda)
+    }
+
+    /// A solid: Young's modulus (Pa), Poisson's ratio, density (kg/m³).
+    ///
+    /// # Errors
+    /// A value out of range: ν must lie between −1 and 0.5.
+    pub fn solid(young: f64, poisson: f64, density: f64) -> Result<Self, MaterialError> {
+        Ok(Self { hypothesis: Hypothesis::Solid, ..Self::plane_strain(young, poisson, density, 1.0)? })
     }
 
     fn plane(hypothesis: Hypothesis, values: [f64; 4], lambda: f64) -> Result<Self, MaterialError> {
@@ -251,11 +261,12 @@ impl Law for Elastic {
         self.present(&law.respond(&self.finite(law), gradient).0, gradient)
     }
 
-    /// Where nothing moves across: λ tr ε in plane strain, λ ln J/J or, of Saint Venant–Kirchhoff, λ tr E/J.
+    /// σ_zz of a solid. Where nothing moves across: λ tr ε in plane strain, λ ln J/J or, of Saint Venant–Kirchhoff, λ tr E/J.
     fn stress_across<const D: usize>(&self, gradient: &Tensor<D>) -> f64 {
         let trace = |strain: &Tensor<D>| (0..D).map(|a| strain[a][a]).sum::<f64>();
         match (self.hypothesis, self.kinematics) {
             (Hypothesis::PlaneStress | Hypothesis::Bar, _) => 0.0,
+            (Hypothesis::Solid, _) => self.stress(gradient)[D - 1][D - 1],
             (Hypothesis::PlaneStrain, Kinematics::Small) => self.lambda * trace(gradient),
             (Hypothesis::PlaneStrain, Kinematics::Finite(law)) => {
                 let volume = match law {

@@ -54,7 +54,7 @@ pub trait Law {
     /// Density ρ (kg/m³).
     fn density(&self) -> f64;
 
-    /// Section (m²) of a bar, thickness (m) of a plane body. It turns a length or an area of the mesh into a
+    /// Section (m²) of a bar, thickness (m) of a plane body, 1 of a solid. It turns a length or an area of the mesh into a
     /// volume, and a face into an area.
     fn extent(&self) -> f64;
 
@@ -72,7 +72,7 @@ pub trait Law {
     /// Stress σ (Pa), force per present area.
     fn stress<const D: usize>(&self, gradient: &Tensor<D>) -> Tensor<D>;
 
-    /// Normal stress (Pa) across the mesh, in the dimension that a plane body leaves out.
+    /// Normal stress (Pa) across the mesh, in the dimension that a plane body leaves out; σ_zz of a solid.
     fn stress_across<const D: usize>(&self, gradient: &Tensor<D>) -> f64;
 
     /// Strain energy φ per undeformed volume (J/m³).

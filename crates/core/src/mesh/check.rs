@@ -68,8 +68,9 @@ pub enum MeshError {
     DuplicateNodes { first: usize, second: usize, distance: f64 },
     /// An element without volume.
     #[error(
-        "element {element} is degenerate: its nodes {nodes:?} lie at one place or on one line (volume {} for a \
-         diameter of {} m); move one of them, or leave the element out", short(*.volume), short(*.diameter)
+        "element {element} is degenerate: its nodes {nodes:?} lie at one place or {} (volume {} for a \
+         diameter of {} m); move one of them, or leave the element out",
+        if .nodes.len() == 4 { "in one plane" } else { "on one line" }, short(*.volume), short(*.diameter)
     )]
     Degenerate { element: usize, nodes: Vec<usize>, volume: f64, diameter: f64 },
     /// A face shared by more than two elements.
@@ -77,7 +78,7 @@ pub enum MeshError {
     NonManifoldFace { nodes: Vec<usize>, elements: Vec<usize> },
     /// Two elements on the same side of a face.
     #[error(
-        "elements {} and {} lie on the same side of the edge they share: they overlap, or one is there twice; leave \
+        "elements {} and {} lie on the same side of their common edge or face: they overlap, or one is there twice; leave \
          one out",
         .elements[0], .elements[1]
     )]
@@ -95,6 +96,18 @@ pub enum MeshError {
          edges); split the node or fill the gap"
     )]
     NonManifoldNode {
+        node: usize,
+        /// Elements around it.
+        elements: usize,
+        /// Elements that can be reached through faces.
+        reached: usize,
+    },
+    /// A node where parts of a solid touch at a point or along an edge only.
+    #[error(
+        "at node {node} the body is connected by a point or an edge only ({reached} of its {elements} elements are \
+         joined by faces); split the node or fill the gap"
+    )]
+    NonManifoldSolid {
         node: usize,
         /// Elements around it.
         elements: usize,

@@ -16,6 +16,7 @@ impl Mesh {
         match self.kind {
             CellKind::Bar => bar(self, factor),
             CellKind::Triangle => rectangle(self, factor).or_else(|| disc(self, factor)),
+            CellKind::Tetrahedron => None,
         }
     }
 }

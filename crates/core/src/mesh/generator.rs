@@ -3,7 +3,7 @@
 use super::{ElementGroups, FaceGroups, Mesh, MeshError, room};
 
 /// A length that must be positive and finite.
-fn positive(name: &'static str, value: f64) -> Result<(), MeshError> {
+pub(super) fn positive(name: &'static str, value: f64) -> Result<(), MeshError> {
     if value.is_finite() && value > 0.0 {
         return Ok(());
     }
@@ -14,7 +14,7 @@ fn positive(name: &'static str, value: f64) -> Result<(), MeshError> {
 const MOST: usize = if cfg!(fuzzing) { 30 } else { 20_000_000 };
 
 /// A number of elements that must be positive and fit into memory.
-fn count(name: &'static str, value: usize) -> Result<(), MeshError> {
+pub(super) fn count(name: &'static str, value: usize) -> Result<(), MeshError> {
     if (1..=MOST).contains(&value) {
         return Ok(());
     }

@@ -22,13 +22,14 @@ impl Mesh {
         let mut nodes: Vec<NodeId> = self.boundary().flat_map(|face| self.face(face).nodes).copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
-        let outline: Vec<(FaceId, [Vector; 2])> = other.boundary().map(|face| (face, other.ends(face))).collect();
+        let outline: Vec<(FaceId, Vec<Vector>)> =
+            other.boundary().map(|face| (face, other.face_points(face))).collect();
         let depth = |node: NodeId| {
             let point = &self.point(node);
             if !other.encloses(point) {
                 return None;
             }
-            let ways = outline.iter().map(|(face, ends)| (foot(point, ends).1, *face));
+            let ways = outline.iter().map(|(face, points)| (foot(point, points).1, *face));
             ways.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(depth, nearest)| (node, depth, nearest))
         };
         let deepest = nodes.into_iter().filter_map(depth).filter(|(_, depth, _)| *depth > tolerance);

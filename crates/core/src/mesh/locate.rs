@@ -9,7 +9,7 @@ use crate::ids::ElementId;
 const OUTSIDE: f64 = 1e-9;
 
 /// Most nodes of an element.
-pub const MOST_NODES: usize = 3;
+pub const MOST_NODES: usize = 4;
 
 /// Barycentric coordinates of a point in an element; 0 beyond its nodes.
 pub type Weights = [f64; MOST_NODES];

@@ -19,6 +19,7 @@ mod refine;
 mod refine_locally;
 mod renumber;
 mod rows;
+mod solids;
 mod star;
 mod strips;
 mod topology;
@@ -88,6 +89,13 @@ macro_rules! in_kind {
                 const $dimension: usize = 2;
                 #[allow(dead_code)]
                 const $nodes: usize = 3;
+                $body
+            }
+            $crate::cell::CellKind::Tetrahedron => {
+                #[allow(dead_code)]
+                const $dimension: usize = 3;
+                #[allow(dead_code)]
+                const $nodes: usize = 4;
                 $body
             }
         }
@@ -181,7 +189,7 @@ impl Mesh {
         self.kind
     }
 
-    /// 1 for bars, 2 for plane bodies.
+    /// 1 for bars, 2 for plane bodies, 3 for solids.
     #[must_use]
     pub fn dimension(&self) -> usize {
         self.kind.dimension()
@@ -253,7 +261,7 @@ impl Mesh {
         &self.cell_faces[count * element.index()..count * (element.index() + 1)]
     }
 
-    /// Number of faces: edges in 2D, points in 1D.
+    /// Number of faces: triangles in 3D, edges in 2D, points in 1D.
     #[must_use]
     pub fn face_count(&self) -> usize {
         self.faces.len()

@@ -2,9 +2,8 @@
 
 use super::{Mesh, in_kind};
 use crate::border::{Vector, cut};
-use crate::cell::CellKind;
+use crate::cell::{CellKind, cell};
 use crate::ids::{ElementId, FaceId, NodeId};
-use std::f64::consts::PI;
 
 /// A point counts as one of an element, an edge or a node within this part of the size of the mesh: rounding of
 /// coordinates.
@@ -17,8 +16,8 @@ pub struct Around {
     pub element: ElementId,
     /// The shape functions of its nodes at the point.
     pub shapes: Vec<f64>,
-    /// Its share of a small circle around the point, as far as this is in the body: 1 if the point is inside the
-    /// element. In a bar elements have equal shares.
+    /// Its share of a small circle or sphere around the point, as far as this is in the body: 1 if the point is inside
+    /// the element. In a bar elements have equal shares.
     pub share: f64,
 }
 
@@ -39,7 +38,7 @@ impl Mesh {
         found
     }
 
-    /// That of an element, with its angle around the point for a share.
+    /// That of an element, with its angle around the point for a share: [`Cell::angle_around`](crate::cell::Cell).
     fn around_in<const D: usize, const N: usize>(
         &self,
         element: ElementId,
@@ -54,12 +53,7 @@ impl Mesh {
             return None;
         }
         let off: Vec<usize> = (0..N).filter(|&k| distance(k) > tolerance).collect();
-        let share = match off[..] {
-            _ if D == 1 => 1.0,
-            [node] => self.angle(element, self.cell(element)[node]),
-            _ if off.len() < N => PI,
-            _ => 2.0 * PI,
-        };
+        let share = cell::<D, N>().angle_around(&corners, &off);
         Some(Around { element, shapes: shapes.to_vec(), share })
     }
 
@@ -75,7 +69,7 @@ impl Mesh {
     /// The point of the outline that is nearest to a point, and the distance (m).
     #[must_use]
     pub fn nearest_of_outline(&self, point: &Vector) -> (Vector, f64) {
-        let feet = self.boundary().map(|face| foot(point, &self.ends(face)));
+        let feet = self.boundary().map(|face| foot(point, &self.face_points(face)));
         feet.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((*point, f64::INFINITY))
     }
 
@@ -83,10 +77,7 @@ impl Mesh {
     #[must_use]
     pub fn angle(&self, element: ElementId, node: NodeId) -> f64 {
         let Some(k) = self.local_node(element, node).filter(|_| self.kind == CellKind::Triangle) else { return 0.0 };
-        let points = self.corners::<2, 3>(element);
-        let side = |to: usize| [0, 1].map(|c| points[to % 3][c] - points[k][c]);
-        let (a, b) = (side(k + 1), side(k + 2));
-        (a[0] * b[1] - a[1] * b[0]).abs().atan2(a[0] * b[0] + a[1] * b[1])
+        cell::<2, 3>().angle_around(&self.corners(element), &[k])
     }
 
     /// The angle inside the body between the two edges of its outline at a node (rad); none at a node inside the body.
@@ -103,17 +94,31 @@ impl Mesh {
         nodes.filter(|&node| self.angle_of_outline(node).is_some_and(|inside| inside > angle)).collect()
     }
 
-    /// The first and the last node of a face (m).
-    pub(super) fn ends(&self, face: FaceId) -> [Vector; 2] {
-        let nodes = self.face(face).nodes;
-        [nodes[0], nodes[nodes.len() - 1]].map(|node| self.point(node))
+    /// The nodes of a face (m).
+    pub(super) fn face_points(&self, face: FaceId) -> Vec<Vector> {
+        self.face(face).nodes.iter().map(|&node| self.point(node)).collect()
     }
 }
 
-/// The nearest point of a face (a point, or a line between two), and its distance (m).
-pub(super) fn foot(point: &Vector, [first, last]: &[Vector; 2]) -> (Vector, f64) {
-    let less = |a: &Vector, b: &Vector| -> Vector { std::array::from_fn(|c| a[c] - b[c]) };
-    let dot = |a: &Vector, b: &Vector| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
+fn less(a: &Vector, b: &Vector) -> Vector {
+    std::array::from_fn(|c| a[c] - b[c])
+}
+
+fn dot(a: &Vector, b: &Vector) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// The nearest point of a face (a point, a line between two, or a triangle), and its distance (m).
+pub(super) fn foot(point: &Vector, face: &[Vector]) -> (Vector, f64) {
+    if let [a, b, c] = face {
+        let edges = || [[a, b], [b, c], [c, a]].map(|ends| foot_on_line(point, ends)).into_iter();
+        let nearest = || edges().min_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or((*point, f64::INFINITY));
+        return foot_in_triangle(point, [a, b, c]).unwrap_or_else(nearest);
+    }
+    foot_on_line(point, [&face[0], &face[face.len() - 1]])
+}
+
+fn foot_on_line(point: &Vector, [first, last]: [&Vector; 2]) -> (Vector, f64) {
     let (start, along) = (less(point, first), less(last, first));
     let length = dot(&along, &along);
     let at = if length > 0.0 { (dot(&start, &along) / length).clamp(0.0, 1.0) } else { 0.0 };
@@ -121,11 +126,22 @@ pub(super) fn foot(point: &Vector, [first, last]: &[Vector; 2]) -> (Vector, f64)
     (less(point, &rest), dot(&rest, &rest).sqrt())
 }
 
+/// The foot of the perpendicular, if it is inside the triangle.
+fn foot_in_triangle(point: &Vector, [a, b, c]: [&Vector; 3]) -> Option<(Vector, f64)> {
+    let (u, v, start) = (less(b, a), less(c, a), less(point, a));
+    let (uu, uv, vv, us, vs) = (dot(&u, &u), dot(&u, &v), dot(&v, &v), dot(&u, &start), dot(&v, &start));
+    let determinant = uu * vv - uv * uv;
+    let (s, t) = ((us * vv - vs * uv) / determinant, (vs * uu - us * uv) / determinant);
+    let rest: Vector = std::array::from_fn(|k| start[k] - s * u[k] - t * v[k]);
+    (s >= 0.0 && t >= 0.0 && s + t <= 1.0).then(|| (less(point, &rest), dot(&rest, &rest).sqrt()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::border::padded;
     use std::collections::BTreeMap;
+    use std::f64::consts::PI;
 
     fn shares<const D: usize>(mesh: &Mesh, point: [f64; D]) -> Vec<f64> {
         mesh.around(&padded(&point)).iter().map(|around| around.share).collect()

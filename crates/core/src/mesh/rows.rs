@@ -3,7 +3,7 @@
 use super::{ElementGroups, FaceRows, Mesh, MeshError, Parts};
 
 impl Mesh {
-    /// Builds and checks a mesh of bars (dimension 1) or of triangles (2), from coordinates (m), nodes of the elements
+    /// Builds and checks a mesh of bars (dimension 1), triangles (2) or tetrahedra (3), from coordinates (m), nodes of the elements
     /// and groups, in rows: [`Mesh::new`].
     ///
     /// # Errors
@@ -46,6 +46,7 @@ impl Mesh {
         match dimension {
             1 => Self::checked::<1, 2>(points.as_chunks().0.to_vec(), cells.as_chunks().0, groups, parts),
             2 => Self::checked::<2, 3>(points.as_chunks().0.to_vec(), cells.as_chunks().0, groups, parts),
+            3 => Self::checked::<3, 4>(points.as_chunks().0.to_vec(), cells.as_chunks().0, groups, parts),
             other => unreachable!("a mesh of dimension {other}"),
         }
     }

@@ -1,4 +1,4 @@
-//! The elements around each node in counterclockwise order, with the faces between them.
+//! The elements around each node: in the plane in counterclockwise order, with the faces between them.
 
 use super::MeshError;
 use super::topology::Faces;
@@ -9,7 +9,8 @@ use crate::ids::{ElementId, FaceId, NodeId};
 ///
 /// A star of k elements is a chain: face, element, face, …, element, face, in counterclockwise order (in 1D from
 /// left to right). An interior node of a 2D mesh has a closed chain whose first and last face are the same; in 1D,
-/// where an element has a single face at a node, the outer ends of the chain are `None`.
+/// where an element has a single face at a node, the outer ends of the chain are `None`. In 3D no order goes around a
+/// node: a star has its elements, ascending, and no links.
 #[derive(Clone, Debug, Default)]
 pub struct Stars {
     offsets: Vec<u32>,
@@ -22,7 +23,7 @@ pub struct Stars {
 pub struct Star<'a> {
     /// Elements in the order of the chain.
     pub elements: &'a [ElementId],
-    /// Face before, between and after them: one more than elements.
+    /// Face before, between and after them: one more than elements. None in 3D.
     pub links: &'a [Option<FaceId>],
 }
 
@@ -30,7 +31,7 @@ impl Star<'_> {
     /// Whether the chain closes on itself.
     #[must_use]
     pub fn is_closed(&self) -> bool {
-        self.links[0].is_some() && self.links[0] == self.links[self.links.len() - 1]
+        matches!(self.links, [Some(first), .., Some(last)] if first == last)
     }
 }
 
@@ -41,7 +42,8 @@ impl Stars {
     pub fn star(&self, node: NodeId) -> Star<'_> {
         let links = self.link_range(node);
         let i = node.index();
-        Star { elements: &self.elements[links.start - i..links.end - i - 1], links: &self.links[links] }
+        let elements = &self.elements[links.start - i..links.end - i - 1];
+        Star { elements, links: if self.links.is_empty() { &[] } else { &self.links[links] } }
     }
 
     /// Where the links of a star lie among those of all stars.
@@ -74,6 +76,11 @@ impl Stars {
             let star = self.star(node);
             let (at, count) = (stars.elements.len(), star.elements.len());
             stars.elements.extend(star.elements.iter().map(element));
+            if star.links.is_empty() {
+                stars.elements[at..].sort_unstable();
+                stars.offsets.push(stars.elements.len() as u32);
+                continue;
+            }
             stars.links.extend(star.links[..count].iter().map(face));
             if star.is_closed() {
                 let around = &mut stars.elements[at..];
@@ -99,6 +106,9 @@ impl Stars {
         cell_faces: &[[FaceId; N]],
     ) -> Result<Self, MeshError> {
         let (faces_around, (starts, incident)) = (kind.faces_around(), incident_elements(node_count, cells));
+        if D == 3 {
+            return Self::without_order(starts, incident, cells, faces, cell_faces);
+        }
         let mut stars = Self {
             offsets: Vec::with_capacity(node_count + 1),
             elements: Vec::with_capacity(N * cells.len()),
@@ -133,6 +143,38 @@ impl Stars {
             stars.offsets.push(stars.elements.len() as u32);
         }
         Ok(stars)
+    }
+}
+
+impl Stars {
+    /// The stars of a solid; elements around a node that are not joined by faces at it are refused.
+    fn without_order<const N: usize>(
+        starts: Vec<u32>,
+        incident: Vec<ElementId>,
+        cells: &[[NodeId; N]],
+        faces: &Faces,
+        cell_faces: &[[FaceId; N]],
+    ) -> Result<Self, MeshError> {
+        let mut reached: Vec<ElementId> = Vec::new();
+        for (node, range) in starts.windows(2).enumerate().take(starts.len() - 2) {
+            let around = &incident[range[0] as usize..range[1] as usize];
+            reached.clear();
+            reached.push(around[0]);
+            let mut at = 0;
+            while let Some(&element) = reached.get(at) {
+                at += 1;
+                let own = cells[element.index()].iter().zip(&cell_faces[element.index()]);
+                // A face is at all nodes but that opposite to it.
+                for (_, face) in own.filter(|(opposite, _)| opposite.index() != node) {
+                    let across = faces.get(face.index()).across(element);
+                    reached.extend(across.filter(|other| !reached.contains(other)));
+                }
+            }
+            if reached.len() != around.len() {
+                return Err(MeshError::NonManifoldSolid { node, elements: around.len(), reached: reached.len() });
+            }
+        }
+        Ok(Self { offsets: starts[..starts.len() - 1].to_vec(), elements: incident, links: Vec::new() })
     }
 }
 

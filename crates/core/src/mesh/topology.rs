@@ -4,7 +4,7 @@ use super::MeshError;
 use crate::ids::{ElementId, FaceId, NodeId};
 use std::cmp::Ordering;
 
-/// An edge in 2D, a point in 1D.
+/// A triangle in 3D, an edge in 2D, a point in 1D.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Face<'m> {
     /// Its nodes, in ascending order.

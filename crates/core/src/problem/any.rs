@@ -1,4 +1,4 @@
-//! A problem of either dimension, as other crates see it.
+//! A problem of any dimension, as other crates see it.
 
 use super::{FaceLoad, InputError, Model, Place, Problem, Statement, statement};
 use crate::border::{Vector, padded, vectors};
@@ -10,22 +10,26 @@ use std::any::Any;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// A checked problem of either dimension, shared. Fields are in rows, as [`border`](crate::border) says.
+/// A checked problem of any dimension, shared. Fields are in rows, as [`border`](crate::border) says.
 #[derive(Clone, Debug)]
 pub enum AnyProblem {
     /// Of a bar.
     D1(Arc<Problem<1>>),
     /// Of a plane body.
     D2(Arc<Problem<2>>),
+    /// Of a solid.
+    D3(Arc<Problem<3>>),
 }
 
-/// A reference to a problem of either dimension; simulation and estimate take one.
+/// A reference to a problem of any dimension; simulation and estimate take one.
 #[derive(Clone, Copy, Debug)]
 pub enum ProblemRef<'p> {
     /// Of a bar.
     D1(&'p Problem<1>),
     /// Of a plane body.
     D2(&'p Problem<2>),
+    /// Of a solid.
+    D3(&'p Problem<3>),
 }
 
 /// Does the same with a problem in each dimension.
@@ -35,6 +39,7 @@ macro_rules! on_problem {
         match $reference {
             $crate::problem::ProblemRef::D1($problem) => $body,
             $crate::problem::ProblemRef::D2($problem) => $body,
+            $crate::problem::ProblemRef::D3($problem) => $body,
         }
     };
 }
@@ -44,6 +49,7 @@ impl<'p> From<&'p AnyProblem> for ProblemRef<'p> {
         match any {
             AnyProblem::D1(problem) => Self::D1(problem),
             AnyProblem::D2(problem) => Self::D2(problem),
+            AnyProblem::D3(problem) => Self::D3(problem),
         }
     }
 }
@@ -51,8 +57,9 @@ impl<'p> From<&'p AnyProblem> for ProblemRef<'p> {
 impl<'p, const D: usize> From<&'p Problem<D>> for ProblemRef<'p> {
     fn from(problem: &'p Problem<D>) -> Self {
         let any = problem as &dyn Any;
-        let found = any.downcast_ref().map(Self::D1).or_else(|| any.downcast_ref().map(Self::D2));
-        let Some(found) = found else { unreachable!("problems are of bars or of triangles") };
+        let plane = || any.downcast_ref().map(Self::D2);
+        let found = any.downcast_ref().map(Self::D1).or_else(plane).or_else(|| any.downcast_ref().map(Self::D3));
+        let Some(found) = found else { unreachable!("problems are of bars, triangles or tetrahedra") };
         found
     }
 }
@@ -74,6 +81,12 @@ impl From<Problem<1>> for AnyProblem {
 impl From<Problem<2>> for AnyProblem {
     fn from(problem: Problem<2>) -> Self {
         Self::D2(Arc::new(problem))
+    }
+}
+
+impl From<Problem<3>> for AnyProblem {
+    fn from(problem: Problem<3>) -> Self {
+        Self::D3(Arc::new(problem))
     }
 }
 
@@ -119,10 +132,11 @@ impl AnyProblem {
         match mesh.kind() {
             CellKind::Bar => statement::build::<1>(mesh, stated).map(Self::from),
             CellKind::Triangle => statement::build::<2>(mesh, stated).map(Self::from),
+            CellKind::Tetrahedron => statement::build::<3>(mesh, stated).map(Self::from),
         }
     }
 
-    /// 1 for bars, 2 for plane bodies.
+    /// 1 for bars, 2 for plane bodies, 3 for solids.
     #[must_use]
     pub fn dimension(&self) -> usize {
         self.mesh().dimension()
@@ -306,6 +320,7 @@ impl AnyProblem {
         match self {
             Self::D1(problem) => AnyContactConfiguration::D1(problem.surface().configuration(vectors(displacement))),
             Self::D2(problem) => AnyContactConfiguration::D2(problem.surface().configuration(vectors(displacement))),
+            Self::D3(problem) => AnyContactConfiguration::D3(problem.surface().configuration(vectors(displacement))),
         }
     }
 

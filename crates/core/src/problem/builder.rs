@@ -208,6 +208,7 @@ impl<const D: usize> Builder<D> {
         let (body_loads, element_body_loads) = boundary::body_forces(mesh, &self.stated.body_forces, volume)?;
 
         check_finite(&materials, &self.obstacles, mesh.parts())?;
+        check_solid::<D>(&materials, mesh.parts())?;
         let law = |f: FaceId| &materials[usize::from(element_material[mesh.face(f).owner.index()])];
         let (body, held, velocity) = (Vec::new(), boundary::held(mesh, &self.stated), &initial_velocity[..]);
         let bodies = Bodies { mesh, body, held, fixed, supported: &supported, lines, velocity, mass: &mass, law: &law };
@@ -263,6 +264,24 @@ fn check_finite<const D: usize>(
         true => Err(Cause::FiniteGroup.at("obstacle", Some(0), "group")),
         false => Ok(()),
     }
+}
+
+/// Refuses what solids do not have yet.
+fn check_solid<const D: usize>(materials: &[Elastic], bodies: usize) -> Result<(), InputError> {
+    if D < 3 {
+        return Ok(());
+    }
+    for (key, has) in
+        [("kinematics", Elastic::is_finite as fn(&Elastic) -> bool), ("tangent", |law| law.hardening().is_some())]
+    {
+        if let Some(index) = materials.iter().position(has) {
+            return Err(Cause::SolidLaw.at("material", Some(index), key));
+        }
+    }
+    if bodies > 1 {
+        return Err(Cause::SolidBodies { bodies }.at("mesh", None, ""));
+    }
+    Ok(())
 }
 
 /// The mesh with the groups of faces that contact has added.

@@ -29,9 +29,14 @@ pub(super) fn add<const D: usize>(
         let nodes = mesh.face_nodes::<D>(other.face).map(NodeId::index).to_vec();
         return Err(Cause::TwoPlanes { nodes, first: other.obstacle + 1 }.at("obstacle", Some(index), "group"));
     }
+    // Of a node with two slots the first one.
+    let mut known: BTreeMap<NodeId, usize> = BTreeMap::new();
+    for (at, contact) in surface.nodes().iter().enumerate() {
+        known.entry(contact.node).or_insert(at);
+    }
     let mut nodes: Vec<(ContactNode, [f64; D])> = Vec::new();
     for node in along_the_boundary(mesh, &facing) {
-        let second_slot = surface.nodes().iter().position(|c| c.node == node);
+        let second_slot = known.get(&node).copied();
         let (point, held) = (mesh.points_in::<D>()[node.index()], prescribed(node));
         let frame = obstacle.frame_at(&point);
         let free = (0..D).all(|c| !held[c] || frame.normal()[c].abs() <= ALIGNED);
@@ -56,7 +61,7 @@ pub(super) fn add<const D: usize>(
 }
 
 /// Refuses a node at two planes, of which the first has it at this position of the surface, without a solution, or at
-/// angles that were not tried. It has two free faces, so that it is never at three.
+/// angles that were not tried, and one at three planes.
 fn corner<const D: usize>(
     surface: &ContactSurface<D>,
     at: usize,
@@ -65,6 +70,10 @@ fn corner<const D: usize>(
 ) -> Result<(), InputError> {
     let other = &surface.nodes()[at];
     let (node, first) = (other.node.index(), other.obstacle + 1);
+    if let Some(second) = other.second_slot {
+        let others = [first, surface.nodes()[second].obstacle + 1];
+        return Err(Cause::ThreePlanes { node, others }.at("obstacle", Some(index), "group"));
+    }
     if !(free && other.free) {
         return Ok(());
     }

@@ -104,6 +104,25 @@ pub enum Cause {
          have to find theirs"
     )]
     FinitePlanes { planes: usize },
+    /// A law that solids do not have.
+    #[error("is not possible in a solid, whose materials are elastic at small strains and rotations; leave it out")]
+    SolidLaw,
+    /// Several solids.
+    #[error(
+        "the mesh has {bodies} bodies: a solid is one body, contact between solids is not solved for; leave the others \
+         out, or join them"
+    )]
+    SolidBodies { bodies: usize },
+    /// A node of a solid at three planes.
+    #[error(
+        "node {node} faces planes {} and {} too: a node may touch two; give the planes groups of faces that may touch \
+         them, without a node in all three, or leave one out", .others[0], .others[1]
+    )]
+    ThreePlanes {
+        node: usize,
+        /// The earlier planes, from 1.
+        others: [usize; 2],
+    },
     /// More materials or body forces than can be told apart.
     #[error("{count} are given; at most {most} are possible")]
     TooMany { count: usize, most: usize },

@@ -6,7 +6,7 @@ use crate::on_problem;
 use std::array::from_fn;
 
 /// What weighs a nodal field for the rigid motion of each body that fits it best: the mean Σmu/Σm, and the rotation
-/// Σm x×u / Σm|x|², x from the centre of mass. Fields are in rows.
+/// J⁻¹ Σm x×u with J = Σm(|x|² 1 − x xᵀ), x from the centre of mass. Fields are in rows.
 #[derive(Clone, Debug)]
 pub struct RigidMotion {
     dimension: usize,
@@ -18,8 +18,8 @@ pub struct RigidMotion {
     of_node: Vec<usize>,
     /// Σm of each body (kg).
     mass: Vec<f64>,
-    /// Σm|x|² of each body (kg m²).
-    inertia: Vec<f64>,
+    /// J of each body (kg m²).
+    inertia: Vec<[Vector; 3]>,
 }
 
 impl RigidMotion {
@@ -35,7 +35,8 @@ impl RigidMotion {
     fn of<const D: usize>(problem: &Problem<D>) -> Self {
         let (mesh, masses) = (problem.mesh(), problem.mass().to_vec());
         let (of_node, bodies) = (mesh.part_numbers(), mesh.parts());
-        let (mut mass, mut centre, mut inertia) = (vec![0.0; bodies], vec![[0.0; 3]; bodies], vec![0.0; bodies]);
+        let (mut mass, mut centre, mut inertia) =
+            (vec![0.0; bodies], vec![[0.0; 3]; bodies], vec![[[0.0; 3]; 3]; bodies]);
         let points: Vec<Vector> = mesh.points_in::<D>().iter().map(padded).collect();
         for ((&body, x), m) in of_node.iter().zip(&points).zip(&masses) {
             mass[body] += m;
@@ -44,21 +45,42 @@ impl RigidMotion {
         let arm = |(x, &body): (&Vector, &usize)| from_fn(|c| x[c] - centre[body][c] / mass[body]);
         let arms: Vec<Vector> = points.iter().zip(&of_node).map(arm).collect();
         for ((&body, arm), m) in of_node.iter().zip(&arms).zip(&masses) {
-            inertia[body] += m * arm.iter().map(|x| x * x).sum::<f64>();
+            let square = arm.iter().map(|x| x * x).sum::<f64>();
+            for a in 0..3 {
+                inertia[body][a][a] += m * square;
+                (0..3).for_each(|b| inertia[body][a][b] -= m * arm[a] * arm[b]);
+            }
         }
         Self { dimension: D, masses, arms, of_node, mass, inertia }
     }
 
-    /// How far each body turns, counterclockwise, in a field of displacements (rad) or of velocities (rad/s); 0 on
-    /// bars.
+    /// How far each body turns in a field of displacements (rad) or of velocities (rad/s): counterclockwise in the plane,
+    /// about any axis and positive in a solid, and 0 on bars.
     #[must_use]
     pub fn rotations(&self, field: &[f64]) -> Vec<f64> {
-        let mut turned = vec![0.0; self.mass.len()];
-        if self.dimension == 2 {
-            let nodes = self.of_node.iter().zip(&self.arms).zip(&self.masses);
-            for (((&body, arm), m), u) in nodes.zip(field.as_chunks::<2>().0) {
-                turned[body] += m * (arm[0] * u[1] - arm[1] * u[0]) / self.inertia[body];
+        let size = |turned: &Vector| if self.dimension == 3 { dot(turned, turned).sqrt() } else { turned[2] };
+        self.axial_rotations(field).iter().map(size).collect()
+    }
+
+    /// The same as vectors along the axes.
+    #[must_use]
+    pub fn axial_rotations(&self, field: &[f64]) -> Vec<Vector> {
+        let mut turned = vec![[0.0; 3]; self.mass.len()];
+        let nodes = self.of_node.iter().zip(&self.arms).zip(&self.masses);
+        match self.dimension {
+            2 => {
+                for (((&body, arm), m), u) in nodes.zip(field.as_chunks::<2>().0) {
+                    turned[body][2] += m * (arm[0] * u[1] - arm[1] * u[0]) / self.inertia[body][2][2];
+                }
             }
+            3 => {
+                for (((&body, arm), m), u) in nodes.zip(field.as_chunks::<3>().0) {
+                    let moment = cross(arm, u);
+                    (0..3).for_each(|c| turned[body][c] += m * moment[c]);
+                }
+                turned.iter_mut().zip(&self.inertia).for_each(|(turned, inertia)| *turned = solve(inertia, turned));
+            }
+            _ => {}
         }
         turned
     }
@@ -77,15 +99,31 @@ impl RigidMotion {
     /// the sum: a large common velocity leaves no rounding of its energy.
     #[must_use]
     pub fn relative_kinetic_energy(&self, velocity: &[f64]) -> f64 {
-        let (means, turning) = (self.means(velocity), self.rotations(velocity));
+        let (means, turning) = (self.means(velocity), self.axial_rotations(velocity));
         let nodes = self.of_node.iter().zip(&self.arms).zip(&self.masses).zip(velocity.chunks_exact(self.dimension));
         let twice = nodes.map(|(((&body, arm), m), v)| {
-            let across = [-arm[1], arm[0]];
-            let relative = |(c, v): (usize, &f64)| v - means[body][c] - turning[body] * across[c];
+            let turned = cross(&turning[body], arm);
+            let relative = |(c, v): (usize, &f64)| v - means[body][c] - turned[c];
             m * v.iter().enumerate().map(|component| relative(component).powi(2)).sum::<f64>()
         });
         0.5 * twice.sum::<f64>()
     }
+}
+
+fn dot(a: &Vector, b: &Vector) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+fn cross(a: &Vector, b: &Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// J⁻¹ b of a symmetric J.
+fn solve(matrix: &[Vector; 3], b: &Vector) -> Vector {
+    let [x, y, z] = matrix;
+    let rows = [cross(y, z), cross(z, x), cross(x, y)];
+    let determinant = dot(x, &rows[0]);
+    from_fn(|c| dot(&[rows[0][c], rows[1][c], rows[2][c]], b) / determinant)
 }
 
 #[cfg(test)]

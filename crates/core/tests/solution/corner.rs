@@ -3,7 +3,7 @@
 use crate::solution::run::{Run, aluminium, difference, largest, run};
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
-use percute_core::kernel::Stiffness;
+use percute_core::kernel::InternalForces;
 use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, Problem};
 use percute_core::time::TimeGrid;
@@ -72,7 +72,8 @@ fn check(run: &Run<'_, 2>, what: &str) -> usize {
         let kinetic: f64 =
             run.half_velocity(n).iter().zip(problem.mass()).map(|(v, m)| 0.5 * m * (v[0] * v[0] + v[1] * v[1])).sum();
         let mut force = vec![[0.0; 2]; problem.mesh().node_count()];
-        Stiffness::new(problem).subtract_internal_forces(run.displacement(n), &mut force);
+        InternalForces::linear(problem)
+            .subtract_from_rows(run.displacement(n).as_flattened(), force.as_flattened_mut());
         let next = run.displacement(n + 1).iter().flatten();
         kinetic - 0.5 * force.iter().flatten().zip(next).map(|(f, u)| f * u).sum::<f64>()
     };

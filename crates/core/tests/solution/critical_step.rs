@@ -3,7 +3,7 @@
 use crate::solution::run::{aluminium, fixed};
 use nalgebra::DMatrix;
 use percute_core::dynamics::{critical_time_step, element_time_step};
-use percute_core::kernel::Stiffness;
+use percute_core::kernel::InternalForces;
 use percute_core::load::Support;
 use percute_core::material::Elastic;
 use percute_core::mesh::{ElementGroups, FaceGroups, Mesh};
@@ -14,13 +14,13 @@ use std::f64::consts::PI;
 /// 2/ω_max with ω_max from the dense matrix M^−½ K M^−½ on the free components.
 fn dense_time_step<const D: usize>(problem: &Problem<D>) -> f64 {
     let count = D * problem.mesh().node_count();
-    let stiffness = Stiffness::new(problem);
+    let stiffness = InternalForces::linear(problem);
     let mut matrix = DMatrix::zeros(count, count);
     for column in 0..count {
         let mut unit = vec![[0.0; D]; count / D];
         unit[column / D][column % D] = 1.0;
         let mut force = vec![[0.0; D]; count / D];
-        stiffness.subtract_internal_forces(&unit, &mut force);
+        stiffness.subtract_from_rows(unit.as_flattened(), force.as_flattened_mut());
         for row in 0..count {
             let masses = problem.mass()[row / D] * problem.mass()[column / D];
             matrix[(row, column)] = -force[row / D][row % D] / masses.sqrt();

@@ -18,6 +18,7 @@ mod numbering;
 mod pairs;
 mod resume;
 mod run;
+mod solids;
 mod supports;
 mod symmetry_plane;
 mod threads;

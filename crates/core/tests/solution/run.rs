@@ -3,7 +3,7 @@
 use percute_core::dynamics::{Simulation, simulate};
 use percute_core::history::{History, StepSource};
 use percute_core::ids::NodeId;
-use percute_core::kernel::Stiffness;
+use percute_core::kernel::InternalForces;
 use percute_core::load::{BodyForce, Support, Table};
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
@@ -58,7 +58,8 @@ impl<const D: usize> Run<'_, D> {
     /// ½ u_n·K u_n (J).
     pub(crate) fn strain_energy(&self, n: usize) -> f64 {
         let mut force = vec![[0.0; D]; self.problem.mesh().node_count()];
-        Stiffness::new(self.problem).subtract_internal_forces(self.displacement(n), &mut force)
+        InternalForces::linear(self.problem)
+            .subtract_from_rows(self.displacement(n).as_flattened(), force.as_flattened_mut())
     }
 
     /// Σ m v_{n+½} (kg m/s).

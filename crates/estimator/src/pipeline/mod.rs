@@ -66,6 +66,7 @@ pub(crate) fn begin<'p>(
     Ok(match problem {
         ProblemRef::D1(bar) => Box::new(Pipeline::<1, 2>::new(bar, times, options)?),
         ProblemRef::D2(plane) => Box::new(Pipeline::<2, 3>::new(plane, times, options)?),
+        ProblemRef::D3(_) => return Err(EstimateError::Solid),
     })
 }
 

@@ -51,6 +51,7 @@ impl BoundaryMass {
             }
             match problem.mesh().kind() {
                 CellKind::Bar => {}
+                CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
                 CellKind::Triangle => mass.upper[face.nodes[0].min(face.nodes[1])] += share,
             }
         }

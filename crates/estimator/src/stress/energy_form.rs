@@ -63,6 +63,7 @@ impl EnergyForms {
         match shape {
             CellKind::Bar => Self::Bars,
             CellKind::Triangle => Self::Triangles(TriangleForms::new()),
+            CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
         }
     }
 

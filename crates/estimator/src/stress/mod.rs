@@ -59,6 +59,7 @@ impl StressMap {
     ) -> Self {
         match kind.kind() {
             CellKind::Bar => Self::Bar(BarStress::new(kind.signed_volume(points), law)),
+            CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
             CellKind::Triangle => {
                 let corners = std::array::from_fn(|i| [points[i][0], points[i][1]]);
                 Self::Triangle(Box::new(TriangleStress::new(&corners, law)))

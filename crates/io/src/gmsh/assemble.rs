@@ -7,16 +7,22 @@ use super::nodes::{Kept, Nodes};
 use super::raw::{Element, Raw};
 use super::{MeshFile, import_warnings};
 use percute_core::cell::cell;
-use percute_core::mesh::{Mesh, MeshError};
+use percute_core::mesh::{ImportWarning, Mesh, MeshError};
 use std::mem::take;
 
-/// Builds the mesh of a file: triangles if there are any, otherwise bars.
+/// Builds the mesh of a file: tetrahedra if there are any, otherwise triangles, otherwise bars.
 pub(super) fn mesh(mut raw: Raw, scale: f64) -> Result<MeshFile, Fault> {
     let nodes = Nodes::new(take(&mut raw.nodes))?;
     let (points, lines, triangles) = (take(&mut raw.points), take(&mut raw.lines), take(&mut raw.triangles));
+    let tetrahedra = take(&mut raw.tetrahedra);
+    if !tetrahedra.is_empty() {
+        let left_out =
+            [import_warnings::curves(&raw, &raw.sorted(lines)?), import_warnings::points(&raw, &raw.sorted(points)?)];
+        return assemble(&raw, &nodes, tetrahedra, triangles, left_out, scale);
+    }
     if !triangles.is_empty() {
-        let points = raw.sorted(points)?;
-        return assemble(&raw, &nodes, triangles, lines, Some(&points), scale);
+        let left_out = [import_warnings::points(&raw, &raw.sorted(points)?), None];
+        return assemble(&raw, &nodes, triangles, lines, left_out, scale);
     }
     if lines.is_empty() {
         return Err(GmshCause::NoElements.anywhere());
@@ -24,16 +30,16 @@ pub(super) fn mesh(mut raw: Raw, scale: f64) -> Result<MeshFile, Fault> {
     if raw.surfaces || raw.names.keys().any(|&(dimension, _)| dimension == 2) {
         return Err(GmshCause::NoTriangles.anywhere());
     }
-    assemble(&raw, &nodes, lines, points, None, scale)
+    assemble(&raw, &nodes, lines, points, [None, None], scale)
 }
 
-/// Builds a mesh of `cells`, with boundary groups from `faces`; `points` are not part of it.
+/// Builds a mesh of `cells`, with boundary groups from `faces`; groups of lower dimensions are left out.
 fn assemble<const D: usize, const N: usize>(
     raw: &Raw,
     nodes: &Nodes,
     cells: Vec<Element<N>>,
     faces: Vec<Element<D>>,
-    points: Option<&Sorted<1>>,
+    [first, second]: [Option<ImportWarning>; 2],
     scale: f64,
 ) -> Result<MeshFile, Fault> {
     let Sorted { elements, doubled, members } = raw.sorted(cells)?;
@@ -47,7 +53,8 @@ fn assemble<const D: usize, const N: usize>(
     let reported = [
         import_warnings::dropped(&kept.dropped, D),
         import_warnings::doubled(&doubled),
-        points.and_then(|points| import_warnings::points(raw, points)),
+        first,
+        second,
         import_warnings::inner(&inner, D),
         import_warnings::empty(raw, D, &groups, &inner, &parts),
     ];
@@ -94,6 +101,10 @@ fn refused<const N: usize>(error: MeshError, kept: &Kept, elements: &[Element<N>
         MeshError::NonManifoldNode { node: n, elements, reached } => {
             let advice = "; in Gmsh, let the surfaces share a curve, or keep them apart";
             (None, advice, MeshError::NonManifoldNode { node: node(n), elements, reached })
+        }
+        MeshError::NonManifoldSolid { node: n, elements, reached } => {
+            let advice = "; in Gmsh, let the volumes share a surface, or keep them apart";
+            (None, advice, MeshError::NonManifoldSolid { node: node(n), elements, reached })
         }
         other => (None, "", other),
     };

@@ -79,7 +79,7 @@ pub enum GmshCause {
     #[error("{what} is {count}, more than the rest of the file can hold: the file was cut off or damaged")]
     Count { what: &'static str, count: u64 },
     /// A missing section.
-    #[error("there is no section ${section}; in Gmsh, mesh the surfaces (2D) before saving")]
+    #[error("there is no section ${section}; in Gmsh, mesh the surfaces (2D) or volumes (3D) before saving")]
     NoSection { section: &'static str },
     /// A partitioned mesh.
     #[error(
@@ -88,7 +88,10 @@ pub enum GmshCause {
     )]
     Partitioned,
     /// Elements of an unsupported kind.
-    #[error("element {element} is {kind}; percute takes 3-node triangles (a bar: 2-node lines): {}", kind.advice())]
+    #[error(
+        "element {element} is {kind}; percute takes 3-node triangles, 4-node tetrahedra (a bar: 2-node lines): {}",
+        kind.advice()
+    )]
     Kind {
         /// Tag of the element, or of the first of a block.
         element: u64,
@@ -129,10 +132,10 @@ pub enum GmshCause {
         .nodes[0], .values[0], .nodes[1], .values[1]
     )]
     NotOnAxis { axis: char, nodes: [u64; 2], values: [f64; 2] },
-    /// A line that bounds no triangle, or a point that bounds no line.
+    /// A triangle that bounds no tetrahedron, a line that bounds no triangle, or a point that bounds no line.
     #[error("{}: {}", lone(*.dimension, *.element, .nodes, .groups), lone_advice(*.dimension, .groups))]
     Lone {
-        /// Dimension of the mesh: 2 for a line, 1 for a point.
+        /// Dimension of the mesh: 3 for a triangle, 2 for a line, 1 for a point.
         dimension: usize,
         element: u64,
         nodes: Vec<u64>,
@@ -148,12 +151,24 @@ pub enum GmshCause {
 
 fn lone(dimension: usize, element: u64, nodes: &[u64], groups: &[String]) -> String {
     let groups = if groups.is_empty() { String::new() } else { format!(", in {},", quoted(groups)) };
-    let [what, part, of] = if dimension == 2 { ["line", "edge", "triangle"] } else { ["point", "end", "line"] };
-    format!("the {what} {element} of nodes {nodes:?}{groups} is not an {part} of any {of}")
+    let [what, part, of] = match dimension {
+        1 => ["point", "an end", "line"],
+        2 => ["line", "an edge", "triangle"],
+        _ => ["triangle", "a face", "tetrahedron"],
+    };
+    format!("the {what} {element} of nodes {nodes:?}{groups} is not {part} of any {of}")
 }
 
 fn lone_advice(dimension: usize, groups: &[String]) -> &'static str {
     match (groups.is_empty(), dimension) {
+        (true, 3) => {
+            "a mesh cannot have tetrahedra and plane bodies; in Gmsh, delete the surface, or save without it by \
+             `Mesh.SaveAll = 0`"
+        }
+        (false, 3) => {
+            "percute takes no plane bodies beside solids; in Gmsh, take the surface out of its group, or, where it should \
+             bound a volume, join the two by `Coherence;` (OpenCASCADE: `BooleanFragments`)"
+        }
         (true, _) => {
             "a mesh cannot have triangles and bars; in Gmsh, delete the curve, or save without it by `Mesh.SaveAll = 0`"
         }

@@ -1,4 +1,4 @@
-//! Lines as parts of the boundary of triangles, points as ends of bars.
+//! Triangles as parts of the boundary of tetrahedra, lines of that of triangles, points as ends of bars.
 
 use super::error::{Fault, GmshCause};
 use super::groups::Sorted;
@@ -30,7 +30,7 @@ pub(super) fn boundary<const D: usize, const N: usize>(
     let counts: Vec<usize> = located.iter().map(owners_of).collect();
     let required = |at: usize| match shape {
         CellKind::Bar => named(faces, at),
-        CellKind::Triangle => true,
+        CellKind::Triangle | CellKind::Tetrahedron => true,
     };
     if let Some(at) = (0..counts.len()).find(|&at| counts[at] == 0 && required(at)) {
         return Err(lone(raw, faces, at));

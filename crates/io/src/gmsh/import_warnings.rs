@@ -23,7 +23,7 @@ pub(super) fn dropped(tags: &[u64], dimension: usize) -> Option<ImportWarning> {
     } else {
         ("nodes", "tags", "were", "them; they often are centres of arcs")
     };
-    let element = if dimension == 2 { "triangle" } else { "bar" };
+    let element = ["bar", "triangle", "tetrahedron"][dimension - 1];
     let message = format!("{count} {nodes} of the mesh file ({tag} {shown}) {were} left out: no {element} uses {them}");
     Some(ImportWarning {
         name: "dropped_nodes",
@@ -57,11 +57,22 @@ fn shown(tags: &[u64]) -> String {
     shown.join(", ")
 }
 
-/// Physical groups of points, in a plane mesh.
+/// Physical groups of curves, in a mesh of a solid.
+pub(super) fn curves(raw: &Raw, lines: &Sorted<2>) -> Option<ImportWarning> {
+    let groups: Vec<_> = lines.members.keys().map(|&tag| raw.name(1, tag)).collect();
+    let message = format!(
+        "{} of curves {} left out: in a mesh of a solid, surfaces and volumes can be named, curves cannot",
+        quoted(&groups),
+        were(&groups)
+    );
+    import_warning("curves_left_out", "groups of curves left out", message, groups)
+}
+
+/// Physical groups of points, in a mesh of a plane body or a solid.
 pub(super) fn points(raw: &Raw, points: &Sorted<1>) -> Option<ImportWarning> {
     let groups: Vec<_> = points.members.keys().map(|&tag| raw.name(0, tag)).collect();
     let message = format!(
-        "{} of points {} left out: in a plane mesh, curves and surfaces can be named, points cannot",
+        "{} of points {} left out: boundaries and bodies can be named, points cannot",
         quoted(&groups),
         were(&groups)
     );
@@ -72,7 +83,11 @@ pub(super) fn points(raw: &Raw, points: &Sorted<1>) -> Option<ImportWarning> {
 pub(super) fn inner(inner: &BTreeMap<String, usize>, dimension: usize) -> Option<ImportWarning> {
     let groups: Vec<_> = inner.keys().cloned().collect();
     let count: usize = inner.values().sum();
-    let (edge, edges, of) = if dimension == 2 { ("edge", "edges", "curves") } else { ("point", "points", "points") };
+    let (edge, edges, of) = match dimension {
+        1 => ("point", "points", "points"),
+        2 => ("edge", "edges", "curves"),
+        _ => ("face", "faces", "surfaces"),
+    };
     let (what, lie, are) = if count == 1 { (edge, "lies", "was") } else { (edges, "lie", "were") };
     let message = format!(
         "{count} {what} of {} {lie} inside the body and {are} left out: groups of {of} name parts of its boundary, \

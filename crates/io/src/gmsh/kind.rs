@@ -7,12 +7,14 @@ use std::fmt;
 pub(super) const POINT: i64 = 15;
 pub(super) const LINE: i64 = 1;
 pub(super) const TRIANGLE: i64 = 2;
+pub(super) const TETRAHEDRON: i64 = 4;
 
 /// Numbers of the faces and of the elements of a mesh.
 pub(super) fn numbers(shape: CellKind) -> [i64; 2] {
     match shape {
         CellKind::Bar => [POINT, LINE],
         CellKind::Triangle => [LINE, TRIANGLE],
+        CellKind::Tetrahedron => [TRIANGLE, TETRAHEDRON],
     }
 }
 
@@ -43,11 +45,12 @@ impl ElementKind {
     pub fn advice(self) -> &'static str {
         match self.shape() {
             "quadrangle" => "set `Mesh.RecombineAll = 0`, take out `Recombine Surface`, and mesh again",
-            "line" | "triangle" => "set `Mesh.ElementOrder = 1` (or `SetOrder 1;`) and save again",
-            "tetrahedron" | "hexahedron" | "prism" | "pyramid" => {
-                "mesh in 2D only (`gmsh -2`), or save only surfaces by `Physical Surface` with `Mesh.SaveAll = 0`"
+            "line" | "triangle" | "tetrahedron" => "set `Mesh.ElementOrder = 1` (or `SetOrder 1;`) and save again",
+            "hexahedron" | "prism" | "pyramid" => {
+                "take out `Transfinite Volume`, `Recombine Surface` and layers with `Recombine`, set \
+                 `Mesh.SubdivisionAlgorithm = 0`, and mesh the volumes again (`gmsh -3`)"
             }
-            _ => "mesh plane surfaces by triangles",
+            _ => "mesh plane surfaces by triangles, or volumes by tetrahedra",
         }
     }
 }

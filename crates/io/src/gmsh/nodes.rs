@@ -105,11 +105,13 @@ impl Kept {
             let advice = match [flat(0), flat(1)] {
                 [_, true] => "it lies in a plane y = const: `Rotate {{1,0,0},{0,0,0},-Pi/2} {Surface{:};}` turns it",
                 [true, _] => "it lies in a plane x = const: `Rotate {{0,1,0},{0,0,0},Pi/2} {Surface{:};}` turns it",
-                _ => "percute takes plane bodies: is this the surface of a solid?",
+                _ => {
+                    "if this is the surface of a solid, mesh its volume by `gmsh -3` and save it, by `Physical Volume` if there are physical groups"
+                }
             };
             let cause = match shape {
                 CellKind::Bar => GmshCause::NotOnAxis { axis: ['x', 'y', 'z'][axis], nodes, values },
-                CellKind::Triangle => GmshCause::NotPlane { nodes, values, advice },
+                CellKind::Triangle | CellKind::Tetrahedron => GmshCause::NotPlane { nodes, values, advice },
             };
             return Err(cause.anywhere());
         }

@@ -3,7 +3,7 @@
 use super::cursor::Cursor;
 use super::error::{Fault, GmshCause};
 use super::header::Version;
-use super::kind::{ElementKind, LINE, POINT, TRIANGLE};
+use super::kind::{ElementKind, LINE, POINT, TETRAHEDRON, TRIANGLE};
 use std::collections::{BTreeMap, HashMap};
 
 /// An element of `N` nodes.
@@ -39,6 +39,7 @@ pub(super) struct Raw {
     pub(super) points: Vec<Element<1>>,
     pub(super) lines: Vec<Element<2>>,
     pub(super) triangles: Vec<Element<3>>,
+    pub(super) tetrahedra: Vec<Element<4>>,
     /// Names of physical groups.
     pub(super) names: BTreeMap<Tagged, String>,
     /// Physical groups of the parts of the geometry, in version 4.1.
@@ -66,6 +67,7 @@ impl Raw {
         node: impl Fn(&mut Cursor<'_>) -> Result<u64, Fault>,
     ) -> Result<(), Fault> {
         match head.kind {
+            TETRAHEDRON => self.tetrahedra.push(with_nodes(cursor, head, node)?),
             TRIANGLE => self.triangles.push(with_nodes(cursor, head, node)?),
             LINE => self.lines.push(with_nodes(cursor, head, node)?),
             POINT => self.points.push(with_nodes(cursor, head, node)?),

@@ -6,23 +6,23 @@ use percute_core::mesh::Mesh;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Edge of an equilateral triangle over the root of its area: 2/3^(1/4).
-const EDGE: f64 = 1.519_671_371_303_185_5;
+/// Edge of a bar over its length, of an equilateral triangle over the root of its area, 2/3^(1/4), and of a regular
+/// tetrahedron over the cube root of its volume, (6√2)^(1/3); with their names.
+const EDGES: [(f64, char); 3] = [(1.0, 'L'), (1.519_671_371_303_185_5, 'T'), (2.039_648_902_655_505_6, 'S')];
 
-/// Writes sizes of elements at the nodes of a mesh (m), completely or not at all: triangles with the length of edges at
-/// their corners. A size is the root of the area of an element; lengths and places are in units of `scale` metres.
+/// Writes sizes of elements at the nodes of a mesh (m), completely or not at all: elements with the length of edges at
+/// their corners. A size is the root of the area of an element, or the cube root of its volume; lengths and places are in units of `scale` metres.
 ///
 /// # Errors
 /// A file that cannot be created or exists already.
 pub fn write_sizes(path: &Path, overwrite: Overwrite, mesh: &Mesh, size: &[f64], scale: f64) -> Result<(), GmshError> {
     let mut text = String::from("View \"size\" {\n");
-    let is_bar = mesh.dimension() == 1;
-    let edge = if is_bar { 1.0 } else { EDGE };
+    let (edge, name) = EDGES[mesh.dimension() - 1];
     for element in mesh.elements() {
         let places = mesh.cell_points(element).into_iter().flatten().map(|x| format!("{:?}", x / scale));
         let sizes = mesh.cell(element).iter().map(|node| format!("{:?}", edge * size[node.index()] / scale));
         let [places, sizes] = [places.collect::<Vec<_>>(), sizes.collect()].map(|numbers| numbers.join(","));
-        let _ = writeln!(text, "S{}({places}){{{sizes}}};", if is_bar { "L" } else { "T" });
+        let _ = writeln!(text, "S{name}({places}){{{sizes}}};");
     }
     text.push_str("};\n");
     let failed = |cause: GmshCause| GmshError { path: path.to_path_buf(), place: None, cause };

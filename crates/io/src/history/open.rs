@@ -32,9 +32,10 @@ pub fn open(path: impl AsRef<Path>) -> Result<HistoryFile, FileError> {
 fn dimension(opened: &Opened) -> Result<usize, FileCause> {
     opened.expect(Kind::History)?;
     match opened.root().group("percute")?.integer_attribute("dimension")? {
-        dimension @ 1..=2 => Ok(dimension as usize),
+        dimension @ 1..=3 => Ok(dimension as usize),
         other => {
-            let detail = format!("{other} is not a known dimension; it must be 1 (bars) or 2 (triangles)");
+            let detail =
+                format!("{other} is not a known dimension; it must be 1 (bars), 2 (triangles) or 3 (tetrahedra)");
             Err(FileCause::Value { name: "percute.dimension".to_string(), detail })
         }
     }

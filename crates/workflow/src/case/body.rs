@@ -13,6 +13,7 @@ use std::path::PathBuf;
 
 const MATERIAL: &str = "{ young = 70e9, poisson = 0.3, density = 2700.0, plane = \"stress\" }";
 const BAR: &str = "{ young = 70e9, density = 2700.0, section = 1e-4 }";
+const SOLID: &str = "{ young = 70e9, poisson = 0.3, density = 2700.0 }";
 /// Farther away, over its size, a mesh has less than seven digits.
 const FAR: f64 = 1e9;
 /// What stands in each body instead.
@@ -58,9 +59,15 @@ pub(super) fn read(root: &Table<'_>) -> Result<Option<Bodies>, CaseError> {
         let mesh = mesh::one_way(&table)?;
         bodies.push(Stated { mesh: of_group(&table, mesh)?, table, name: name.1 });
     }
-    let bar = bodies.iter().find(|body| body.mesh.kind() == CellKind::Bar);
-    if let Some(bar) = bar.filter(|_| bodies.iter().any(|body| body.mesh.kind() != CellKind::Bar)) {
-        return Err(bar.table.error("is a bar, but another body is plane; bodies of a case are all bars or all plane"));
+    let least = bodies.iter().min_by_key(|body| body.mesh.dimension());
+    if let Some(least) = least.filter(|least| bodies.iter().any(|body| body.mesh.kind() != least.mesh.kind())) {
+        let [is, another] = match least.mesh.kind() {
+            CellKind::Bar => ["a bar", "no bar"],
+            _ => ["plane", "a solid"],
+        };
+        let told =
+            format!("is {is}, but another body is {another}; bodies of a case are all bars, all plane or all solids");
+        return Err(least.table.error(told));
     }
     joined(root, &bodies).map(Some)
 }
@@ -90,7 +97,11 @@ fn joined(root: &Table<'_>, bodies: &[Stated<'_>]) -> Result<Bodies, CaseError> 
 }
 
 fn law(table: &Table<'_>, shape: CellKind) -> Result<Elastic, CaseError> {
-    let example = if shape == CellKind::Bar { BAR } else { MATERIAL };
+    let example = match shape {
+        CellKind::Bar => BAR,
+        CellKind::Triangle => MATERIAL,
+        CellKind::Tetrahedron => SOLID,
+    };
     let table = table.require("material", &format!("a table, such as {example}"))?.any_table(example)?;
     table.refuse("group", "does not apply here: the material of a body is that of all its elements")?;
     material::law(&table, shape)
@@ -98,8 +109,10 @@ fn law(table: &Table<'_>, shape: CellKind) -> Result<Elastic, CaseError> {
 
 /// The mesh in its place.
 fn placed_mesh(table: &Table<'_>, mesh: &Mesh) -> Result<Mesh, CaseError> {
-    if mesh.dimension() == 1 {
-        table.refuse("rotation", "does not apply to a bar")?;
+    match mesh.kind() {
+        CellKind::Bar => table.refuse("rotation", "does not apply to a bar")?,
+        CellKind::Triangle => {}
+        CellKind::Tetrahedron => table.refuse("rotation", "does not apply to a solid; turn its mesh, or the planes")?,
     }
     let origin = table.get("origin").map_or(Ok([0.0; 3]), |value| value.vector("m", mesh.dimension()))?;
     let angle = table.get("rotation").map_or(Ok(0.0), |value| value.number("degrees"))?;

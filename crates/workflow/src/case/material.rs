@@ -8,6 +8,8 @@ use percute_core::material::{Elastic, Kinematics, MaterialError};
 /// Keys of plane bodies alone, and of bars alone.
 const OF_PLANE: [&str; 3] = ["poisson", "plane", "thickness"];
 const OF_BAR: &str = "section";
+/// Keys that a solid does not have.
+const OF_SOLID_NOT: [&str; 3] = ["plane", "thickness", "section"];
 
 /// What is said of properties that a bar does not have.
 pub(super) const NOT_FOR_BARS: &str = "does not apply to a bar";
@@ -17,8 +19,8 @@ pub(super) fn read(root: &Table<'_>, shape: CellKind) -> Result<Vec<(Option<Stri
     let tables = root.tables("material")?;
     if tables.is_empty() {
         return Err(root.error(
-            "the table [material] is missing: give `young` (Pa), `density` (kg/m³), and `poisson` and `plane` (a bar: \
-             `section` in m²)",
+            "the table [material] is missing: give `young` (Pa), `density` (kg/m³), `poisson` and `plane` (a solid: no \
+             `plane`; a bar: `section` in m² alone)",
         ));
     }
     let one = |table: &Table<'_>| {
@@ -34,6 +36,7 @@ pub(super) fn law(table: &Table<'_>, shape: CellKind) -> Result<Elastic, CaseErr
     let law = match shape {
         CellKind::Bar => bar(table),
         CellKind::Triangle => plane(table),
+        CellKind::Tetrahedron => solid(table),
     }?;
     let law = law.with_kinematics(kinematics(table)?).map_err(|error| out_of_range(table, &error))?;
     let number = |key: &str, unit: &str| table.get(key).map(|value| value.number(unit)).transpose();
@@ -88,6 +91,17 @@ fn plane(table: &Table<'_>) -> Result<Elastic, CaseError> {
         }
     };
     law.map_err(|error| out_of_range(table, &error))
+}
+
+fn solid(table: &Table<'_>) -> Result<Elastic, CaseError> {
+    for key in OF_SOLID_NOT {
+        table.refuse(key, "does not apply to a solid, which is whole in all three dimensions; leave it out")?;
+    }
+    table.only_but(&OF_SOLID_NOT)?;
+    let young = number(table, "young", "Pa")?;
+    let poisson = number(table, "poisson", "")?;
+    let density = number(table, "density", "kg/m³")?;
+    Elastic::solid(young, poisson, density).map_err(|error| out_of_range(table, &error))
 }
 
 fn number(table: &Table<'_>, key: &str, unit: &str) -> Result<f64, CaseError> {

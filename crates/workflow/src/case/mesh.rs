@@ -13,16 +13,22 @@ use std::path::PathBuf;
 const RECTANGLE: &str = "{ width = 0.05, height = 0.04, nx = 20, ny = 16 }";
 const DISC: &str = "{ radius = 0.05, rings = 12 }";
 const BAR: &str = "{ length = 0.1, elements = 100 }";
+const BOX: &str = "{ size = [0.02, 0.02, 0.02], cells = [6, 6, 6] }";
+const CYLINDER: &str = "{ radius = 0.01, height = 0.04, rings = 4, layers = 16 }";
+const BALL: &str = "{ radius = 0.01, rings = 6 }";
 const GROUPS: &str = "{ bottom = [[0, 1], [1, 2]] }";
 const ELEMENTS: &str = "{ core = [0, 1, 2] }";
 
 /// Reads the mesh from the table and the value of the key that says how it is given.
 type Reader = for<'a> fn(&Table<'a>, &Value<'a>) -> Result<Mesh, CaseError>;
 
-const WAYS: [(&str, Reader); 5] = [
+const WAYS: [(&str, Reader); 8] = [
     ("rectangle", |_, value| rectangle(value)),
     ("disc", |_, value| disc(value)),
     ("bar", |_, value| bar(value)),
+    ("box", |_, value| cuboid(value)),
+    ("cylinder", |_, value| cylinder(value)),
+    ("ball", |_, value| ball(value)),
     ("file", from_file),
     ("points", from_arrays),
 ];
@@ -37,12 +43,13 @@ pub(super) fn read(table: &Table<'_>) -> Result<Mesh, CaseError> {
 pub(super) fn one_way(table: &Table<'_>) -> Result<Mesh, CaseError> {
     let ways: Vec<_> = WAYS.iter().filter_map(|(key, reader)| Some((table.get(key)?, reader))).collect();
     let [(value, reader)] = ways.as_slice() else {
-        let message = "needs exactly one of `rectangle`, `disc`, `bar`, `file` and `points` (the last with `cells`)";
+        let message = "needs exactly one of `rectangle`, `disc`, `bar`, `box`, `cylinder`, `ball`, `file` and `points` \
+                       (the last with `cells`)";
         let surplus = |(second, _): &(Value<'_>, _)| second.error(format!("is one too many: a body {message}"));
         return Err(ways.get(1).map_or_else(|| table.error(message), surplus));
     };
     if table.get("points").is_none() {
-        for key in ["cells", "edge_groups", "element_groups"] {
+        for key in ["cells", "edge_groups", "face_groups", "element_groups"] {
             let why = "goes with `points`; a mesh that is generated or in a file has its own elements and groups";
             table.refuse(key, why)?;
         }
@@ -170,6 +177,32 @@ fn bar(value: &Value<'_>) -> Result<Mesh, CaseError> {
     Mesh::uniform_bar(length, elements).map_err(|error| generator(&table, &error))
 }
 
+fn cuboid(value: &Value<'_>) -> Result<Mesh, CaseError> {
+    let table = value.table(BOX)?;
+    let size = table.require("size", "three lengths in m")?.vector("m", 3)?;
+    let cells = table.require("cells", "three numbers of cells")?;
+    let of_axis: Vec<usize> = cells.nodes(3)?;
+    Mesh::cuboid(size, [of_axis[0], of_axis[1], of_axis[2]]).map_err(|error| generator(&table, &error))
+}
+
+fn cylinder(value: &Value<'_>) -> Result<Mesh, CaseError> {
+    let table = value.table(CYLINDER)?;
+    let [radius, height] = [length(&table, "radius")?, length(&table, "height")?];
+    let rings = table.require("rings", "a number of rings")?.count(1)?;
+    let layers = table.require("layers", "a number of layers")?.count(1)?;
+    Mesh::cylinder(radius, height, rings, layers).map_err(|error| generator(&table, &error))
+}
+
+fn ball(value: &Value<'_>) -> Result<Mesh, CaseError> {
+    let table = value.table(BALL)?;
+    let rings = table.require("rings", "a number of rings")?.count(1)?;
+    Mesh::ball(length(&table, "radius")?, rings).map_err(|error| generator(&table, &error))
+}
+
+fn length(table: &Table<'_>, key: &str) -> Result<f64, CaseError> {
+    table.require(key, "a length in m")?.number("m")
+}
+
 /// A generator's error, at the key that it names.
 fn generator(table: &Table<'_>, error: &MeshError) -> CaseError {
     let value = match error {
@@ -181,20 +214,28 @@ fn generator(table: &Table<'_>, error: &MeshError) -> CaseError {
 
 fn from_arrays(table: &Table<'_>, points: &Value<'_>) -> Result<Mesh, CaseError> {
     let entries = points.list("points, each its coordinates in m")?;
-    let plane = entries.first().is_some_and(|first| first.list("").is_ok_and(|list| list.len() != 1));
-    arrays(table, if plane { 2 } else { 1 })
+    let coordinates = entries.first().and_then(|first| Some(first.list("").ok()?.len()));
+    let dimension = match coordinates {
+        None | Some(1) => 1,
+        Some(3) => 3,
+        Some(_) => 2,
+    };
+    let (key, other) = if dimension == 3 { ("face_groups", "edge_groups") } else { ("edge_groups", "face_groups") };
+    table
+        .refuse(other, &format!("does not apply to points with {dimension} coordinates; name the groups by `{key}`"))?;
+    arrays(table, dimension, key)
 }
 
 /// A mesh from points, cells, groups of faces and groups of elements.
-fn arrays(table: &Table<'_>, dimension: usize) -> Result<Mesh, CaseError> {
+fn arrays(table: &Table<'_>, dimension: usize, of_faces: &str) -> Result<Mesh, CaseError> {
     let points = table.require("points", "the coordinates of the nodes in m")?.vectors("m", dimension)?;
     let points = rows(points, dimension);
     let cells = table.require("cells", "the node numbers of each element, counted from 0")?;
     let cells = nodes(&cells.list("elements, each the numbers of its nodes")?, dimension + 1)?;
     let mut faces = FaceRows::new();
-    if let Some(groups) = table.get("edge_groups") {
+    if let Some(groups) = table.get(of_faces) {
         for (name, members) in groups.any_table(GROUPS)?.entries() {
-            let members = members.list("edges (a bar: points), each the numbers of its nodes")?;
+            let members = members.list("edges (a bar: points, a solid: faces), each the numbers of its nodes")?;
             faces.insert(name.to_string(), nodes(&members, dimension)?);
         }
     }
@@ -225,8 +266,8 @@ fn array_error(table: &Table<'_>, error: &MeshError) -> CaseError {
         MeshError::NoSuchNode { element, .. } | MeshError::Degenerate { element, .. } => entry("cells", *element),
         MeshError::NonManifoldFace { elements, .. } => entry("cells", elements.last().copied().unwrap_or(0)),
         MeshError::Overlap { elements } | MeshError::PartsTouch { elements } => entry("cells", elements[1]),
-        MeshError::NonManifoldNode { node, .. } => entry("points", *node),
-        MeshError::NoSuchFace { group, .. } => named("edge_groups", group),
+        MeshError::NonManifoldNode { node, .. } | MeshError::NonManifoldSolid { node, .. } => entry("points", *node),
+        MeshError::NoSuchFace { group, .. } => named("edge_groups", group).or_else(|| named("face_groups", group)),
         MeshError::NoSuchElement { group, .. } => named("element_groups", group),
         MeshError::Generator { .. } | MeshError::TooLarge { .. } | MeshError::NoMemory { .. } => None,
     };

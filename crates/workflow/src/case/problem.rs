@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Reads all that makes the problem on a mesh.
 pub(super) fn read(root: &Table<'_>, mesh: &Arc<Mesh>) -> Result<AnyProblem, CaseError> {
     let stated = Statement { planes_to_be_moved: true, ..with_start(root, mesh)? };
-    AnyProblem::new(mesh, &stated).map_err(|error| located(root, &error, mesh.import_warnings()))
+    AnyProblem::new(mesh, &stated).map_err(|error| located(root, &error, (mesh.dimension(), mesh.import_warnings())))
 }
 
 /// Reads all that makes the problem of several bodies.
@@ -41,7 +41,7 @@ pub(super) fn check_coarsest(root: &Table<'_>, mesh: &Arc<Mesh>, nodes: &[usize]
         (Cause::Behind { node, depth, reversed }, [_, ..]) => Cause::Behind { node: nodes[node], depth, reversed },
         _ => return Ok(()),
     };
-    Err(located(root, &InputError { place, cause }, &[]))
+    Err(located(root, &InputError { place, cause }, (mesh.dimension(), &[])))
 }
 
 /// Reads all that makes the problem, and does not check it as a whole.
@@ -79,7 +79,7 @@ fn surroundings(root: &Table<'_>, mesh: &Mesh) -> Result<Statement, CaseError> {
 
 /// Has the core check the problem as a whole.
 pub(super) fn build(root: &Table<'_>, mesh: &Arc<Mesh>, stated: &Statement) -> Result<AnyProblem, CaseError> {
-    AnyProblem::new(mesh, stated).map_err(|error| located(root, &error, &[]))
+    AnyProblem::new(mesh, stated).map_err(|error| located(root, &error, (mesh.dimension(), &[])))
 }
 
 /// One vector for all nodes, or a list with one for each, in rows.
@@ -92,7 +92,7 @@ fn field(value: &Value<'_>, unit: &str, dimension: usize) -> Result<Vec<f64>, Ca
 }
 
 /// An error of the core, at its place in the file.
-fn located(root: &Table<'_>, error: &InputError, import_warnings: &[ImportWarning]) -> CaseError {
+fn located(root: &Table<'_>, error: &InputError, (dimension, import_warnings): (usize, &[ImportWarning])) -> CaseError {
     let mut message = error.cause.to_string();
     if let Cause::UnknownGroup { name, known, .. } = &error.cause {
         message += &hint(name, known.iter().map(String::as_str));
@@ -102,7 +102,12 @@ fn located(root: &Table<'_>, error: &InputError, import_warnings: &[ImportWarnin
         of_group.for_each(|import_warning| message += &format!("; {}", import_warning.message));
     }
     if let (Cause::UnknownGroup { name, .. }, true) = (&error.cause, in_file(root)) {
-        let what = if matches!(error.place.table, "material" | "body_force") { "Surface" } else { "Curve" };
+        let what = match error.place.table {
+            "material" | "body_force" if dimension == 3 => "Volume",
+            "material" | "body_force" => "Surface",
+            _ if dimension == 3 => "Surface",
+            _ => "Curve",
+        };
         message += &format!("; in Gmsh, `Physical {what}(\"{name}\") = {{…}};` names one, before the mesh is saved");
     }
     // Planes are stated in metres: a body read in millimetres reaches far beyond them.

@@ -26,7 +26,7 @@ pub enum NotRepresentable {
     /// A law for a body of another dimension.
     #[error(
         "material {index} is a law for {law}, but the mesh has {dimension} dimension(s): a case file gives a bar \
-         `section` and a plane body `plane`; make it with Elastic::bar (1) or plane_stress, plane_strain (2)",
+         `section` and a plane body `plane`; make it with Elastic::bar (1), plane_stress, plane_strain (2) or solid (3)",
         law = law_name(*.hypothesis)
     )]
     Law {
@@ -41,6 +41,7 @@ fn law_name(hypothesis: Hypothesis) -> &'static str {
     match hypothesis {
         Hypothesis::Bar => "a bar",
         Hypothesis::PlaneStress | Hypothesis::PlaneStrain => "a plane body",
+        Hypothesis::Solid => "a solid",
     }
 }
 
@@ -115,7 +116,12 @@ fn material(
     dimension: usize,
 ) -> Result<(), NotRepresentable> {
     let hypothesis = law.hypothesis();
-    if (hypothesis == Hypothesis::Bar) != (dimension == 1) {
+    let of_law = match hypothesis {
+        Hypothesis::Bar => 1,
+        Hypothesis::PlaneStress | Hypothesis::PlaneStrain => 2,
+        Hypothesis::Solid => 3,
+    };
+    if of_law != dimension {
         return Err(NotRepresentable::Law { index: index + 1, hypothesis, dimension });
     }
     text.table("[[material]]");
@@ -137,6 +143,10 @@ fn material(
     let plane = match hypothesis {
         Hypothesis::Bar => {
             text.number("section", law.extent());
+            return Ok(());
+        }
+        Hypothesis::Solid => {
+            text.number("poisson", law.poisson());
             return Ok(());
         }
         Hypothesis::PlaneStress => "stress",

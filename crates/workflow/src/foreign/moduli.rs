@@ -8,7 +8,7 @@ use super::residual::{fit, norm};
 use super::window::{vectors_of, windows};
 use crate::message::trimmed;
 use percute_core::history::SinkError;
-use percute_core::kernel::Stiffness;
+use percute_core::kernel::InternalForces;
 use percute_core::material::{Elastic, Hypothesis, Law, LinearLaw};
 use percute_core::problem::{AnyProblem, Statement};
 
@@ -40,13 +40,15 @@ pub(super) fn attempt(diagnosis: &Diagnosis<'_>) -> Result<Vec<Attempt>, SinkErr
     Ok(told.into_iter().map(|(text, factors)| Attempt { text, before, left: norm(&products, factors) }).collect())
 }
 
-/// The body with the same shear modulus and without λ: plane stress with ν = 0. None for a bar.
+/// The body with the same shear modulus and without λ: ν = 0. None for a bar.
 fn sheared(problem: &AnyProblem, material: &Elastic) -> Option<AnyProblem> {
-    if material.hypothesis() == Hypothesis::Bar {
-        return None;
-    }
-    let (_, shear) = material.moduli();
-    let without = Elastic::plane_stress(2.0 * shear, 0.0, material.density(), material.extent()).ok()?;
+    let (young, density) = (2.0 * material.moduli().1, material.density());
+    let without = match material.hypothesis() {
+        Hypothesis::Bar => return None,
+        Hypothesis::Solid => Elastic::solid(young, 0.0, density),
+        _ => Elastic::plane_stress(young, 0.0, density, material.extent()),
+    };
+    let without = without.ok()?;
     let stated = Statement { materials: vec![(None, without)], ..Statement::default() };
     AnyProblem::new(problem.mesh(), &stated).ok()
 }
@@ -56,7 +58,7 @@ fn other_hypothesis(material: &Elastic) -> Option<(&'static str, f64)> {
     let (young, poisson, density, extent) =
         (material.young(), material.poisson(), material.density(), material.extent());
     let (name, other) = match material.hypothesis() {
-        Hypothesis::Bar => return None,
+        Hypothesis::Bar | Hypothesis::Solid => return None,
         Hypothesis::PlaneStress => ("strain", Elastic::plane_strain(young, poisson, density, extent)),
         Hypothesis::PlaneStrain => ("stress", Elastic::plane_stress(young, poisson, density, extent)),
     };
@@ -68,7 +70,7 @@ fn fitted(material: &Elastic, factors: [f64; 4]) -> Option<String> {
     let (lambda, shear) = material.moduli();
     let (lambda, shear) = (factors[OF_LAMBDA] * lambda, factors[OF_SHEAR] * shear);
     let poisson = match material.hypothesis() {
-        Hypothesis::PlaneStrain => lambda / (2.0 * (lambda + shear)),
+        Hypothesis::PlaneStrain | Hypothesis::Solid => lambda / (2.0 * (lambda + shear)),
         Hypothesis::PlaneStress | Hypothesis::Bar => lambda / (lambda + 2.0 * shear),
     };
     let young = 2.0 * shear * (1.0 + poisson);
@@ -86,7 +88,7 @@ fn fitted(material: &Elastic, factors: [f64; 4]) -> Option<String> {
 /// Scalar products of the terms with their signs (N²), where they do not follow from the balance.
 fn products(diagnosis: &Diagnosis<'_>, sheared: &AnyProblem) -> Result<Products, SinkError> {
     let balance = Balance::new(diagnosis.problem, diagnosis.source.times());
-    let stiffness = Stiffness::new(sheared);
+    let stiffness = InternalForces::linear(sheared);
     let (problem, residual) = (diagnosis.problem, &diagnosis.evidence.residual);
     let mut products = Products::default();
     windows(diagnosis.source, diagnosis.problem.dimension(), &mut |window| {

@@ -5,7 +5,7 @@ use super::limits::{DRIFT, Excess, by_a_penalty};
 use crate::message::{percent, trimmed};
 use percute_core::border::row;
 use percute_core::dynamics::critical_time_step;
-use percute_core::kernel::Stiffness;
+use percute_core::kernel::InternalForces;
 use percute_core::time::is_stable;
 
 /// The name of what is over its limit where a penalty makes the run unstable.
@@ -69,6 +69,6 @@ fn own_stiffness(diagnosis: &Diagnosis<'_>, at: usize) -> f64 {
     let (mut displacement, mut force) = (vec![0.0; d * problem.mesh().node_count()], Vec::new());
     force.resize(displacement.len(), 0.0);
     displacement[d * node..d * (node + 1)].copy_from_slice(&frame.normal()[..d]);
-    Stiffness::new(problem).subtract_from_rows(&displacement, &mut force);
+    InternalForces::linear(problem).subtract_from_rows(&displacement, &mut force);
     -frame.split(&row(&force, node, d)).0
 }

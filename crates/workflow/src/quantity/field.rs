@@ -17,12 +17,18 @@ pub enum Field {
     Pressure,
     /// σ of a bar.
     Stress,
-    /// σ₁₁ of a plane body.
+    /// σ₁₁ of a plane body or a solid.
     StressXx,
-    /// σ₂₂ of a plane body.
+    /// σ₂₂ of a plane body or a solid.
     StressYy,
-    /// σ₁₂ of a plane body.
+    /// σ₁₂ of a plane body or a solid.
     StressXy,
+    /// σ₃₃ of a solid.
+    StressZz,
+    /// σ₂₃ of a solid.
+    StressYz,
+    /// σ₁₃ of a solid.
+    StressXz,
     /// Magnitude of the displacement.
     Displacement,
     /// Magnitude of the velocity.
@@ -31,13 +37,16 @@ pub enum Field {
 
 impl Field {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 11] = [
         Self::VonMises,
         Self::Pressure,
         Self::Stress,
         Self::StressXx,
         Self::StressYy,
         Self::StressXy,
+        Self::StressZz,
+        Self::StressYz,
+        Self::StressXz,
         Self::Displacement,
         Self::Velocity,
     ];
@@ -52,6 +61,9 @@ impl Field {
             Self::StressXx => "stress_xx",
             Self::StressYy => "stress_yy",
             Self::StressXy => "stress_xy",
+            Self::StressZz => "stress_zz",
+            Self::StressYz => "stress_yz",
+            Self::StressXz => "stress_xz",
             Self::Displacement => "displacement",
             Self::Velocity => "velocity",
         }
@@ -84,7 +96,8 @@ impl Field {
     pub(super) fn is_of(self, dimension: usize) -> bool {
         match self {
             Self::Stress => dimension == 1,
-            Self::StressXx | Self::StressYy | Self::StressXy => dimension == 2,
+            Self::StressXx | Self::StressYy | Self::StressXy => dimension > 1,
+            Self::StressZz | Self::StressYz | Self::StressXz => dimension == 3,
             _ => true,
         }
     }
@@ -109,6 +122,9 @@ impl Field {
             Self::Stress | Self::StressXx => stress(|element| element.stress[0][0]),
             Self::StressYy => stress(|element| element.stress[1][1]),
             Self::StressXy => stress(|element| element.stress[0][1]),
+            Self::StressZz => stress(|element| element.stress[2][2]),
+            Self::StressYz => stress(|element| element.stress[1][2]),
+            Self::StressXz => stress(|element| element.stress[0][2]),
             Self::Displacement => magnitude(problem, around, displacement),
             Self::Velocity => magnitude(problem, around, &state.velocity()),
         }
@@ -132,6 +148,6 @@ impl FromStr for Field {
 
     fn from_str(given: &str) -> Result<Self, String> {
         let found = Self::ALL.into_iter().find(|field| field.name() == given);
-        found.ok_or_else(|| format!("there is no field {given:?}; {}", Self::choose(given, &[1, 2])))
+        found.ok_or_else(|| format!("there is no field {given:?}; {}", Self::choose(given, &[1, 2, 3])))
     }
 }

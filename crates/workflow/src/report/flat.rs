@@ -38,7 +38,7 @@ impl FlatElements {
     pub(super) fn new(problem: &AnyProblem, by_element: &[f64]) -> Option<Self> {
         let mesh = problem.mesh();
         match mesh.kind() {
-            CellKind::Bar => return None,
+            CellKind::Bar | CellKind::Tetrahedron => return None,
             CellKind::Triangle => {}
         }
         let largest = |e: usize| angles(mesh, e).into_iter().fold(0.0, f64::max);

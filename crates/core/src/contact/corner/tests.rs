@@ -109,3 +109,56 @@ fn one_plane_alone() {
         assert_eq!(reactions(&pair, STEPS, TOLERANCE), [pair[0].alone(STEPS), [0.0; 2]]);
     }
 }
+
+/// The same node and planes in space, turned, with a velocity along the edge.
+fn in_space(plane: &[Constraint<2>; 2], turn: [f64; 2], along: f64) -> ([Constraint<3>; 2], [[f64; 3]; 3]) {
+    let [(s, c), (t, d)] = turn.map(f64::sin_cos);
+    let axes = [[c, s * d, s * t], [-s, c * d, c * t], [0.0, -t, d]];
+    let place = |[x, y]: [f64; 2], z: f64| std::array::from_fn(|k| x * axes[0][k] + y * axes[1][k] + z * axes[2][k]);
+    let made = plane.map(|one| Constraint {
+        at: one.at,
+        frame: Frame::new(place(*one.frame.normal(), 0.0)),
+        law: one.law,
+        mass: one.mass,
+        gap: one.gap,
+        velocity: place(one.velocity, along),
+    });
+    (made, axes)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// Without a motion along the edge the reactions are those of the plane of both normals. With one the normal forces
+    /// of a node at both planes are the same; forces along the edge are against the motion, and do not reverse it. They
+    /// stop it, or both are at the limit. All are in the cones.
+    #[test]
+    fn planes_of_a_solid(plane in states(), turn in [0.0..6.3_f64, 0.0..6.3], along in -5.0..5.0_f64) {
+        if plane.iter().all(|one| one.gap >= -TOLERANCE) {
+            return Ok(());
+        }
+        let [_, h] = STEPS;
+        let flat = reactions(&plane, STEPS, TOLERANCE);
+        let size = flat.as_flattened().iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        let components = |forces: [[f64; 3]; 2], axes: &[[f64; 3]; 3]| forces.map(|f| axes.map(|axis| dot(&f, &axis)));
+        let (still, axes) = in_space(&plane, turn, 0.0);
+        let found = components(reactions(&still, STEPS, TOLERANCE), &axes);
+        for (found, flat) in found.iter().zip(&flat) {
+            let expected = [flat[0], flat[1], 0.0];
+            prop_assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() <= 1e-9 * size), "{found:?} {flat:?}");
+        }
+        let (moves, axes) = in_space(&plane, turn, along);
+        let forces = reactions(&moves, STEPS, TOLERANCE);
+        let size = forces.as_flattened().iter().fold(size, |m, f| m.max(f.abs()));
+        let mut limits = true;
+        for (one, force) in moves.iter().zip(&forces) {
+            let excess = one.law.excess(&one.frame, force);
+            prop_assert!(excess.iter().all(|excess| *excess <= 1e-9 * size), "{excess:?}");
+            limits &= excess[0] >= -1e-9 * size;
+        }
+        let pushed: f64 = components(forces, &axes).iter().map(|f| f[2]).sum();
+        let after = along + h * pushed / moves[0].mass;
+        prop_assert!(pushed * along <= 1e-9 * size && after * along >= -1e-9, "{pushed} {along} {after}");
+        prop_assert!(after.abs() <= 1e-9 || limits, "{after}");
+    }
+}

@@ -10,6 +10,8 @@ pub enum GroupOf {
     Ends,
     /// Faces of a plane body.
     Edges,
+    /// Faces of a solid.
+    Faces,
     /// Elements.
     Elements,
 }
@@ -21,6 +23,7 @@ impl GroupOf {
         match shape {
             CellKind::Bar => Self::Ends,
             CellKind::Triangle => Self::Edges,
+            CellKind::Tetrahedron => Self::Faces,
         }
     }
 }
@@ -30,6 +33,7 @@ impl fmt::Display for GroupOf {
         f.write_str(match self {
             Self::Ends => "ends",
             Self::Edges => "edges",
+            Self::Faces => "faces",
             Self::Elements => "elements",
         })
     }

@@ -33,7 +33,7 @@ const WIDE: f64 = 10.0;
 const THICK: f64 = 100.0;
 /// A coefficient of friction above this is more likely a percentage.
 const ROUGH: f64 = 2.0;
-/// From here on triangles in plane strain are far too stiff.
+/// From here on triangles in plane strain and tetrahedra are far too stiff.
 const INCOMPRESSIBLE: f64 = 0.49;
 
 pub(super) fn plausibility_warnings<const D: usize>(problem: &Problem<D>) -> Vec<PlausibilityWarning> {
@@ -176,17 +176,22 @@ fn extent(material: &Elastic, size: f64, index: usize) -> Option<PlausibilityWar
 
 fn locking(material: &Elastic, index: usize) -> Option<PlausibilityWarning> {
     let poisson = material.poisson();
-    if material.hypothesis() != Hypothesis::PlaneStrain || poisson <= INCOMPRESSIBLE {
+    let elements = match material.hypothesis() {
+        Hypothesis::PlaneStrain => "triangles in plane strain",
+        Hypothesis::Solid => "tetrahedra",
+        Hypothesis::Bar | Hypothesis::PlaneStress => return None,
+    };
+    if poisson <= INCOMPRESSIBLE {
         return None;
     }
     let message = format!(
-        "is {poisson}: linear triangles in plane strain lock for a nearly incompressible material; \
+        "is {poisson}: linear {elements} lock for a nearly incompressible material; \
          results are reliable up to {INCOMPRESSIBLE}"
     );
     Some(plausibility_warning(
         at("material", Some(index), "poisson"),
         "locking",
-        "material, poisson: triangles will lock",
+        "material, poisson: elements will lock",
         message,
     ))
 }

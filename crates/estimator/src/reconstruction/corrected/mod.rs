@@ -80,6 +80,7 @@ fn concentrates<const D: usize>(problem: &Problem<D>, options: &Options) -> bool
     let possible = match problem.mesh().kind() {
         CellKind::Bar => false,
         CellKind::Triangle => true,
+        CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
     };
     possible && options.ablation != Ablation::Concentration
 }

@@ -53,6 +53,7 @@ impl<const D: usize> MomentCorrection<D> {
         match problem.mesh().kind() {
             CellKind::Bar => return Self { groups: Vec::new() },
             CellKind::Triangle => {}
+            CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
         }
         let (part, surface) = (problem.mesh().part_of_nodes(), problem.surface());
         let centroids = centroids(problem);

@@ -42,7 +42,7 @@ impl Parts {
         };
         let faces = match mesh.kind() {
             CellKind::Bar => faces.into_iter().flat_map(alone).collect(),
-            CellKind::Triangle => faces,
+            CellKind::Triangle | CellKind::Tetrahedron => faces,
         };
         Self { names, faces, cells: parts(cells.into_iter().enumerate()) }
     }

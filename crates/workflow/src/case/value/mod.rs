@@ -157,5 +157,6 @@ fn number_of(unit: &str) -> String {
 
 fn vector_of(unit: &str, dimension: usize) -> String {
     let unit = if unit.is_empty() { String::new() } else { format!(" in {unit}") };
-    format!("{dimension} finite numbers{unit}, for x and y, such as [1.0, 0.0]")
+    let shown = if dimension == 3 { "x, y and z, such as [1.0, 0.0, 0.0]" } else { "x and y, such as [1.0, 0.0]" };
+    format!("{dimension} finite numbers{unit}, for {shown}")
 }

@@ -90,6 +90,7 @@ impl TractionMinimisation {
         match problem.mesh().kind() {
             CellKind::Bar => return None,
             CellKind::Triangle => {}
+            CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
         }
         let numbers = Numbers::new(problem.mesh());
         let operator = assembly::assemble(problem, elements, &numbers);
@@ -112,7 +113,7 @@ impl TractionMinimisation {
     /// About how much memory it takes (bytes).
     pub(in crate::reconstruction) fn memory(shape: CellKind, elements: usize) -> usize {
         match shape {
-            CellKind::Bar => 0,
+            CellKind::Bar | CellKind::Tetrahedron => 0,
             // Slopes and change are three coefficients each, a half of them of nodes; there is room for another half
             // twice.
             CellKind::Triangle => {
