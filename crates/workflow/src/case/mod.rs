@@ -276,6 +276,10 @@ impl Case {
     /// # Errors
     /// The place in the file.
     pub fn check_run(&self, estimated: bool, long: Long) -> Result<(), CaseError> {
+        if estimated && self.problem.dimension() == 3 {
+            let place = Place { table: "mesh", index: None, key: "" };
+            self.error_at(place, EstimateError::Solid.to_string()).map_or(Ok(()), Err)?;
+        }
         if estimated && self.problem.is_finite() && !self.options.balances_turning(self.problem.dimension()) {
             let place = Place { table: "estimate", index: None, key: "reconstruction" };
             self.error_at(place, EstimateError::Finite.to_string()).map_or(Ok(()), Err)?;

@@ -59,16 +59,14 @@ pub fn of_mesh(path: &Path, file: &MeshFile) -> MeshInfo {
 
 impl MeshInfo {
     pub(super) fn lines(&self) -> Vec<(&'static str, String)> {
-        let plane = self.dimension == 2;
+        let (faces, face) = [("edges", "end"), ("edges", "edge"), ("faces", "face")][self.dimension - 1];
         let body = counts(self.dimension, self.elements, self.nodes);
         let mut lines = vec![("mesh", self.file.clone()), ("body", body)];
         let corner = |corner: &[f64]| corner.iter().map(|x| short(*x, 4)).collect::<Vec<_>>().join(", ");
         let (lower, upper) = (corner(&self.lower_corner), corner(&self.upper_corner));
         lines.push(("box", format!("({lower}) to ({upper}): metres, unless the case has a `scale`")));
-        for (title, groups, member) in [
-            ("edges", &self.edge_groups, if plane { "edge" } else { "end" }),
-            ("elements", &self.element_groups, "element"),
-        ] {
+        for (title, groups, member) in [(faces, &self.edge_groups, face), ("elements", &self.element_groups, "element")]
+        {
             let titles = std::iter::once(title).chain(std::iter::repeat(""));
             let named =
                 groups.iter().map(|group| format!("group \"{}\" of {}", group.name, counted(group.members, member)));

@@ -237,7 +237,11 @@ impl CaseInfo {
         lines.push(("duration", format!("run {run}, simulate {simulation}{long}")));
         lines.push(("history", format!("{} on disk", bytes(self.history_bytes))));
         let (run, estimate) = (bytes(self.run_memory), bytes(self.estimate_memory));
-        lines.push(("memory", format!("about {run} for the run, and {estimate} for the estimate")));
+        let estimate = match self.problem.dimension {
+            3 => "no estimate of solids yet".to_string(),
+            _ => format!("{estimate} for the estimate"),
+        };
+        lines.push(("memory", format!("about {run} for the run, and {estimate}")));
         if self.output_estimate.is_some() {
             lines
                 .push(("", format!("and {} for the contact results of the estimate file", bytes(self.contact_memory))));
@@ -290,7 +294,11 @@ impl HistoryInfo {
         );
         // There is no estimate of a part of a run.
         if self.stored.is_none() {
-            lines.push(("memory", format!("about {} for the estimate", bytes(self.estimate_memory))));
+            let estimate = match self.problem.dimension {
+                3 => "no estimate of solids yet".to_string(),
+                _ => format!("about {} for the estimate", bytes(self.estimate_memory)),
+            };
+            lines.push(("memory", estimate));
         }
         lines
     }

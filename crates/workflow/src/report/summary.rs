@@ -75,8 +75,9 @@ pub(crate) fn body(problem: &ProblemSummary) -> String {
 
 /// Elements and nodes.
 pub(crate) fn counts(dimension: usize, elements: usize, nodes: usize) -> String {
-    let kind = ["bar element", "triangle"][dimension - 1];
-    format!("{}, {}", counted(elements, kind), counted(nodes, "node"))
+    let kinds = [["bar element", "bar elements"], ["triangle", "triangles"], ["tetrahedron", "tetrahedra"]];
+    let kind = kinds[dimension - 1][usize::from(elements != 1)];
+    format!("{elements} {kind}, {}", counted(nodes, "node"))
 }
 
 /// The longest step beside the critical one (s).
