@@ -18,6 +18,7 @@ from percute.pictures.body import SLIM
 from percute.pictures.canvas import SIGNED, Floats, pyplot, replacing, writable, writing
 from percute.field_pictures import draw_field, field
 from percute.progress import Progress, ProgressOption, shown
+from percute.pictures.surface import view
 from percute.steps import Steps
 
 if TYPE_CHECKING:

@@ -17,6 +17,7 @@ from percute.errors import InputError
 from percute.mesh_arrays import MeshArrays
 from percute.mesh_files import is_gmsh, read_foreign, tell_of_mesh, write_foreign
 from percute.statement import Vector, vector_of
+from percute.words import counted
 
 __all__ = ["Mesh"]
 

@@ -221,11 +221,12 @@ impl<const D: usize> ContactSurface<D> {
         self.obstacles[self.nodes[at].obstacle].frame_at(&place)
     }
 
-    /// The law of contact at a node. At a guided node the support takes the tangential reaction.
+    /// The law of contact at a node. At a guided node of a plane body the support takes the tangential reaction; that of a
+    /// solid may slide in the other direction, with friction.
     #[inline]
     pub(super) fn law(&self, at: usize) -> Coulomb {
         let contact = &self.nodes[at];
-        if contact.guided { Coulomb::FRICTIONLESS } else { self.obstacles[contact.obstacle].law() }
+        if contact.guided && D < 3 { Coulomb::FRICTIONLESS } else { self.obstacles[contact.obstacle].law() }
     }
 
     /// The surface of the renumbered mesh: nodes and faces in the same order.

@@ -316,7 +316,7 @@ impl TangentialLaw {
     /// One for each node of the contact surface.
     fn of_surface<const D: usize>(problem: &Problem<D>) -> Vec<Self> {
         let law = |contact: &crate::contact::ContactNode| {
-            if !contact.guided {
+            if !contact.guided || D == 3 {
                 return Self::Friction(problem.obstacles()[contact.obstacle].law());
             }
             let moved = problem.prescribed().iter().any(|p| p.node == contact.node && p.motion.is_some());

@@ -5,9 +5,9 @@ use super::boundary::{self, Supports};
 use super::contacts::Stated;
 use super::may_touch::{AllContact, all_contact};
 use super::sides::Bodies;
-use super::{Cause, InputError, Model, Problem, sides, start_of_contact, symmetry};
-use crate::contact::{Interface, Obstacle};
-use crate::ids::{ElementId, FaceId};
+use super::{Cause, InputError, Model, PrescribedComponent, Problem, sides, start_of_contact, symmetry};
+use crate::contact::{ContactSurface, Interface, Obstacle};
+use crate::ids::{ElementId, FaceId, NodeId};
 use crate::load::{BodyForce, Support, Table, Traction};
 use crate::material::{Elastic, Law};
 use crate::mesh::Mesh;
@@ -217,6 +217,7 @@ impl<const D: usize> Builder<D> {
         let contact = Stated { contacts: &self.contacts, automatic: self.automatic && mesh.parts() > 1 };
         let AllContact { surface, interfaces, places, groups } = all_contact(bodies, self.obstacles, contact, &start)?;
         self.stated.interfaces = interfaces;
+        check_moved_along(&surface, &prescribed)?;
         sides::check_touching(&surface, mesh).map_err(|cause| cause.at("contact", None, ""))?;
 
         let model = Model {
@@ -264,6 +265,22 @@ fn check_finite<const D: usize>(
         true => Err(Cause::FiniteGroup.at("obstacle", Some(0), "group")),
         false => Ok(()),
     }
+}
+
+/// Refuses friction of nodes of a solid that a support moves along their plane.
+fn check_moved_along<const D: usize>(
+    surface: &ContactSurface<D>,
+    prescribed: &[PrescribedComponent],
+) -> Result<(), InputError> {
+    let moved = |node: NodeId| prescribed.iter().any(|p| p.node == node && p.motion.is_some());
+    let guided = surface.nodes().iter().filter(|contact| D == 3 && contact.guided);
+    for contact in guided.filter(|contact| surface.obstacles()[contact.obstacle].law().friction() > 0.0) {
+        if moved(contact.node) {
+            let cause = Cause::MovedAlong { node: contact.node.index() };
+            return Err(cause.at("obstacle", Some(contact.obstacle), "friction"));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses what solids do not have yet.

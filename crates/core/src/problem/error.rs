@@ -113,6 +113,12 @@ pub enum Cause {
          out, or join them"
     )]
     SolidBodies { bodies: usize },
+    /// A node of a solid that a support moves along a plane with friction.
+    #[error(
+        "node {node} may touch the plane and is moved along it by a support: friction of such a node of a solid is not \
+         solved for; give friction = 0, or take the node out of one of the two groups"
+    )]
+    MovedAlong { node: usize },
     /// A node of a solid at three planes.
     #[error(
         "node {node} faces planes {} and {} too: a node may touch two; give the planes groups of faces that may touch \

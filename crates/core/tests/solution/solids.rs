@@ -6,6 +6,7 @@ use percute_core::dynamics::{critical_time_step, element_time_step, simulate_thr
 use percute_core::history::History;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::kernel::InternalForces;
+use percute_core::load::Support;
 use percute_core::material::{Elastic, LinearLaw};
 use percute_core::mesh::{ElementGroups, FaceGroups, Mesh, Numbering, Strips};
 use percute_core::observer::Unobserved;
@@ -290,4 +291,37 @@ fn threads_change_no_bit() {
     let one = on(1);
     assert!(one.0.reaction().iter().any(|r| *r != 0.0));
     assert!([2, 3, 8].into_iter().all(|threads| on(threads) == one));
+}
+
+/// Half of a box with rollers at its plane of symmetry moves as the half of the whole: friction acts along the plane of
+/// symmetry. The mesh is mirrored, so that both have the same elements.
+#[test]
+fn a_half_with_rollers_is_half_of_the_whole() {
+    let half = random_box([0.02, 0.01, 0.02], [5, 3, 5], 0.25, 11);
+    let (count, points) = (half.node_count(), half.points_in::<3>());
+    let cells: Vec<_> = half.nodes_of::<4>().iter().map(|cell| cell.map(NodeId::index)).collect();
+    // The nodes of the half, and mirror images of those that are not on y = 0.
+    let mut image: Vec<usize> = (0..count).collect();
+    let mut all = points.to_vec();
+    for (node, [x, y, z]) in points.iter().enumerate().filter(|(_, point)| point[1] > 0.0) {
+        image[node] = all.len();
+        all.push([*x, -y, *z]);
+    }
+    let mirrored = cells.iter().map(|cell| cell.map(|node| image[node]));
+    let both: Vec<_> = cells.iter().copied().chain(mirrored).collect();
+    let whole = Mesh::new(all, &both, &FaceGroups::new(), &ElementGroups::new()).unwrap();
+    let builder = |mesh: Mesh| {
+        Problem::<3>::builder(mesh)
+            .material(aluminium())
+            .initial_velocity(Initial::Uniform([4.0, 0.0, -10.0]))
+            .obstacle(Obstacle::plane([0.0, 0.0, -2e-6], [0.0, 0.0, 1.0], 0.3, None).unwrap())
+    };
+    let rollers = Support { group: "front".to_string(), components: [false, true, false], velocity: None };
+    let (half, whole) = (builder(half).support(rollers).build().unwrap(), builder(whole).build().unwrap());
+    let times = grid(&whole, 50);
+    let (one, other) = (run(&half, &times), run(&whole, &times));
+    let expected = &other.displacement(other.last())[..count];
+    assert!(difference(one.displacement(one.last()), expected) < 1e-10 * largest(expected));
+    let slides = one.history.reaction().chunks_exact(3).any(|r| r[0].abs() > 0.1 * r[2] && r[2] > 0.0);
+    assert!(slides, "friction acts");
 }
