@@ -164,7 +164,8 @@ def _feet_in_triangles(corners: Floats, point: Floats) -> Floats:
     gram = np.swapaxes(sides, 1, 2) @ sides
     inner = np.linalg.solve(gram, np.swapaxes(sides, 1, 2) @ (point - corners[:, 0])[..., None])[..., 0]
     shapes = np.clip(np.column_stack([1.0 - inner.sum(axis=1), inner]), 0.0, None)
-    return np.einsum("ij,ijk->ik", shapes / shapes.sum(axis=1, keepdims=True), corners)
+    feet: Floats = np.einsum("ij,ijk->ik", shapes / shapes.sum(axis=1, keepdims=True), corners)
+    return feet
 
 
 def _names(mesh: Mesh) -> str:
@@ -193,8 +194,9 @@ def _sizes(corners: Floats) -> Floats:
     """Give lengths of edges or areas of faces, and 1 for ends of bars."""
     sides = corners[:, 1:] - corners[:, :1]
     if corners.shape[2] == 3:
-        return np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
-    return np.ones(len(corners)) if corners.shape[2] == 1 else np.linalg.norm(sides[:, 0], axis=1)
+        sides = np.cross(sides[:, 0], sides[:, 1])[:, None]
+    sizes: Floats = np.ones(len(corners)) if corners.shape[2] == 1 else np.linalg.norm(sides[:, 0], axis=1)
+    return sizes
 
 
 def _weighted(members: NDArray[Any], sizes: Floats) -> Place:

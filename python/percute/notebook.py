@@ -73,7 +73,8 @@ def _faces(mesh: MeshArrays) -> NDArray[Any]:
     if mesh.dimension < 3:
         return mesh.cells
     faces, _, normals = surface(mesh.points, mesh.cells)
-    return faces[normals @ FROM > 0.0]
+    seen: NDArray[np.int64] = faces[normals @ FROM > 0.0]
+    return seen
 
 
 def _svg(width: float, height: float, body: str) -> str:

@@ -31,7 +31,8 @@ def view(places: Floats) -> Floats:
     towards = FROM / np.linalg.norm(FROM)
     right = np.cross([0.0, 0.0, 1.0], towards)
     right /= np.linalg.norm(right)
-    return places @ np.column_stack([right, np.cross(towards, right), towards])
+    seen: Floats = places @ np.column_stack([right, np.cross(towards, right), towards])
+    return seen
 
 
 def surface(points: Floats, cells: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64], Floats]:
@@ -120,6 +121,6 @@ def _axes(axes: Axes, points: Floats, prefix: str) -> None:
     origin = np.array([left + reach, low + reach])
     for name, way in zip("xyz", view(np.eye(3))[:, :2], strict=True):
         tip = origin + reach * way
-        axes.annotate("", tip, origin, arrowprops={"arrowstyle": "->", "color": "#282830", "linewidth": 0.9})
-        axes.annotate(name, origin + 1.3 * reach * way, ha="center", va="center", color="#282830", fontsize="small")
+        axes.annotate("", tuple(tip), tuple(origin), arrowprops={"arrowstyle": "->", "color": "#282830", "linewidth": 0.9})
+        axes.annotate(name, tuple(origin + 1.3 * reach * way), ha="center", va="center", color="#282830", fontsize="small")
 

@@ -171,9 +171,9 @@ fn lame_error(cells: usize, part: f64) -> f64 {
 #[test]
 fn a_lame_mode_converges_at_order_two() {
     let errors = [6, 12, 24].map(|cells| lame_error(cells, 0.0));
-    assert!((1.7..2.1).contains(&mean_rate(&errors)), "{errors:?}");
+    assert!((1.8..2.1).contains(&mean_rate(&errors[1..])), "{errors:?}");
     let errors = [6, 12, 24].map(|cells| lame_error(cells, 0.2));
-    assert!((1.7..2.1).contains(&mean_rate(&errors)), "{errors:?}");
+    assert!((1.8..2.1).contains(&mean_rate(&errors[1..])), "{errors:?}");
 }
 
 /// A box that strikes a plane obliquely.
