@@ -62,7 +62,8 @@ impl MeshData {
         made(py, move || (0..times).try_fold(Mesh::clone(&mesh), |mesh, _| mesh.refined()))
     }
 
-    /// The mesh with the chosen elements cut into halves (a bar), quarters or eighths, and the neighbours that must be cut.
+    /// The mesh with the chosen elements cut into halves (a bar), quarters or eighths, and the neighbours that must be
+    /// cut.
     fn refined_where(&self, py: Python<'_>, chosen: Vec<bool>) -> PyResult<Self> {
         let mesh = self.mesh.clone();
         made(py, move || mesh.refined_where(|e| chosen[e.index()]))

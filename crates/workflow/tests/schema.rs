@@ -96,8 +96,8 @@ fn the_names_are_those_of_the_readers() {
     let cut = "mesh = { rectangle = { width = 1, height = 1, nx = 1, ny = 1, diagonals = \"none\" } }";
     assert_eq!(names("/$defs/mesh/properties/rectangle/properties/diagonals/enum"), refusal(cut, "must be ", '"'));
     let axis = "support = { group = \"boundary\", components = [\"w\"] }\n\
-                material = { young = 1, density = 1, poisson = 0, plane = \"strain\" }\n\
-                mesh = { disc = { radius = 1, rings = 1 } }";
+                material = { young = 1, density = 1, poisson = 0 }\n\
+                mesh = { ball = { radius = 1, rings = 1 } }";
     assert_eq!(names("/$defs/support/properties/components/items/enum"), refusal(axis, "must be ", '`'));
 }
 

@@ -6,7 +6,8 @@ use crate::mesh::Strips;
 use crate::problem::Problem;
 use crate::simd::{Eight, Registers};
 
-/// The stiffness of a bar or a plane body, applied element by element. Its scaled gradients are valid for linear laws only.
+/// The stiffness of a bar or a plane body, applied element by element. Its scaled gradients are valid for linear laws
+/// only.
 ///
 /// The sweep goes over pairs of elements that share a face: a pair has four nodes to read and write where two
 /// triangles have six. First all even strips are swept, then all odd ones.

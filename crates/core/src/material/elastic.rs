@@ -22,7 +22,8 @@ pub enum Hypothesis {
 /// A Hooke law σ = λ tr ε 1 + 2G ε in the dimension of the mesh, with density and the extent of
 /// the body across the mesh.
 ///
-/// A bar is the case λ = 0, 2G = E; plane stress and plane strain differ in λ only, and a solid has that of plane strain.
+/// A bar is the case λ = 0, 2G = E; plane stress and plane strain differ in λ only, and a solid has that of plane
+/// strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Elastic {
     hypothesis: Hypothesis,
@@ -261,7 +262,8 @@ impl Law for Elastic {
         self.present(&law.respond(&self.finite(law), gradient).0, gradient)
     }
 
-    /// σ_zz of a solid. Where nothing moves across: λ tr ε in plane strain, λ ln J/J or, of Saint Venant–Kirchhoff, λ tr E/J.
+    /// σ_zz of a solid. Where nothing moves across: λ tr ε in plane strain, λ ln J/J or, of Saint Venant–Kirchhoff,
+    /// λ tr E/J.
     fn stress_across<const D: usize>(&self, gradient: &Tensor<D>) -> f64 {
         let trace = |strain: &Tensor<D>| (0..D).map(|a| strain[a][a]).sum::<f64>();
         match (self.hypothesis, self.kinematics) {

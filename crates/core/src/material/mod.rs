@@ -54,8 +54,8 @@ pub trait Law {
     /// Density ρ (kg/m³).
     fn density(&self) -> f64;
 
-    /// Section (m²) of a bar, thickness (m) of a plane body, 1 of a solid. It turns a length or an area of the mesh into a
-    /// volume, and a face into an area.
+    /// Section (m²) of a bar, thickness (m) of a plane body, 1 of a solid. It turns a length or an area of the mesh
+    /// into a volume, and a face into an area.
     fn extent(&self) -> f64;
 
     /// Largest wave speed in the undeformed body, in the dimension of the mesh (m/s).

@@ -78,8 +78,8 @@ pub enum MeshError {
     NonManifoldFace { nodes: Vec<usize>, elements: Vec<usize> },
     /// Two elements on the same side of a face.
     #[error(
-        "elements {} and {} lie on the same side of their common edge or face: they overlap, or one is there twice; leave \
-         one out",
+        "elements {} and {} lie on the same side of their common edge or face: they overlap, or one is there twice; \
+         leave one out",
         .elements[0], .elements[1]
     )]
     Overlap { elements: [usize; 2] },

@@ -38,14 +38,14 @@ fn icosahedron_faces() -> Vec<[usize; 3]> {
     faces
 }
 
-/// Nodes that are made where they are first asked for.
-struct Nodes {
+/// WeightedNodes that are made where they are first asked for.
+struct WeightedNodes {
     /// By the weights of corners, each with the number of the corner.
     known: BTreeMap<Vec<(usize, usize)>, usize>,
     points: Vec<[f64; 3]>,
 }
 
-impl Nodes {
+impl WeightedNodes {
     /// The node with these weights, at a place that is worked out for a new one.
     fn at(&mut self, weights: [(usize, usize); 3], place: impl FnOnce(&[(usize, usize)]) -> [f64; 3]) -> usize {
         let mut key: Vec<(usize, usize)> = weights.into_iter().filter(|(_, weight)| *weight > 0).collect();
@@ -113,8 +113,8 @@ impl Mesh {
         Self::new(points, &tetrahedra, &groups, &ElementGroups::new())
     }
 
-    /// A cylinder of this radius and height (m) on the plane z = 0 around the axis z: [`Mesh::disc`] with so many rings,
-    /// in so many layers. Its surface is the groups `bottom`, `top` and `side`.
+    /// A cylinder of this radius and height (m) on the plane z = 0 around the axis z: [`Mesh::disc`] with so many
+    /// rings, in so many layers. Its surface is the groups `bottom`, `top` and `side`.
     ///
     /// # Errors
     /// A length that is not positive, no rings or no layers.
@@ -162,7 +162,7 @@ impl Mesh {
         let elements = 20 * rings.pow(3);
         room(elements)?;
         let corners = icosahedron();
-        let mut nodes = Nodes { known: BTreeMap::new(), points: Vec::new() };
+        let mut nodes = WeightedNodes { known: BTreeMap::new(), points: Vec::new() };
         let place = |weights: &[(usize, usize)]| {
             let ring: usize = weights.iter().map(|(_, weight)| weight).sum();
             let sum: [f64; 3] = std::array::from_fn(|c| {

@@ -166,8 +166,8 @@ fn lone_advice(dimension: usize, groups: &[String]) -> &'static str {
              `Mesh.SaveAll = 0`"
         }
         (false, 3) => {
-            "percute takes no plane bodies beside solids; in Gmsh, take the surface out of its group, or, where it should \
-             bound a volume, join the two by `Coherence;` (OpenCASCADE: `BooleanFragments`)"
+            "percute takes no plane bodies beside solids; in Gmsh, take the surface out of its group, or, where it \
+             should bound a volume, join the two by `Coherence;` (OpenCASCADE: `BooleanFragments`)"
         }
         (true, _) => {
             "a mesh cannot have triangles and bars; in Gmsh, delete the curve, or save without it by `Mesh.SaveAll = 0`"

@@ -43,7 +43,8 @@ const SCALES: RangeInclusive<f64> = 1e-12..=1e12;
 /// were measured.
 const RAW: u64 = 8;
 
-/// A mesh from a file: of lines along x, of triangles in a plane z = const, or of tetrahedra. Its import warnings list omitted parts.
+/// A mesh from a file: of lines along x, of triangles in a plane z = const, or of tetrahedra. Its import warnings list
+/// omitted parts.
 #[derive(Clone, Debug)]
 pub struct MeshFile {
     /// The mesh: nodes and elements in the order of their tags in the file.

@@ -106,7 +106,8 @@ impl Kept {
                 [_, true] => "it lies in a plane y = const: `Rotate {{1,0,0},{0,0,0},-Pi/2} {Surface{:};}` turns it",
                 [true, _] => "it lies in a plane x = const: `Rotate {{0,1,0},{0,0,0},Pi/2} {Surface{:};}` turns it",
                 _ => {
-                    "if this is the surface of a solid, mesh its volume by `gmsh -3` and save it, by `Physical Volume` if there are physical groups"
+                    "if this is the surface of a solid, mesh its volume by `gmsh -3` and save it, by `Physical \
+                     Volume` if there are physical groups"
                 }
             };
             let cause = match shape {

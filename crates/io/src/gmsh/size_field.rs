@@ -11,7 +11,8 @@ use std::path::Path;
 const EDGES: [(f64, char); 3] = [(1.0, 'L'), (1.519_671_371_303_185_5, 'T'), (2.039_648_902_655_505_6, 'S')];
 
 /// Writes sizes of elements at the nodes of a mesh (m), completely or not at all: elements with the length of edges at
-/// their corners. A size is the root of the area of an element, or the cube root of its volume; lengths and places are in units of `scale` metres.
+/// their corners. A size is the root of the area of an element, or the cube root of its volume; lengths and places are
+/// in units of `scale` metres.
 ///
 /// # Errors
 /// A file that cannot be created or exists already.

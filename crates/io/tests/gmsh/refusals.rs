@@ -21,7 +21,7 @@ fn mistakes_in_a_mesh_are_named_with_their_line_and_tags() {
         ("1 1 \"foot\"", "1 1 foot", &["a dimension, a tag and a name in quotes"], "1 1 foot"),
         ("90 2 30 4\n2 2 2 1", "90 2 30 4\n2 2 3 1", &["element 50 is a quadrangle", "Mesh.RecombineAll = 0"], "50"),
         ("2 2 2 1", "2 2 9 1", &["element 50 is a triangle of higher order", "Mesh.ElementOrder = 1"], "50"),
-        ("2 2 2 1", "2 2 4 1", &["element 50 is a tetrahedron", "gmsh -2"], "50"),
+        ("2 2 2 1", "2 2 5 1", &["element 50 is a hexahedron", "gmsh -3"], "50"),
         ("2 2 2 1", "2 2 99 1", &["element 50 is a hexahedron of higher order"], "50"),
         ("2 2 2 1", "2 2 77777 1", &["an element of another kind (Gmsh's type 77777)"], "50"),
         ("50 2 9 4", "50 2 9 5", &["element 50 names node 5, which is not in $Nodes"], "50"),

@@ -79,8 +79,8 @@ fn other_kinds_and_layouts() {
     assert_says(&spoilt(|f| attribute(f, "layout", 1)), &["layout 1", "reads 2 only", "simulate or estimate again"]);
     assert_says(&spoilt(|f| attribute(f, "layout", -3)), &["`percute.layout`", "there is no layout -3"]);
     assert_says(
-        &spoilt(|f| attribute(f, "dimension", 3)),
-        &["`percute.dimension`", "3 is not a known dimension", "1 (bars) or 2"],
+        &spoilt(|f| attribute(f, "dimension", 4)),
+        &["`percute.dimension`", "4 is not a known dimension", "1 (bars), 2 (triangles) or 3"],
     );
     assert_says(
         &spoilt(|f| f.group("percute").unwrap().delete_attr("layout").unwrap()),

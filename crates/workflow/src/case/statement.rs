@@ -26,7 +26,8 @@ pub enum NotRepresentable {
     /// A law for a body of another dimension.
     #[error(
         "material {index} is a law for {law}, but the mesh has {dimension} dimension(s): a case file gives a bar \
-         `section` and a plane body `plane`; make it with Elastic::bar (1), plane_stress, plane_strain (2) or solid (3)",
+         `section` and a plane body `plane`; make it with Elastic::bar (1), plane_stress, plane_strain (2) or solid \
+         (3)",
         law = law_name(*.hypothesis)
     )]
     Law {
