@@ -1,7 +1,8 @@
 //! The elements: all that depends on the dimension.
 //!
 //! [`Cell`] is written once for each kind: [`Bar`], [`Triangle`] and [`Tetrahedron`]. A mesh stores its
-//! [`CellKind`]; code that exists for some kinds only matches on it, so that a new kind does not compile before each of these matches has its case.
+//! [`CellKind`]; code that exists for some kinds only matches on it, so that a new kind does not compile before each of
+//! these matches has its case.
 
 mod bar;
 mod tetrahedron;

@@ -153,8 +153,8 @@ impl<const D: usize> Across<D> {
         [0, 1].map(|c| vector.get(c).copied().unwrap_or(0.0))
     }
 
-    /// The forces of both parts along the edge (N) that stop a node of this mass over h (kg/s) there, or slow it down as
-    /// far as the cones of parts with these forces allow, in proportion to what each has left.
+    /// The forces of both parts along the edge (N) that stop a node of this mass over h (kg/s) there, or slow it down
+    /// as far as the cones of parts with these forces allow, in proportion to what each has left.
     fn friction_along(
         &self,
         parts: &[ForcePart; 2],

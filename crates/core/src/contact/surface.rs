@@ -221,8 +221,8 @@ impl<const D: usize> ContactSurface<D> {
         self.obstacles[self.nodes[at].obstacle].frame_at(&place)
     }
 
-    /// The law of contact at a node. At a guided node of a plane body the support takes the tangential reaction; that of a
-    /// solid may slide in the other direction, with friction.
+    /// The law of contact at a node. At a guided node of a plane body the support takes the tangential reaction; that of
+    /// a solid may slide in the other direction, with friction.
     #[inline]
     pub(super) fn law(&self, at: usize) -> Coulomb {
         let contact = &self.nodes[at];

@@ -3,8 +3,8 @@
 use super::{ElementGroups, FaceRows, Mesh, MeshError, Parts};
 
 impl Mesh {
-    /// Builds and checks a mesh of bars (dimension 1), triangles (2) or tetrahedra (3), from coordinates (m), nodes of the
-    /// elements and groups, in rows: [`Mesh::new`].
+    /// Builds and checks a mesh of bars (dimension 1), triangles (2) or tetrahedra (3), from coordinates (m), nodes of
+    /// the elements and groups, in rows: [`Mesh::new`].
     ///
     /// # Errors
     /// As [`Mesh::new`].

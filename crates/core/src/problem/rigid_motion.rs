@@ -54,8 +54,8 @@ impl RigidMotion {
         Self { dimension: D, masses, arms, of_node, mass, inertia }
     }
 
-    /// How far each body turns in a field of displacements (rad) or of velocities (rad/s): counterclockwise in the plane,
-    /// about any axis and positive in a solid, and 0 on bars.
+    /// How far each body turns in a field of displacements (rad) or of velocities (rad/s): counterclockwise in the
+    /// plane, about any axis and positive in a solid, and 0 on bars.
     #[must_use]
     pub fn rotations(&self, field: &[f64]) -> Vec<f64> {
         let size = |turned: &Vector| if self.dimension == 3 { dot(turned, turned).sqrt() } else { turned[2] };
