@@ -221,7 +221,7 @@ impl<const D: usize> ContactSurface<D> {
         self.obstacles[self.nodes[at].obstacle].frame_at(&place)
     }
 
-    /// The law of contact at a node. At a guided node of a plane body the support takes the tangential reaction; that of
+    /// The law of contact at a node. At a guided node of a plane body the support takes the tangential reaction; one of
     /// a solid may slide in the other direction, with friction.
     #[inline]
     pub(super) fn law(&self, at: usize) -> Coulomb {
