@@ -14,7 +14,7 @@ from percute import _percute
 from percute.immutable import Immutable
 from percute.words import counted
 
-__all__ = ["MeshArrays", "boundary"]
+__all__ = ["MeshArrays", "boundary", "elements"]
 
 
 class MeshArrays(Immutable):
@@ -32,16 +32,6 @@ class MeshArrays(Immutable):
     def dimension(self) -> int:
         """1 for bars, 2 for triangles, 3 for tetrahedra."""
         return self._data.dimension
-
-    @property
-    def kind(self) -> str:
-        """The elements: "bar", "triangle" or "tetrahedron"."""
-        return ("bar", "triangle", "tetrahedron")[self.dimension - 1]
-
-    @property
-    def face(self) -> str:
-        """A part of the boundary of an element: "end" of a bar, "edge" of a triangle or "face" of a tetrahedron."""
-        return ("end", "edge", "face")[self.dimension - 1]
 
     @cached_property
     def points(self) -> NDArray[np.float64]:
@@ -123,12 +113,18 @@ class MeshArrays(Immutable):
         return hash(((self.points + 0.0).tobytes(), self.cells.tobytes()))
 
     def __repr__(self) -> str:
-        elements = f"{len(self.cells)} tetrahedra" if self.dimension == 3 and len(self.cells) != 1 else counted(len(self.cells), self.kind)
-        return f"<percute.Mesh: {elements}, {counted(len(self.points), 'node')}>"
+        return f"<percute.Mesh: {elements(self)}, {counted(len(self.points), 'node')}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         groups = (dict(self.face_groups), dict(self.element_groups), None) if self.dimension < 3 else (None, dict(self.element_groups), dict(self.face_groups))
         return type(self), (self.points.copy(), self.cells.copy(), *groups)
+
+
+def elements(mesh: MeshArrays) -> str:
+    """Tell the number of elements of a mesh, with their name."""
+    if mesh.dimension == 3 and len(mesh.cells) != 1:
+        return f"{len(mesh.cells)} tetrahedra"
+    return counted(len(mesh.cells), ("bar", "triangle", "tetrahedron")[mesh.dimension - 1])
 
 
 def _same_groups(first: Mapping[str, NDArray[np.int64]], second: Mapping[str, NDArray[np.int64]]) -> bool:

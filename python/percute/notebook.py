@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from percute.mesh_arrays import MeshArrays, boundary
+from percute.mesh_arrays import MeshArrays, boundary, elements
 from percute.pictures.body import Scale, scale_of
 from percute.pictures.canvas import prefixed
 from percute.pictures.surface import FROM, surface, view
@@ -37,11 +37,10 @@ def page(kind: str, rows: Rows, picture: str) -> str:
 
 def mesh_rows(mesh: MeshArrays) -> Rows:
     """Tell the numbers of elements and nodes, the size, and the groups."""
-    kind = mesh.kind
     factor, prefix = prefixed(mesh.points)
     sides = " × ".join(f"{side:.4g}" for side in np.ptp(mesh.points, axis=0) / factor)
-    rows = [("mesh", f"{counted(len(mesh.cells), kind)}, {counted(len(mesh.points), 'node')}"), ("size", f"{sides} {prefix}m")]
-    for name, groups in ((f"{mesh.face} groups", mesh.face_groups), ("element groups", mesh.element_groups)):
+    rows = [("mesh", f"{elements(mesh)}, {counted(len(mesh.points), 'node')}"), ("size", f"{sides} {prefix}m")]
+    for name, groups in (("face groups" if mesh.dimension == 3 else "edge groups", mesh.face_groups), ("element groups", mesh.element_groups)):
         if groups:
             rows.append((name, ", ".join(f"{group} ({len(members)})" for group, members in groups.items())))
     return rows

@@ -19,7 +19,7 @@ from percute.words import counted
 
 __all__ = ["BodyForce", "Elastic", "Plane", "Support", "Traction"]
 
-AXES = """"x", "y" (of a solid also "z") or, for both, ("x", "y")"""
+AXES = """"x", "y", "z" or several, as in ("x", "y")"""
 """The components that a support may have."""
 
 Vector = tuple[float, ...]
@@ -181,7 +181,7 @@ class Support:
     group : str
         Name of the group.
     components : str or sequence of str
-        Axes of the prescribed components: ``"x"``, ``"y"`` or both.
+        Axes of the prescribed components: ``"x"``, ``"y"`` or both; of a solid also ``"z"``.
     velocity : (components,) or (instants, components) floats, optional
         Prescribed velocity (m/s), constant, or with a row for each instant of ``time``, in the order of ``components``.
         Without it they are fixed.
@@ -200,7 +200,7 @@ class Support:
         if not isinstance(given, Iterable):
             raise wrong("components", given, AXES)
         components = tuple(text("components", name) for name in given)
-        if not components or not set(components) <= {"x", "y"}:
+        if not components or not set(components) <= {"x", "y", "z"}:
             raise wrong("components", self.components, AXES)
         if len(set(components)) < len(components):
             raise InputError(f"`components` is {components!r}; it must not name an axis twice")

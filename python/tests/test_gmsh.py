@@ -139,9 +139,10 @@ def bad_order() -> None:
     gmsh.model.mesh.setOrder(2)
 
 
-def bad_solid() -> None:
-    gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
+def bad_bricks() -> None:
+    gmsh.model.addPhysicalGroup(3, [gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)], name="body")
     gmsh.model.occ.synchronize()
+    gmsh.model.mesh.setTransfiniteAutomatic(recombine=True)
     gmsh.model.mesh.generate(3)
 
 
@@ -185,7 +186,7 @@ def bad_truss() -> None:
     [
         (bad_quads, "Mesh.RecombineAll = 0"),
         (bad_order, "Mesh.ElementOrder = 1"),
-        (bad_solid, "gmsh -2"),
+        (bad_bricks, "gmsh -3"),
         (bad_shell, "not in a plane z = const"),
         (bad_partition, "Mesh > Unpartition"),
         (bad_groups, "Physical Surface"),

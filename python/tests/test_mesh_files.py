@@ -170,7 +170,7 @@ def test_what_meshlane_finds_is_checked(tmp_path: Path) -> None:
     assert mesh.reoriented_elements == 1
     for points, cells, phrase in [
         (places[:4], [("quad", np.array([[0, 1, 2, 3]]))], "'quad'; percute takes 3-node triangles"),
-        (places[:4], [("vertex", np.array([[0]]))], "neither triangles nor lines"),
+        (places[:4], [("vertex", np.array([[0]]))], "neither tetrahedra nor triangles nor lines"),
         (places[:4] + np.eye(4, 3, -1), [("triangle", triangles)], "in a plane z = const"),
         (places[:4], [("triangle", np.array([[0, 1, 7]]))], "a node that is not there"),
         (places[:4], [("triangle", np.array([[0, 1, 1]]))], "degenerate"),

@@ -148,7 +148,7 @@ def test_mistakes_in_a_problem(changes: dict[str, Any], message: str) -> None:
     assert isinstance(raised.value, ValueError) and isinstance(raised.value, pc.PercuteError)
 
 
-AXES = """it must be "x", "y" or, for both, ("x", "y")"""
+AXES = """it must be "x", "y", "z" or several, as in ("x", "y")"""
 BOTH: dict[str, Any] = {"components": ("x", "y")}
 
 
@@ -159,7 +159,7 @@ BOTH: dict[str, Any] = {"components": ("x", "y")}
         ({"components": "xy"}, f"`components` is 'xy'; {AXES}"),
         ({"components": "xy", "velocity": (0.0, 1.0)}, f"`components` is 'xy'; {AXES}"),
         ({"components": ["x,y"], "velocity": (0.0, 1.0)}, f"`components` is ['x,y']; {AXES}"),
-        ({"components": "z"}, f"`components` is 'z'; {AXES}"),
+        ({"components": "w"}, f"`components` is 'w'; {AXES}"),
         ({"components": ("X",)}, f"`components` is ('X',); {AXES}"),
         ({"components": ()}, f"`components` is (); {AXES}"),
         ({**BOTH, "velocity": 1.0}, "`velocity` has 1 number; it must have 2 numbers, one for each of `components`, x, y"),

@@ -229,7 +229,7 @@ def test_references_that_do_not_fit_are_refused(block_history: pc.History, bar_h
         block_history.error(pc.simulate(block(16, 12), end=5e-6, courant=0.9))
     with pytest.raises(pc.InputError, match="does not lie in one element"):
         block_history.error(pc.simulate(block(9, 7), end=13e-6, courant=0.9))
-    with pytest.raises(pc.InputError, match="of a bar"):
+    with pytest.raises(pc.InputError, match="of another dimension"):
         block_history.error(bar_history)
     with pytest.raises(pc.InputError, match="`nested` is 1; it must be True or False"):
         block_history.error(block_history, nested=1)  # type: ignore[arg-type]

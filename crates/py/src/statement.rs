@@ -56,29 +56,20 @@ pub(crate) fn material(name: &str, given: &Bound<'_, PyAny>, dimension: usize) -
     let stated: [Option<f64>; 3] =
         [attribute(given, "tangent")?, attribute(given, "hardening")?, attribute(given, "kinematic")?];
     let yielding = |law: Elastic| law.with_yielding(yield_stress, stated)?.with_kinematics(kinematics);
+    let of_plane = [("plane", plane.is_some()), ("thickness", thickness != 1.0)];
+    let only_without = |other: (&str, bool), body: &str| {
+        let there = of_plane.into_iter().chain([other]).find(|(_, there)| *there);
+        there.map_or(Ok(()), |(key, _)| Err(bad(key, &format!("does not apply to {body}"))))
+    };
     if dimension == 1 {
-        for (key, there) in
-            [("poisson", poisson.is_some()), ("plane", plane.is_some()), ("thickness", thickness != 1.0)]
-        {
-            if there {
-                return Err(bad(key, "does not apply to a bar; give a `section` (m²)"));
-            }
-        }
+        only_without(("poisson", poisson.is_some()), "a bar; give a `section` (m²)")?;
         let section = section.ok_or_else(|| bad("section", "is missing: a bar needs it (m²)"))?;
         let law = Elastic::bar(young, density, section);
         return law.and_then(yielding).map_err(refused);
     }
     if dimension == 3 {
-        for (key, there) in
-            [("section", section.is_some()), ("plane", plane.is_some()), ("thickness", thickness != 1.0)]
-        {
-            if there {
-                return Err(bad(
-                    key,
-                    "does not apply to a solid, which is whole in all three dimensions; leave it out",
-                ));
-            }
-        }
+        let whole = "a solid, which is whole in all three dimensions; leave it out";
+        only_without(("section", section.is_some()), whole)?;
         let poisson = poisson.ok_or_else(|| bad("poisson", "is missing: a solid needs it"))?;
         return Elastic::solid(young, poisson, density).and_then(yielding).map_err(refused);
     }
