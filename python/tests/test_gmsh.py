@@ -186,7 +186,7 @@ def bad_truss() -> None:
     [
         (bad_quads, "Mesh.RecombineAll = 0"),
         (bad_order, "Mesh.ElementOrder = 1"),
-        (bad_bricks, "gmsh -3"),
+        (bad_bricks, "Recombine Surface"),
         (bad_shell, "not in a plane z = const"),
         (bad_partition, "Mesh > Unpartition"),
         (bad_groups, "Physical Surface"),
