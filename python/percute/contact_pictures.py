@@ -28,6 +28,7 @@ def plot_contact(contact: ContactResults, colour: str, axes: Sequence[Axes] | No
     file = writable("save", save, overwrite)
     one_of("colour", colour, ("status", "pressure"))
     _check(contact)
+    _has_line(contact)
     panels = _panels(axes, 1 + len(contact._names))
     _draw_forces(panels[0], contact)
     for plane, panel in zip(contact._names, panels[1:], strict=True):
@@ -52,6 +53,7 @@ def plot_force(contact: ContactResults, axes: Axes | None, save: object, overwri
 def plot_pressure(contact: ContactResults, plane: int | None, axes: Axes | None, save: object, overwrite: object) -> Axes:
     """Draw the pressure along the surface over time; of a bar, the pressure of its end."""
     file, results = writable("save", save, overwrite), _check(contact)
+    _has_line(results)
     if plane is None:
         chosen = max(results._names, key=lambda k: results.obstacles[k].normal_force.max(initial=0.0))
     else:
@@ -65,6 +67,12 @@ def plot_pressure(contact: ContactResults, plane: int | None, axes: Axes | None,
         _draw_zone(axes, results, chosen, "pressure")
     save_figure(root(axes), file)
     return axes
+
+
+def _has_line(contact: ContactResults) -> None:
+    """Refuse the surface of a solid, which is not a line."""
+    if contact.mesh.dimension == 3:
+        raise InputError("the zone of contact over time is drawn along the line of a plane body; of a solid, export the pressure for ParaView, or plot_force()")
 
 
 def _draw_ends(axes: Axes, contact: ContactResults, plane: int) -> None:
@@ -110,6 +118,10 @@ def _draw_forces(axes: Axes, contact: ContactResults) -> None:
             force = resultants.force @ along / factor
             label = f"tangential ({axis}){of}" if len(axis) == 1 else f"tangential{of}"
             axes.plot(contact.time / seconds, force, line, color="tab:red", label=label)
+        if contact.mesh.dimension == 3:
+            normal = contact.normals[contact.obstacle == plane][0]
+            aside = resultants.force - (resultants.force @ normal)[:, None] * normal
+            axes.plot(contact.time / seconds, np.linalg.norm(aside, axis=1) / factor, line, color="tab:red", label=f"tangential, size{of}")
     axes.set_ylabel(f"force of contact ({prefix}{unit('N', contact.per_metre)})")
     axes.margins(x=0.0)
     axes.grid(alpha=0.3)

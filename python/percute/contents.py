@@ -12,7 +12,7 @@ from percute._percute import unit
 from percute.checks import wrong
 from percute.mesh_arrays import MeshArrays
 
-AXES = ("x", "y")
+AXES = ("x", "y", "z")
 
 
 class Quantity(NamedTuple):

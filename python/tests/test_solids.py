@@ -175,6 +175,12 @@ def test_files_and_resumed_runs_have_the_same_bits(tmp_path: Path) -> None:
     assert np.allclose(history.pressure(-1), -mean, rtol=1e-12, atol=1e-3)
     deviator = history.stress(-1) - mean[:, None, None] * np.eye(3)
     assert np.allclose(history.von_mises(-1), np.sqrt(1.5 * np.einsum("eij,eij->e", deviator, deviator)), rtol=1e-12)
+    # λ = √(1 + 2E): products of all three are the ratio of the volumes.
+    stretches, strain = history.principal_stretches(-1), history.strain(-1)
+    assert stretches.shape == (384, 3) and np.all(np.diff(stretches, axis=1) <= 0)
+    assert np.allclose(stretches.prod(axis=1) - 1, np.trace(strain, axis1=1, axis2=2), rtol=0, atol=3 * np.abs(strain).max() ** 2 + 1e-12)
+    assert {"x", "y", "z"} <= set(history.to_xarray().coords["component"].values.tolist())
+    assert "displacement_z" in history.to_pandas("nodes").columns
     with pytest.raises(pc.PercuteError, match="error of solids is not estimated"):
         pc.estimate(stored)
 
@@ -187,6 +193,11 @@ def test_pictures_show_the_surface(tmp_path: Path) -> None:
         # About half of the 320 faces are seen.
         assert 120 < len(drawn.get_paths()) < 200
     history.animate(tmp_path / "ball.gif", frames=2)
+    history.plot_force(save=tmp_path / "force.png")
+    with pytest.raises(pc.InputError, match="drawn along the line of a plane body"):
+        history.plot_pressure()
+    with pytest.raises(pc.InputError, match="drawn along the line of a plane body"):
+        history.contact.plot()
 
 
 def refused(what: str, **others: Any) -> None:

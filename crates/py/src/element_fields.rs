@@ -4,7 +4,10 @@ use crate::bridge::Watch;
 use crate::problem::ProblemData;
 use crate::{bridge, errors};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
-use percute_core::element_state::{ElementState, first_piola_stress, kinetic_energy, principal_stretches};
+use percute_core::border::vectors;
+use percute_core::element_state::{
+    ElementState, displacement_gradient, first_piola_stress, kinetic_energy, principal_stretches, principal_values,
+};
 use percute_core::ids::ElementId;
 use percute_core::problem::AnyProblem;
 use pyo3::prelude::*;
@@ -74,9 +77,7 @@ fn quantity_of(quantity: &str) -> Option<(Numbers, usize)> {
         "strain" => (|p, e, at, to| to.extend(tensor(p, &state(p, e, at).strain)), 2),
         "stress" => (|p, e, at, to| to.extend(tensor(p, &state(p, e, at).stress)), 2),
         "first_piola" => (|p, e, [u, internal], to| to.extend(tensor(p, &first_piola_stress(p, e, u, internal))), 2),
-        "principal_stretches" => {
-            (|p, e, [u, _], to| to.extend(principal_stretches(p, e, u).into_iter().take(p.dimension())), 1)
-        }
+        "principal_stretches" => (|p, e, [u, _], to| to.extend(stretches(p, e, u)), 1),
         "stress_across" => (|p, e, at, to| to.push(state(p, e, at).stress_across), 0),
         "von_mises" => (|p, e, at, to| to.push(state(p, e, at).von_mises()), 0),
         "pressure" => (|p, e, at, to| to.push(state(p, e, at).pressure()), 0),
@@ -87,6 +88,21 @@ fn quantity_of(quantity: &str) -> Option<(Numbers, usize)> {
         "kinetic_energy" => (|p, e, [v, _], to| to.push(kinetic_energy(p, e, v)), 0),
         _ => return None,
     })
+}
+
+/// The principal stretches, the larger first: of a solid the roots of the eigenvalues of FᵀF.
+fn stretches(problem: &AnyProblem, element: ElementId, displacement: &[f64]) -> Vec<f64> {
+    let AnyProblem::D3(solid) = problem else {
+        return principal_stretches(problem, element, displacement)[..problem.dimension()].to_vec();
+    };
+    let gradient = displacement_gradient::<3>(solid.mesh(), element, vectors(displacement));
+    let right: [[f64; 3]; 3] = std::array::from_fn(|a| {
+        std::array::from_fn(|b| {
+            let products: f64 = (0..3).map(|c| gradient[c][a] * gradient[c][b]).sum();
+            f64::from(u8::from(a == b)) + gradient[a][b] + gradient[b][a] + products
+        })
+    });
+    principal_values(&right).into_iter().rev().map(f64::sqrt).collect()
 }
 
 fn state(problem: &AnyProblem, element: ElementId, [displacement, internal]: [&[f64]; 2]) -> ElementState {
