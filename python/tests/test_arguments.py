@@ -173,7 +173,7 @@ TABLE: list[tuple[Callable[..., object], str, tuple[Any, ...]]] = [
     (Calls.plane, "friction", (None, *NO_NUMBERS)),
     (Calls.plane, "group", NO_TEXTS),
     (Calls.support, "group", (None, *NO_TEXTS)),
-    (Calls.support, "components", (None, 3, [3], ["x", "x"], b"x", "xy", "z", ())),
+    (Calls.support, "components", (None, 3, [3], ["x", "x"], b"x", "xy", "w", ())),
     (Calls.support, "velocity", NO_ARRAYS),
     (Calls.support, "time", NO_ARRAYS),
     (Calls.traction, "group", (None, *NO_TEXTS)),
