@@ -162,7 +162,7 @@ def test_a_ball_rebounds_as_hertz_says() -> None:
     assert 0.9 < rebound.restitution < 1.0
 
 
-def test_files_and_resumed_runs_have_the_same_bits(tmp_path: Path) -> None:
+def test_files_have_the_same_bits(tmp_path: Path) -> None:
     problem = dropped(pc.Mesh.box((0.02, 0.02, 0.02), cells=(4, 4, 4)))
     history = pc.simulate(problem, end=10e-6, courant=0.9)
     pc.simulate(problem, end=10e-6, courant=0.9, store=tmp_path / "a.vtkhdf")
