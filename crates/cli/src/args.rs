@@ -35,7 +35,7 @@ pub(crate) const PLOT_NEEDS_PYTHON: &str = "`percute plot` needs the Python pack
     pip install \".[plot]\" in the source folder. Its command `percute` draws the pictures. \
     `percute run` draws the error map with --picture, without Python";
 
-/// Simulates elastic impacts and estimates the error of the simulation.
+/// Simulates impacts of bodies that are elastic or yield, and estimates the error of the simulation.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "percute", version, after_help = EXIT_CODES)]
 pub struct Arguments {
@@ -229,8 +229,8 @@ pub struct VerifyArguments {
     #[arg(long, value_name = "N", default_value_t = 2)]
     pub levels: usize,
     /// Follow a field at a point (m) of the undeformed body, such as 0.01,0.02:von_mises, and show its largest value
-    /// over time, without its sign, on each mesh: von_mises, pressure, displacement, velocity; of a plane body
-    /// stress_xx, stress_yy, stress_xy; of a bar stress. Once for each probe
+    /// over time, without its sign, on each mesh: von_mises, pressure, equivalent_plastic_strain, displacement,
+    /// velocity; of a plane body stress_xx, stress_yy, stress_xy; of a bar stress. Once for each probe
     #[arg(long, value_name = "X,Y:FIELD", allow_hyphen_values = true)]
     pub probe: Vec<String>,
     /// Print one JSON document instead of the table

@@ -17,7 +17,7 @@ const FILE: &str = "results.csv";
 struct Quantity(&'static str, &'static str, &'static str);
 
 /// In the order of the table.
-const QUANTITIES: [Quantity; 41] = [
+const QUANTITIES: [Quantity; 45] = [
     Quantity("relative_sup", "", "/error/relative_sup"),
     Quantity("relative_mean", "", "/error/relative_mean"),
     Quantity("sup", "J^½", "/error/sup"),
@@ -49,6 +49,10 @@ const QUANTITIES: [Quantity; 41] = [
     Quantity("normal_before", "m/s", "/rebound/normal_before"),
     Quantity("normal_after", "m/s", "/rebound/normal_after"),
     Quantity("restitution", "", "/rebound/restitution"),
+    Quantity("yielded_share", "", "/deformation/yielding/share"),
+    Quantity("stress_ratio", "", "/deformation/yielding/stress_ratio"),
+    Quantity("equivalent_plastic_strain", "", "/deformation/yielding/equivalent_strain"),
+    Quantity("plastic_work", "J", "/balance/plastic_work"),
     Quantity("energy_drift", "", "/balance/energy_drift"),
     Quantity("largest_residual", "", "/largest_residual/value"),
     Quantity("nodes", "", "/problem/nodes"),

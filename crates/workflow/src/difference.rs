@@ -78,7 +78,9 @@ impl Sides {
     /// A difference in words.
     pub(crate) fn differ(&self, path: &str, one: &dyn Display, other: &dyn Display) -> String {
         let [first, second] = self.names;
-        format!("{path} is {one} in {first} and {other} in {second}")
+        // Statements have H alone, and a case may have E_t.
+        let of_tangent = if path.ends_with("hardening") { " (H = E E_t/(E − E_t) of a `tangent` E_t)" } else { "" };
+        format!("{path}{of_tangent} is {one} in {first} and {other} in {second}")
     }
 }
 
@@ -129,6 +131,12 @@ mod tests {
         assert_eq!(OF_RUN.of_statements(one, one, true), None);
         for (from, to, words) in [
             ("70e9", "71e9", "[[material]] 1, young is 71000000000.0 in this case and 70000000000.0 in the history"),
+            (
+                "70e9",
+                "70e9\nhardening = 7e9",
+                "[[material]] 1, hardening (H = E E_t/(E − E_t) of a `tangent` E_t) is 7000000000.0 in this case \
+                 and missing in the history",
+            ),
             (
                 "\"stress\"",
                 "\"strain\"",

@@ -1,6 +1,7 @@
 //! Histories in files: with the statement of their problem in the language of the case files.
 
 use crate::case::{CaseError, Keep, NotRepresentable, Source, problem_from, statement};
+use crate::deformation::StoredFlow;
 use crate::failure::Failure;
 use crate::foreign::{Derived, Lacks, Origin, REVERSED, runs_backwards};
 use crate::grade::{self, Graded};
@@ -12,8 +13,8 @@ use percute_core::observer::Observer;
 use percute_core::problem::AnyProblem;
 use percute_core::time::TimeGrid;
 use percute_estimator::{EstimateError, Options, RunError};
-use percute_io::Case;
 use percute_io::history::{HistoryFile, Plan};
+use percute_io::{Case, FileError};
 use std::path::Path;
 
 /// The file that will hold the history of a problem, with the options that its estimate takes unless
@@ -92,10 +93,21 @@ impl Stored {
         let (problem, options) = read.map_err(|error| if backwards(&file) { reversed(error) } else { error })?;
         if problem.yields() && file.variables() == 0 {
             let told = "a material of this history yields, but the file has no internal variables \
-                        (`VTKHDF/CellData/plastic`); leave `hardening` out of its statement, or simulate with percute";
+                        (`VTKHDF/CellData/plastic`); leave `tangent` or `hardening` out of its statement, or simulate \
+                        with percute";
             return Err(Failure::Argument(format!("{name}: {told}")));
         }
         Ok(Self { file, problem, options, name })
+    }
+
+    /// The plastic flow at its last instant; none where no material yields, or of a history without instants.
+    ///
+    /// # Errors
+    /// Internal variables that cannot be read.
+    pub fn flow(&self) -> Result<Option<StoredFlow>, FileError> {
+        let Some(last) = self.file.count().checked_sub(1).filter(|_| self.problem.yields()) else { return Ok(None) };
+        let (time, internal) = (self.file.times().instants()[last], self.file.plastic(last..last + 1)?);
+        Ok(StoredFlow::new(&self.problem, time, &internal))
     }
 
     /// Where it comes from; none if percute simulated it.

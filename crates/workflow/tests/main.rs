@@ -11,3 +11,4 @@ mod schema;
 mod seeds;
 mod statement;
 mod verdict;
+mod yielding;

@@ -25,7 +25,8 @@ pub struct ExportArguments {
     #[arg(long, value_name = "TIMES", value_parser = times)]
     pub times: Option<Times>,
     /// Fields, separated by commas, of displacement, velocity, acceleration, reaction, stress, von_mises, pressure,
-    /// error [default: displacement, velocity, reaction, stress, von_mises, and error with --estimate]
+    /// equivalent_plastic_strain, error [default: displacement, velocity, reaction, stress, von_mises,
+    /// equivalent_plastic_strain where a material yields, and error with --estimate]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub fields: Option<Vec<String>>,
     /// An estimate file of this history: adds the error of each element

@@ -35,7 +35,7 @@ fn read(file: &Path, console: &mut Console<'_>) -> Result<Info, Failure> {
         // The reader of histories says what a stranger holds instead.
         Kind::History | Kind::OtherHdf5 => {}
     }
-    Ok(of_history(&open(file)?))
+    Ok(of_history(&open(file)?)?)
 }
 
 /// Writes the tables of a history or an estimate file.

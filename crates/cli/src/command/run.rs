@@ -3,6 +3,7 @@
 use super::outputs::{begin_history, check};
 use super::result::{Finished, give};
 use super::resume::{Left, go_on, left};
+use super::simulate::flow_in;
 use super::{Console, case};
 use crate::args::{MapArguments, RunArguments, WorkArguments};
 use crate::exit::INTERRUPTED;
@@ -83,7 +84,8 @@ fn results(
             if simulation.interrupted {
                 // An estimate of all steps until there would take long; standard output has results only.
                 let seconds = start.elapsed().as_secs_f64();
-                console.say(simulated(&case.subject(), &simulation, file, seconds).trim_end());
+                let flow = flow_in(file);
+                console.say(simulated(&case.subject(), &simulation, (file, flow.as_ref()), seconds).trim_end());
                 console.say_to_estimate(file);
                 return Ok(Break(INTERRUPTED));
             }

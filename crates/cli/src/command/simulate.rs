@@ -7,7 +7,9 @@ use crate::args::SimulateArguments;
 use crate::exit::{DONE, INTERRUPTED};
 use crate::progress::Watch;
 use percute_workflow::Failure;
+use percute_workflow::deformation::StoredFlow;
 use percute_workflow::effort::Long;
+use percute_workflow::history::open;
 use percute_workflow::outputs::{OutputFile, chosen};
 use percute_workflow::report::{drifted, reported, simulated};
 use percute_workflow::run::{self, Outcome, Storage, located};
@@ -51,8 +53,15 @@ pub(super) fn command(arguments: &SimulateArguments, console: &mut Console<'_>) 
     if !quiet {
         console.warn(&drifted(simulation.balance.energy_drift, case.times.varies()));
     }
-    let told = console.print(&simulated(&case.subject(), &simulation, history.file, start.elapsed().as_secs_f64()));
+    let (flow, seconds) = (flow_in(history.file), start.elapsed().as_secs_f64());
+    let told = console.print(&simulated(&case.subject(), &simulation, (history.file, flow.as_ref()), seconds));
     console.but_lost(unstored, told.map(|()| if simulation.interrupted { INTERRUPTED } else { DONE }))
+}
+
+/// The plastic flow at the end of a history. A file whose last steps could not be stored may lack it; its failure is
+/// told.
+pub(super) fn flow_in(history: &Path) -> Option<StoredFlow> {
+    open(history).ok()?.flow().ok()?
 }
 
 /// The name of the case with another ending, in the working directory.

@@ -117,6 +117,10 @@ fn only_what_may_be_absent_is_null() {
             // A material of the whole mesh has no group, one without a yield stress no share above it.
             ".deformation.materials.group",
             ".deformation.materials.yielding",
+            ".deformation.yielding",
+            ".verdict.elastic_margin",
+            // Nothing yields.
+            ".deformation.bodies.permanent_strain",
             // The history is of percute.
             ".consistency",
             ".samples",

@@ -9,6 +9,7 @@ mod numbers;
 mod place;
 mod reproduce;
 mod verdict;
+mod yielding;
 
 pub use crate::chart::Surface;
 pub use about::About;
@@ -54,6 +55,7 @@ pub fn page(contents: &Contents<'_>, folder: &Path) -> String {
         error::over_time(document),
         error::sources(document),
         contact::section_of(contents),
+        yielding::section(document),
         model::balance(document),
         model::section_of(contents),
         reproduce::section(contents, folder),
@@ -111,6 +113,30 @@ mod tests {
         let stored = about(r#""case": "runs/their.vtkhdf", "consistency": {}"#);
         assert!(stored.contains("percute estimate their.vtkhdf --reconstruction corrected --every 2"), "{stored}");
         assert!(stored.contains("another program simulated it"), "{stored}");
+    }
+
+    #[test]
+    fn yielding_has_its_places() {
+        let page = |materials: &str| {
+            let bodies = r#"[{"name": "body 0", "permanent_strain": [-0.01, 0.004, 0.0]}]"#;
+            let of = format!(r#""deformation": {{"bodies": {bodies}, "materials": [{materials}]}}"#);
+            shown(&format!(r#"{{"error": {{"sup": 1.5}}, {of}}}"#), None)
+        };
+        let stress = r#""von_mises": {"value": 3.2e8, "element": 1, "centroid": [0.25, 0.5], "time": 2e-6}"#;
+        let plastic = r#"{"equivalent_strain": {"value": 0.02, "element": 0, "centroid": [0.5, 0.125], "time": 3e-6},
+            "mean_equivalent_strain": 0.005}"#;
+        let first = r#""first": 1e-6, "first_place": {"element": 1, "centroid": [0.25, 0.5]}"#;
+        let yielding = format!(
+            r#"{{"group": "rib", {stress}, "yielding": {{"yield_stress": 3e8, "stress_ratio": 1.0667, "share": 0.5,
+            {first}, "plastic": {plastic}}}}}"#
+        );
+        let told = page(&yielding);
+        let words = ["<h2>Yielding</h2>", "Material of “rib”", "107\u{a0}%", "(0.25, 0.5)", "(0.5, 0.125)", "-0.01"];
+        for words in words {
+            let plain = words.replace('\u{a0}', " ");
+            assert!(told.contains(words) || told.contains(&plain), "{words}: {told}");
+        }
+        assert!(!shown(r#"{"error": {"sup": 1.5}}"#, None).contains("Yielding"));
     }
 
     #[test]

@@ -155,7 +155,7 @@ fn stated(statement: &str) -> String {
 
 fn key_with_unit(name: &str) -> String {
     let unit = match name {
-        "young" => " (Pa)",
+        "young" | "yield_stress" | "tangent" | "hardening" => " (Pa)",
         "density" => " (kg/m³)",
         "thickness" => " (m)",
         "section" => " (m²)",

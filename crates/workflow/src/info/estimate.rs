@@ -1,7 +1,7 @@
 //! What an estimate file holds.
 
 use super::{Info, writer};
-use crate::message::{bytes, counted, short, trimmed};
+use crate::message::{bytes, counted, percent, short, trimmed};
 use crate::report::summary::counts;
 use crate::report::{FORMAT, Versions, units_of};
 use percute_io::Provenance;
@@ -60,9 +60,22 @@ impl EstimateInfo {
             let norm = units_of(&self.report).of("J^½");
             lines.push(("error", format!("sup {} {norm}, mean {} {norm}", short(sup, 4), short(mean, 4))));
         }
+        lines.extend(self.yielded().map(|yielded| ("yielded", yielded)));
         let uses = "percute report writes its page, percute plot draws it, percute.open reads it in Python";
         lines.push(("use", uses.to_string()));
         lines
+    }
+
+    /// How much yielded, or how near it is to yielding; nothing without a yield stress.
+    fn yielded(&self) -> Option<String> {
+        let found = &self.report["deformation"]["yielding"];
+        let (share, ratio) = (found["share"].as_f64()?, found["stress_ratio"].as_f64()?);
+        let stress = format!("stress at most {} of the yield stress", percent(ratio));
+        Some(match found["equivalent_strain"].as_f64() {
+            _ if share == 0.0 => format!("nothing: {stress}"),
+            Some(strain) => format!("{} of the volume, plastic strain at most {}", percent(share), percent(strain)),
+            None => format!("{stress}, above it in {} of the volume", percent(share)),
+        })
     }
 
     /// The maps of the elements at chosen instants.

@@ -10,6 +10,7 @@ pub use mesh::{GroupInfo, MeshInfo, of_mesh};
 pub use setting::{MaterialInfo, PlaneInfo};
 
 use crate::case::{Case, FIELDS, NotRepresentable, Output};
+use crate::deformation::StoredFlow;
 use crate::effort::{Effort, duration};
 use crate::history::{Stored, plan};
 use crate::memory;
@@ -19,7 +20,7 @@ use crate::report::summary::{body, layout, step};
 use crate::report::{FORMAT, ProblemSummary, Versions};
 use percute_core::time::TimeGrid;
 use percute_estimator::Supplied;
-use percute_io::Provenance;
+use percute_io::{FileError, Provenance};
 use serde::Serialize;
 
 /// What a file holds.
@@ -73,10 +74,12 @@ pub struct HistoryInfo {
     pub checksums: bool,
     pub case: Option<String>,
     pub problem: ProblemSummary,
+    pub materials: Vec<MaterialInfo>,
     pub planes: Vec<PlaneInfo>,
     pub time: TimeInfo,
     pub steps: Option<usize>,
     pub complete: bool,
+    pub yielding: Option<StoredFlow>,
     pub supplied: Supplied,
     pub stored: Option<StoredInfo>,
     pub bytes: u64,
@@ -179,11 +182,13 @@ pub fn of_case(case: &Case) -> Result<Info, NotRepresentable> {
 }
 
 /// What a history holds.
-#[must_use]
-pub fn of_history(stored: &Stored) -> Info {
+///
+/// # Errors
+/// Internal variables of its last instant that cannot be read.
+pub fn of_history(stored: &Stored) -> Result<Info, FileError> {
     let (file, problem, subject) = (&stored.file, &stored.problem, stored.subject());
     let [velocity, acceleration] = file.supplied();
-    Info::History(Box::new(HistoryInfo {
+    Ok(Info::History(Box::new(HistoryInfo {
         format: FORMAT,
         versions: Versions::of_this_program(),
         file: stored.name.clone(),
@@ -194,15 +199,17 @@ pub fn of_history(stored: &Stored) -> Info {
         checksums: file.has_checksums(),
         case: file.case().map(|case| case.name.clone()),
         problem: problem_summary(&subject),
+        materials: setting::materials(problem),
         planes: setting::planes(problem),
         time: TimeInfo::new(file.thinned_steps().map_or(file.times(), |kept| &kept.times), subject.critical_step),
         steps: file.count().checked_sub(1).map(|last| file.thinned_steps().map_or(last, |kept| kept.steps[last])),
         stored: file.thinned_steps().map(|_| stored_info(stored)),
         complete: file.is_complete(),
+        yielding: stored.flow()?,
         supplied: Supplied { velocity, acceleration },
         bytes: file.bytes(),
         estimate_memory: percute_estimator::memory(problem, file.times(), &stored.options) as u64,
-    }))
+    })))
 }
 
 impl Info {
@@ -267,6 +274,7 @@ impl HistoryInfo {
         }
         lines.extend(self.case.as_ref().map(|case| ("case", case.clone())));
         lines.push(("body", body(&self.problem)));
+        lines.extend(self.materials.iter().map(MaterialInfo::line));
         lines.extend(self.planes.iter().map(PlaneInfo::line));
         lines.extend(self.time.lines());
         let held = self.steps.map_or_else(|| "no step".to_string(), |steps| counted(steps, "step"));
@@ -285,6 +293,7 @@ impl HistoryInfo {
             }
         };
         lines.push(("holds", format!("{held} of {} planned; {ended}", self.time.steps_planned)));
+        lines.extend(self.yielding.as_ref().map(StoredFlow::line));
         if let Some(StoredInfo { instants, fields }) = &self.stored {
             lines.push(("keeps", format!("{} only: {}", counted(*instants, "instant"), fields.join(", "))));
         }

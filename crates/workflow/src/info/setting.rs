@@ -1,6 +1,6 @@
 //! What a case is about: materials, and planes and other bodies with their gaps, so that a slip shows before the run.
 
-use crate::message::{counted, trimmed};
+use crate::message::{counted, percent, trimmed};
 use percute_core::contact::{Interface, contact_name, side_names};
 use percute_core::material::Law;
 use percute_core::problem::AnyProblem;
@@ -14,6 +14,11 @@ pub struct MaterialInfo {
     pub young: f64,
     pub density: f64,
     pub wave_speed: f64,
+    pub yield_stress: Option<f64>,
+    /// Of a law with plasticity: the slope of the uniaxial stress over the strain beyond the yield stress (Pa).
+    pub tangent: Option<f64>,
+    /// The share of its hardening that is kinematic.
+    pub kinematic: Option<f64>,
 }
 
 /// A plane at the start, or two surfaces of different bodies.
@@ -39,6 +44,9 @@ pub(super) fn materials(problem: &AnyProblem) -> Vec<MaterialInfo> {
         young: law.young(),
         density: law.density(),
         wave_speed: law.wave_speed(),
+        yield_stress: law.yield_stress(),
+        tangent: law.hardening().map(|hardening| hardening.tangent(law.young())),
+        kinematic: law.hardening().map(|hardening| hardening.kinematic()),
     });
     told.collect()
 }
@@ -66,7 +74,17 @@ impl MaterialInfo {
     pub(super) fn line(&self) -> (&'static str, String) {
         let of = self.group.as_ref().map_or_else(String::new, |group| format!(" of \"{group}\""));
         let [young, density, speed] = [self.young, self.density, self.wave_speed].map(|x| trimmed(x, 4));
-        ("material", format!("E {young} Pa, density {density} kg/m³, waves {speed} m/s{of}"))
+        let yields =
+            self.yield_stress.map_or_else(String::new, |stress| format!(", yield stress {} Pa", trimmed(stress, 4)));
+        let beyond = match (self.yield_stress, self.tangent, self.kinematic) {
+            (Some(_), Some(tangent), Some(kinematic)) => {
+                let kinematic = (kinematic > 0.0).then(|| format!(", {} kinematic", percent(kinematic)));
+                format!(" with tangent {} Pa{}", trimmed(tangent, 4), kinematic.unwrap_or_default())
+            }
+            (Some(_), ..) => " for the verdict alone".to_string(),
+            _ => String::new(),
+        };
+        ("material", format!("E {young} Pa, density {density} kg/m³, waves {speed} m/s{yields}{beyond}{of}"))
     }
 }
 

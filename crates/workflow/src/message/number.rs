@@ -8,6 +8,12 @@ pub fn percent(fraction: f64) -> String {
     format!("{} %", rounded(100.0 * fraction, 3))
 }
 
+/// The same of a number that may be negative.
+#[must_use]
+pub fn signed_percent(fraction: f64) -> String {
+    format!("{}{}", if fraction < 0.0 { "−" } else { "" }, percent(fraction.abs()))
+}
+
 /// Things by their numbers, five at most, such as `node 3` or `nodes 3, 7 and 12 more`.
 #[must_use]
 pub fn numbered(thing: &str, numbers: &[usize]) -> String {

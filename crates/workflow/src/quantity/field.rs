@@ -33,11 +33,13 @@ pub enum Field {
     Displacement,
     /// Magnitude of the velocity.
     Velocity,
+    /// Equivalent plastic strain p.
+    PlasticStrain,
 }
 
 impl Field {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::VonMises,
         Self::Pressure,
         Self::Stress,
@@ -49,6 +51,7 @@ impl Field {
         Self::StressXz,
         Self::Displacement,
         Self::Velocity,
+        Self::PlasticStrain,
     ];
 
     /// Its name.
@@ -66,6 +69,7 @@ impl Field {
             Self::StressXz => "stress_xz",
             Self::Displacement => "displacement",
             Self::Velocity => "velocity",
+            Self::PlasticStrain => "equivalent_plastic_strain",
         }
     }
 
@@ -73,6 +77,7 @@ impl Field {
     pub(super) fn told(self) -> &'static str {
         match self {
             Self::VonMises => "von Mises stress",
+            Self::PlasticStrain => "equivalent plastic strain",
             other => other.name(),
         }
     }
@@ -83,13 +88,14 @@ impl Field {
         match self {
             Self::Displacement => "m",
             Self::Velocity => "m/s",
+            Self::PlasticStrain => "1",
             _ => "Pa",
         }
     }
 
-    /// Whether it follows from the stress.
-    pub(super) fn is_stress(self) -> bool {
-        self.unit() == "Pa"
+    /// Whether it has no limit at a corner where the stress has none.
+    pub(super) fn grows_at_corners(self) -> bool {
+        self.unit() == "Pa" || self == Self::PlasticStrain
     }
 
     /// Whether bodies of a dimension have it.
@@ -112,21 +118,22 @@ impl Field {
     /// Its value at a point, with its sign: the mean of the elements that contain the point, by their shares.
     pub(super) fn at(self, problem: &AnyProblem, around: &[Around], state: &State<'_>) -> f64 {
         let Step { displacement, internal, .. } = *state.step();
-        let stress = |of: fn(&ElementState) -> f64| -> f64 {
+        let mean = |of: fn(&ElementState) -> f64| -> f64 {
             let value = |a: &Around| a.share * of(&ElementState::new(problem, a.element, displacement, internal));
             around.iter().map(value).sum()
         };
         match self {
-            Self::VonMises => stress(ElementState::von_mises),
-            Self::Pressure => stress(ElementState::pressure),
-            Self::Stress | Self::StressXx => stress(|element| element.stress[0][0]),
-            Self::StressYy => stress(|element| element.stress[1][1]),
-            Self::StressXy => stress(|element| element.stress[0][1]),
-            Self::StressZz => stress(|element| element.stress[2][2]),
-            Self::StressYz => stress(|element| element.stress[1][2]),
-            Self::StressXz => stress(|element| element.stress[0][2]),
+            Self::VonMises => mean(ElementState::von_mises),
+            Self::Pressure => mean(ElementState::pressure),
+            Self::Stress | Self::StressXx => mean(|element| element.stress[0][0]),
+            Self::StressYy => mean(|element| element.stress[1][1]),
+            Self::StressXy => mean(|element| element.stress[0][1]),
+            Self::StressZz => mean(|element| element.stress[2][2]),
+            Self::StressYz => mean(|element| element.stress[1][2]),
+            Self::StressXz => mean(|element| element.stress[0][2]),
             Self::Displacement => magnitude(problem, around, displacement),
             Self::Velocity => magnitude(problem, around, &state.velocity()),
+            Self::PlasticStrain => mean(|element| element.equivalent_plastic_strain),
         }
     }
 }

@@ -49,9 +49,9 @@ pub(super) fn of_force(report: &Report) -> Option<Obstruction> {
     }
 }
 
-/// That of the stress at a point.
+/// That of the stress or the plastic strain at a point.
 pub(super) fn of_probe(probe: &Probe, mesh: &Mesh) -> Option<Obstruction> {
-    let point = probe.place(mesh).filter(|_| probe.field().is_stress())?;
+    let point = probe.place(mesh).filter(|_| probe.field().grows_at_corners())?;
     let away = |node: &NodeId| distance(&mesh.point(*node), &point);
     let corner = mesh.corners_above(PI + CORNER).into_iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
     let (place, distance) = (mesh.point(corner)[..mesh.dimension()].to_vec(), away(&corner));

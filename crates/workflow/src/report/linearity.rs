@@ -3,7 +3,7 @@
 //! studies/finite.py compares with the motion of finite strains: see docs/verdict.md.
 
 use crate::deformation::{BodyDeformation, Deformation, Extreme, MaterialStress, PlasticFlow, Yielding};
-use crate::message::{percent, short, trimmed};
+use crate::message::{percent, short, signed_percent, trimmed, vector};
 use percute_core::problem::SMALL_ROTATION;
 
 /// Principal strains above the first limit trust, above the second one trust is low: a linear strain neglects half of
@@ -21,6 +21,9 @@ const LEAST: f64 = 1e-3;
 const OF_YOUNG: f64 = 0.01;
 /// Materials of a smaller modulus (Pa) are no metals: polymers and rubber bear more.
 const METALS: f64 = 1e10;
+
+/// Parts of a strain below this part of the largest are rounding of sums over its elements.
+const ROUNDING: f64 = 1e-9;
 
 /// How far a run is from what the linear theory supposes.
 #[derive(Clone, Debug)]
@@ -75,8 +78,9 @@ impl Linearity {
         let bodies = deformation.bodies.iter().filter(|_| !finite);
         let turned = bodies.filter_map(turned).max_by(|a, b| a.angle.total_cmp(&b.angle));
         let materials = &deformation.materials;
-        let stress = stress(materials, finite).or_else(|| flow(materials));
-        let plastic = materials.iter().any(|material| material.yielding.is_some_and(|found| found.plastic.is_some()));
+        let stress = stress(materials, finite).or_else(|| flow(deformation));
+        let plastic =
+            materials.iter().any(|material| material.yielding.as_ref().is_some_and(|found| found.plastic.is_some()));
         let yielded = flows(materials).map(|(_, _, flow)| flow.tangent_ratio).reduce(f64::min);
         Self { strain: deformation.strain(), turned, stress, finite, yielded, plastic }
     }
@@ -112,25 +116,58 @@ fn place(material: &MaterialStress) -> String {
 }
 
 /// The materials that yielded, by a law with plasticity.
-fn flows(materials: &[MaterialStress]) -> impl Iterator<Item = (&MaterialStress, Yielding, PlasticFlow)> {
+fn flows(materials: &[MaterialStress]) -> impl Iterator<Item = (&MaterialStress, &Yielding, &PlasticFlow)> {
     materials.iter().filter_map(|material| {
-        let yielding = material.yielding.filter(|yielding| yielding.share > 0.0)?;
-        Some((material, yielding, yielding.plastic?))
+        let yielding = material.yielding.as_ref().filter(|yielding| yielding.share > 0.0)?;
+        Some((material, yielding, yielding.plastic.as_ref()?))
     })
 }
 
-/// The plastic flow of the material with the largest plastic strain, in a sentence.
-fn flow(materials: &[MaterialStress]) -> Option<String> {
-    let largest = flows(materials).max_by(|a, b| a.2.equivalent_strain.value.total_cmp(&b.2.equivalent_strain.value));
-    let (material, yielding, PlasticFlow { equivalent_strain: strain, .. }) = largest?;
+/// That with the largest plastic strain.
+pub(super) fn largest_flow(materials: &[MaterialStress]) -> Option<(&MaterialStress, &Yielding, &PlasticFlow)> {
+    flows(materials).max_by(|a, b| a.2.equivalent_strain.value.total_cmp(&b.2.equivalent_strain.value))
+}
+
+/// The plastic flow of the material with the largest plastic strain, and the strain that it leaves, in a sentence.
+fn flow(deformation: &Deformation) -> Option<String> {
+    let (material, yielding, PlasticFlow { equivalent_strain: strain, .. }) = largest_flow(&deformation.materials)?;
     Some(format!(
-        "{} of {} yielded, first at {} s; the plastic strain is at most {}, in element {}.",
+        "{} of {} yielded, first at {}; the plastic strain is at most {}, in {}{}.",
         percent(yielding.share),
         place(material),
-        trimmed(yielding.first.unwrap_or_default(), 4),
+        first(yielding),
         percent(strain.value),
-        strain.element
+        element(strain.element, &strain.centroid),
+        kept(&deformation.bodies)
     ))
+}
+
+/// The first instant and element beyond the yield stress.
+fn first(yielding: &Yielding) -> String {
+    let time = trimmed(yielding.first.unwrap_or_default(), 4);
+    let place = yielding.first_place.as_ref();
+    place.map_or_else(|| format!("{time} s"), |at| format!("{time} s in {}", element(at.element, &at.centroid)))
+}
+
+/// An element with its centroid (m).
+pub(super) fn element(number: usize, centroid: &[f64]) -> String {
+    format!("element {number} at {} m", vector(centroid, 3))
+}
+
+/// The mean strain that remains of the body with the largest, behind a semicolon.
+fn kept(bodies: &[BodyDeformation]) -> String {
+    let largest = |strain: &[f64]| strain.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
+    let kept = bodies.iter().filter_map(|body| Some((body, body.permanent_strain.as_ref()?)));
+    let Some((body, strain)) = kept.max_by(|a, b| largest(a.1).total_cmp(&largest(b.1))) else { return String::new() };
+    let subject = if bodies.len() > 1 { format!("{:?}", body.name) } else { "the body".to_string() };
+    let least = ROUNDING * largest(strain);
+    let told =
+        |(along, part): (&str, f64)| format!("{} {along}", signed_percent(if part.abs() > least { part } else { 0.0 }));
+    let parts = match strain[..] {
+        [xx, yy, xy] => [("along x", xx), ("along y", yy), ("in shear", xy)].map(told).join(", "),
+        _ => told(("along it", strain[0])),
+    };
+    format!("; free and at rest, {subject} would keep a mean strain of {parts}")
 }
 
 /// 1/cos θ − 1 ≈ θ²/2: by how much a body grows whose nodes leave their arcs along tangents.
@@ -142,19 +179,20 @@ pub(super) fn growth(angle: f64) -> f64 {
 fn stress(materials: &[MaterialStress], finite: bool) -> Option<String> {
     let law = if finite { "elastic" } else { "linear" };
     let yields = materials.iter().filter_map(|material| {
-        let yielding = material.yielding.filter(|yielding| yielding.share > 0.0 && yielding.plastic.is_none())?;
+        let beyond = |yielding: &&Yielding| yielding.share > 0.0 && yielding.plastic.is_none();
+        let yielding = material.yielding.as_ref().filter(beyond)?;
         Some((yielding.share, yielding, material))
     });
     let largest =
         |of: &Extreme| format!("{} Pa in element {} at {} s", short(of.value, 3), of.element, trimmed(of.time, 4));
     if let Some((share, yielding, material)) = yields.max_by(|a, b| a.0.total_cmp(&b.0)) {
         return Some(format!(
-            "The law is {law}, but the von Mises stress is above the yield stress of {} Pa in {} of {}, first at {} \
-             s; it is at most {}.",
+            "The law is {law}, but the von Mises stress is above the yield stress of {} Pa in {} of {}, first at {}; \
+             it is at most {}.",
             short(yielding.yield_stress, 3),
             percent(share),
             place(material),
-            trimmed(yielding.first.unwrap_or_default(), 4),
+            first(yielding),
             largest(&material.von_mises)
         ));
     }

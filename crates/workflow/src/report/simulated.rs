@@ -3,13 +3,20 @@
 use super::Subject;
 use super::build::problem_summary;
 use super::summary::{body, drift, energy, layout, step};
+use crate::deformation::StoredFlow;
 use crate::message::{bytes, counted, short, trimmed};
 use percute_core::dynamics::Simulation;
 use std::path::Path;
 
-/// The summary of a run that is not estimated, with the file of its history and the time it took (s).
+/// The summary of a run that is not estimated, with the file of its history, the plastic flow at its end, and the time
+/// it took (s).
 #[must_use]
-pub fn simulated(subject: &Subject<'_>, simulation: &Simulation, file: &Path, seconds: f64) -> String {
+pub fn simulated(
+    subject: &Subject<'_>,
+    simulation: &Simulation,
+    (file, flow): (&Path, Option<&StoredFlow>),
+    seconds: f64,
+) -> String {
     let (times, balance) = (subject.times, &simulation.balance);
     let (steps, planned) = (simulation.steps, times.step_count());
     let reached = trimmed(times.instants()[steps], 5);
@@ -20,13 +27,15 @@ pub fn simulated(subject: &Subject<'_>, simulation: &Simulation, file: &Path, se
     let size =
         std::fs::metadata(file).map_or_else(|_| "which is no longer there".to_string(), |found| bytes(found.len()));
     let (version, seconds) = (env!("CARGO_PKG_VERSION"), short(seconds, 3));
-    layout(&[
+    let mut lines = vec![
         ("case", format!("{} (percute {version}, {seconds} s)", subject.name)),
         ("body", body(&problem_summary(subject))),
         ("time", time),
         ("", step(times.longest_step(), subject.critical_step)),
         ("energy", energy(balance, subject.problem.units())),
         ("drift", drift(balance)),
-        ("history", format!("{}, {size}", file.display())),
-    ])
+    ];
+    lines.extend(flow.map(StoredFlow::line));
+    lines.push(("history", format!("{}, {size}", file.display())));
+    layout(&lines)
 }

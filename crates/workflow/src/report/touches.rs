@@ -180,6 +180,12 @@ impl<'a> Surface<'a> {
         (!lengths.is_empty()).then(|| (mean, self.problem.material(element)))
     }
 
+    /// The nodes that touch at a corner of the outline.
+    pub(super) fn touched_corners(&self) -> impl Iterator<Item = NodeId> {
+        let touched = (0..self.first_touch.len()).filter(|&at| self.first_touch[at].is_some());
+        touched.filter(|&at| self.turn(at) > CORNER).map(|at| self.node(at))
+    }
+
     fn node(&self, at: usize) -> NodeId {
         self.problem.contact_nodes()[at].node
     }

@@ -77,7 +77,8 @@ fn probes(verification: &Verification) -> Vec<String> {
     let mut lines = Vec::new();
     for (at, each) in verification.convergence.iter().skip(3).enumerate() {
         let Convergence { quantity, unit, .. } = each;
-        lines.push(format!("probe {quantity} in {unit}, the largest over time without its sign:"));
+        let unit = if unit == "1" { String::new() } else { format!(" in {unit}") };
+        lines.push(format!("probe {quantity}{unit}, the largest over time without its sign:"));
         let values = verification.levels.iter().filter_map(|level| level.probes.get(at));
         let values: String = values.map(|probe| format!("{:>11}", trimmed(probe.value, 4))).collect();
         lines.push(values);

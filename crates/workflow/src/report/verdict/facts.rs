@@ -3,16 +3,18 @@
 use super::onset::Onset;
 use super::uneven::Uneven;
 use crate::deformation::Deformation;
-use crate::foreign::{Checked, Contradiction, by_a_penalty, is_off_contact, off_contact};
+use crate::foreign::{Checked, Consistency, Contradiction, by_a_penalty, is_off_contact, off_contact};
 use crate::plan::{Basis, Recommendation};
 use crate::report::flat::FlatElements;
-use crate::report::linearity::Linearity;
+use crate::report::linearity::{Linearity, largest_flow};
+use crate::report::margin::{ElasticMargin, is_at_corner};
 use crate::report::poor::{PoorElement, poor_elements};
 use crate::report::rebound::Rebound;
 use crate::report::symptoms::auxiliary_contact_energy;
 use crate::report::touches::{FirstContact, first_contacts};
 use percute_core::border::Vector;
 use percute_core::contact_results::{ContactResults, Nearest};
+use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::mesh::Mesh;
 use percute_core::problem::AnyProblem;
@@ -48,6 +50,9 @@ pub(in crate::report) struct Facts {
     /// The elements of bad shape that matter most, if they matter.
     pub(super) poor: Vec<PoorElement>,
     pub(super) linearity: Linearity,
+    pub(super) margin: Option<ElasticMargin>,
+    /// Whether the largest plastic strain is at a sharp corner, where it has no limit.
+    pub(super) flows_at_corner: bool,
     /// The gap that is left where nothing has touched, and the last instant (s).
     pub(super) nearest: Option<(Nearest, f64)>,
     pub(super) onset: Onset,
@@ -125,31 +130,30 @@ impl Facts {
         results: &ContactResults,
         beside: FurtherFacts<'_>,
     ) -> Self {
-        let figures = beside.checked.map(|checked| &checked.consistency);
-        let most = results.total.iter().map(|resultant| resultant.in_contact).max().unwrap_or(0);
+        let (deformation, figures) = (beside.deformation, beside.checked.map(|checked| &checked.consistency));
         let wave_speed = problem.materials().iter().map(|m| m.wave_speed()).fold(0.0, f64::max);
         let (size, slenderness) = (size_of_bodies(problem.mesh()), slenderness(problem.mesh()));
-        // Nodes bounce on the springs of a penalty: a release ends when a wave could not cross the body meanwhile.
-        let shortest_release = if figures.is_some_and(by_a_penalty) { slenderness * size / wave_speed } else { 0.0 };
         let (bodies, by_element) = (!problem.conditions().interfaces.is_empty(), &estimate.by_element);
-        let uneven = Uneven::new(problem, by_element, results);
-        let (flat, d) = (FlatElements::new(problem, by_element).is_some(), problem.dimension());
+        let (uneven, d) = (Uneven::new(problem, by_element, results), problem.dimension());
+        let flat = FlatElements::new(problem, by_element).is_some();
         let speed = if bodies { approach(problem) } else { beside.rebound.map(|rebound| -rebound.normal_before) };
         Self {
             dimension: d,
             reconstruction: beside.options.reconstruction,
             acceleration: other_acceleration(beside.options, d),
+            margin: ElasticMargin::new(problem, deformation, estimate, results),
             contact: FirstContact::new(problem, results),
             speed_ratio: speed.map(|speed| without_rounding(speed / wave_speed)),
             courant: beside.courant,
-            elements_in_contact: if d == 1 { most } else { most.saturating_sub(1).max(most.min(1)) },
-            phases: phases(results, APART * size / wave_speed, shortest_release),
+            elements_in_contact: elements_in_contact(d, results),
+            phases: phases(results, APART * size / wave_speed, release(figures, slenderness * size / wave_speed)),
             passages: after_first_touch(results) * wave_speed / size,
             slenderness,
             poor: if flat || uneven.longest > 1.0 { poor_elements(problem.mesh(), by_element) } else { Vec::new() },
             flat,
             uneven,
-            linearity: Linearity::new(beside.deformation, problem.is_finite()),
+            flows_at_corner: flows_at_corner(problem, results, deformation),
+            linearity: Linearity::new(deformation, problem.is_finite()),
             nearest: results.nearest.zip(results.instants.last().copied()),
             onset: Onset::new(problem, results, beside.rebound, speed),
             largest_friction: problem.obstacles().map(|o| o.law().friction()).fold(0.0, f64::max),
@@ -181,6 +185,11 @@ impl Facts {
 }
 
 impl Facts {
+    /// Whether a material yields by a law with plasticity, or may do so on a finer mesh.
+    pub(super) fn may_flow(&self) -> bool {
+        self.linearity.yielded.is_some() || self.margin.as_ref().is_some_and(ElasticMargin::may_flow)
+    }
+
     /// Whether the body that is struck has the mean gaps.
     pub(super) fn acts_late(&self) -> bool {
         self.slides && self.contact.strikes_flat_slave
@@ -190,6 +199,22 @@ impl Facts {
     pub(super) fn is_exact(&self) -> bool {
         self.error.is_zero()
     }
+}
+
+/// The shortest release (s): on the springs of a penalty nodes bounce, for less than a wave `crossing` the body.
+fn release(figures: Option<&Consistency>, crossing: f64) -> f64 {
+    if figures.is_some_and(by_a_penalty) { crossing } else { 0.0 }
+}
+
+/// Edges along which the body touches at one instant, at most.
+fn elements_in_contact(dimension: usize, results: &ContactResults) -> usize {
+    let most = results.total.iter().map(|resultant| resultant.in_contact).max().unwrap_or(0);
+    if dimension == 1 { most } else { most.saturating_sub(1).max(most.min(1)) }
+}
+
+fn flows_at_corner(problem: &AnyProblem, results: &ContactResults, deformation: &Deformation) -> bool {
+    let element = largest_flow(&deformation.materials).map(|(_, _, flow)| flow.equivalent_strain.element);
+    element.is_some_and(|element| is_at_corner(problem, results, ElementId::new(element)))
 }
 
 fn other_acceleration(options: Options, dimension: usize) -> Option<Acceleration> {

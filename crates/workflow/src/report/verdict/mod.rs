@@ -10,7 +10,7 @@ mod uneven;
 
 pub(super) use facts::{Facts, FurtherFacts};
 
-use super::{PoorElement, Touches};
+use super::{ElasticMargin, PoorElement, Touches};
 use crate::plan::Recommendation;
 use percute_estimator::Parts;
 use rules::Rule;
@@ -47,7 +47,7 @@ pub struct Verdict {
     /// How far the estimate can be trusted.
     pub trust: Trust,
     /// Sentences: first that nothing touched, if that is so; situation and effectivity index; place and parts of the
-    /// error; recommendation; elements to repair; stress beyond the linear law.
+    /// error; recommendation; elements to repair; stress beyond the linear law; margin to yielding.
     pub text: Vec<String>,
     /// Smallest and largest effectivity index (estimate over true error, sup and mean) of such cases in the evidence;
     /// none where such cases are outside the range of all others.
@@ -78,6 +78,8 @@ pub struct Verdict {
     pub not_small: Vec<String>,
     /// The refinement for half the error; none without sources, or where they do not separate.
     pub recommendation: Option<Recommendation>,
+    /// How near the material is to yielding that has not yielded and is nearest; none without a yield stress.
+    pub elastic_margin: Option<ElasticMargin>,
     /// The elements of bad shape with the largest parts of the squared mean error, if such elements matter.
     pub poor_elements: Vec<PoorElement>,
 }
@@ -127,6 +129,7 @@ impl Verdict {
             reasons,
             not_small,
             recommendation: facts.expected.map(|expected| expected.recommendation),
+            elastic_margin: facts.margin.clone(),
             poor_elements: facts.poor.clone(),
         }
     }

@@ -244,15 +244,20 @@ const RULES: [Rule; 31] = [
 ];
 
 /// The indices of bars that yield, studies/yielding, and of plane bodies, studies/random_bodies, yielding.
-const YIELDING: [([f64; 2], &str); 2] = [([0.6, 1.6], "bars that yield"), ([0.5, 1.9], "bodies that yield")];
+const YIELDING: [([f64; 2], [&str; 2]); 2] = [
+    ([0.6, 1.6], ["bars that may yield", "bars that yield"]),
+    ([0.5, 1.9], ["bodies that may yield", "bodies that yield"]),
+];
 
-/// The rule of a run: the first one that applies. Where a material yields, its range has that of such bodies as well.
+/// The rule of a run: the first one that applies. Where a material yields, or the run does not show that it stays
+/// elastic, its range has that of such bodies as well.
 pub(super) fn rule(facts: &Facts) -> Rule {
     let first = RULES.iter().find(|rule| (rule.applies)(facts)).unwrap_or(&RULES[RULES.len() - 1]);
-    if facts.linearity.yielded.is_none() {
+    if !facts.may_flow() {
         return *first;
     }
-    let ([low, high], situation) = YIELDING[facts.dimension - 1];
+    let ([low, high], situations) = YIELDING[facts.dimension - 1];
+    let situation = situations[usize::from(facts.linearity.yielded.is_some())];
     Rule { range: [first.range[0].min(low), first.range[1].max(high)], situation, ..*first }
 }
 

@@ -7,6 +7,7 @@ use crate::foreign::Contradiction;
 use crate::message::{change, percent, short, trimmed, whole_percent};
 use crate::plan::Branch;
 use crate::report::flat;
+use crate::report::margin::ElasticMargin;
 use crate::report::poor::PoorElement;
 use crate::report::symptoms::{AUXILIARY_CONTACT_ENERGY, CONTACT_ENERGY, DRIFT, IMPULSE_RATIO};
 use crate::report::touches::Touches;
@@ -44,9 +45,11 @@ pub(super) fn reasons(facts: &Facts, rule: &Rule) -> Vec<String> {
     let given = facts.auxiliary_contact_energy;
     if given > AUXILIARY_CONTACT_ENERGY {
         let given = whole_percent(given);
-        reasons.push(format!(
-            "contact gives the auxiliary solution {given} of the energy, and the estimate is probably too large"
-        ));
+        let result = match facts.linearity.yielded {
+            Some(_) => "which yields otherwise than the simulation",
+            None => "and the estimate is probably too large",
+        };
+        reasons.push(format!("contact gives the auxiliary solution {given} of the energy, {result}"));
     }
     // Beside a fast common motion, the second is small however large the error is.
     if facts.error.relative_mean > AS_VIBRATION || facts.error.published_relative_mean > AS_LARGE {
@@ -69,7 +72,8 @@ pub(super) fn reasons(facts: &Facts, rule: &Rule) -> Vec<String> {
     reasons
 }
 
-/// The sentences: that nothing touched, situation, place, recommendation, elements to repair, stress.
+/// The sentences: that nothing touched, situation, place, recommendation, elements to repair, stress, margin to
+/// yielding.
 pub(super) fn sentences(
     facts: &Facts,
     rule: &Rule,
@@ -82,7 +86,8 @@ pub(super) fn sentences(
         return nothing_touched(facts).into_iter().chain([exact]).collect();
     }
     let usual = [situation(facts, rule, outside_tested_range), place(facts, shares), recommendation(facts, reasons)];
-    let beside = [repair(&facts.poor), facts.linearity.stress.clone()];
+    let margin = facts.margin.as_ref().map(ElasticMargin::sentence);
+    let beside = [repair(&facts.poor), facts.linearity.stress.clone(), margin];
     nothing_touched(facts).into_iter().chain(usual).chain(beside.into_iter().flatten()).collect()
 }
 
@@ -173,7 +178,13 @@ fn recommendation(facts: &Facts, reasons: &[String]) -> String {
         true if facts.contact.touches != Touches::None => "Split the element in the corner into two elements. ",
         _ => "",
     };
-    let Some(expected) = facts.expected else { return format!("{cut}Refine the mesh for a smaller error.") };
+    let Some(expected) = facts.expected else {
+        let round = match facts.flows_at_corner {
+            true => ", but round the sharp corner: the plastic strain there grows with each refinement",
+            false => "",
+        };
+        return format!("{cut}Refine the mesh for a smaller error{round}.");
+    };
     let steps = if expected.halved_step < WORTH {
         "halving the step alone would change it by about"
     } else {

@@ -1,112 +1,20 @@
-//! How far bodies strain and turn, and how far stress goes: strains and rotations are small by assumption, and the law
-//! is linear.
+//! Follows the deformation in the steps of a run.
 
-use crate::flight::{NextTouch, next_touch};
+use super::permanent::FlowSums;
+use super::{
+    BodyDeformation, Deformation, ElementPlace, Extreme, MaterialStress, OverallYielding, PlasticFlow, Yielding,
+};
+use crate::flight::next_touch;
 use percute_core::element_state::ElementState;
 use percute_core::history::{SinkError, State, StateSink, Step};
 use percute_core::ids::ElementId;
 use percute_core::material::Elastic;
 use percute_core::mesh::Mesh;
 use percute_core::problem::{AnyProblem, RigidMotion};
-use serde::Serialize;
 
 /// Instants from one that is looked at to the next one. Stress behind a front stays for longer, and the work is a few
 /// hundredths of that of the estimate.
 const EVERY: usize = 8;
-
-/// The deformation of bodies and the stress in materials, at each eighth instant and the last one.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Deformation {
-    /// The bodies, in the order of their first nodes.
-    pub bodies: Vec<BodyDeformation>,
-    /// The materials, in their order.
-    pub materials: Vec<MaterialStress>,
-    /// The first point of a single body that would reach a plane by turning, if the run went on.
-    #[serde(skip)]
-    pub next_touch: Option<NextTouch>,
-}
-
-/// How far a body strains and turns.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BodyDeformation {
-    /// Its name: that of the group of all its elements, or "body 0".
-    pub name: String,
-    /// Its largest mean rotation, counterclockwise (rad): Σm x×u / Σm|x|², x from the centre of mass; 0 of a bar.
-    pub rotation: f64,
-    /// The instant of this rotation (s).
-    pub time_of_rotation: f64,
-    /// Its angular velocity at the last instant, counterclockwise (rad/s), that of the rigid motion which fits best; 0
-    /// of a bar.
-    pub angular_velocity: f64,
-    /// The principal strain of an element, in the plane, that is largest without its sign.
-    pub strain: Extreme,
-}
-
-/// The stress in the elements of a material.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct MaterialStress {
-    /// Its group of elements; none if it is that of all.
-    pub group: Option<String>,
-    /// Young's modulus (Pa).
-    pub young: f64,
-    /// The largest von Mises stress of an element (Pa).
-    pub von_mises: Extreme,
-    /// Where it was above the yield stress; none without one.
-    pub yielding: Option<Yielding>,
-}
-
-/// Where and when a material yielded or, if its law is elastic, the von Mises stress was above the yield stress.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Yielding {
-    /// The yield stress (Pa).
-    pub yield_stress: f64,
-    /// The part of the volume of the material that yielded, or in which the stress was above it at some instant.
-    pub share: f64,
-    /// The first of these instants (s).
-    pub first: Option<f64>,
-    /// Of a law with plasticity.
-    pub plastic: Option<PlasticFlow>,
-}
-
-/// What plastic flow did in a material.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct PlasticFlow {
-    /// E_t/E, the slope of the uniaxial curve beyond the yield stress over Young's modulus.
-    pub tangent_ratio: f64,
-    /// The largest equivalent plastic strain p of an element.
-    pub equivalent_strain: Extreme,
-}
-
-/// A largest value with its place.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Extreme {
-    /// The value.
-    pub value: f64,
-    /// The element.
-    pub element: usize,
-    /// The instant (s).
-    pub time: f64,
-}
-
-impl Extreme {
-    /// The larger of two; the first of equal ones.
-    fn larger(self, other: Self) -> Self {
-        if other.value.abs() > self.value.abs() { other } else { self }
-    }
-
-    /// Takes in a value; the first of equal ones stays.
-    fn take(&mut self, value: f64, element: usize, time: f64) {
-        *self = self.larger(Self { value, element, time });
-    }
-}
-
-impl Deformation {
-    /// The largest principal strain of all bodies.
-    #[must_use]
-    pub fn strain(&self) -> Extreme {
-        self.bodies.iter().map(|body| body.strain).fold(Extreme::default(), Extreme::larger)
-    }
-}
 
 /// Follows the deformation in the steps that it takes.
 #[derive(Clone, Debug)]
@@ -117,6 +25,9 @@ pub(crate) struct DeformationRecorder<'p> {
     body_of_element: Vec<usize>,
     /// Whether the stress in an element was above its yield stress.
     yielded: Vec<bool>,
+    /// The largest plastic strain or stress of each material at the instant at which it yields.
+    onset: Vec<Extreme>,
+    flow: FlowSums,
     found: Deformation,
 }
 
@@ -131,40 +42,68 @@ impl<'p> DeformationRecorder<'p> {
             time_of_rotation: 0.0,
             angular_velocity: 0.0,
             strain: Extreme::default(),
+            permanent_strain: None,
         };
         let stated = &problem.conditions().materials;
         let material = |(at, law): (usize, &Elastic)| MaterialStress {
             group: stated.get(at).and_then(|(group, _)| group.clone()),
             young: law.young(),
             von_mises: Extreme::default(),
-            yielding: law.yield_stress().map(|yield_stress| Yielding {
-                yield_stress,
-                share: 0.0,
-                first: None,
-                plastic: law.hardening().map(|hardening| PlasticFlow {
-                    tangent_ratio: hardening.tangent(law.young()) / law.young(),
-                    equivalent_strain: Extreme::default(),
-                }),
-            }),
+            yielding: yielding(law),
         };
         let found = Deformation {
             bodies: mesh.part_names().into_iter().map(body).collect(),
             materials: problem.materials().iter().enumerate().map(material).collect(),
+            yielding: None,
             next_touch: None,
         };
         let yields = problem.materials().iter().any(|law| law.yield_stress().is_some());
+        let body_of_element: Vec<usize> = mesh.cells().map(|nodes| of_node[nodes[0].index()]).collect();
         Self {
             problem,
             last: steps,
             rigid: RigidMotion::new(problem),
-            body_of_element: mesh.cells().map(|nodes| of_node[nodes[0].index()]).collect(),
             yielded: vec![false; if yields { mesh.element_count() } else { 0 }],
+            onset: vec![Extreme::default(); found.materials.len()],
+            flow: FlowSums::new(problem, &body_of_element),
+            body_of_element,
             found,
         }
     }
 
     /// What was found, with elements as `number` calls them, those of `mesh`.
     pub(crate) fn finish(mut self, mesh: &Mesh, number: impl Fn(usize) -> usize) -> Deformation {
+        let place = |element: usize| {
+            let element = number(element);
+            let centroid = mesh.centroid(ElementId::new(element))[..mesh.dimension()].to_vec();
+            ElementPlace { element, centroid }
+        };
+        let placed = |extreme: &mut Extreme| {
+            ElementPlace { element: extreme.element, centroid: extreme.centroid } = place(extreme.element);
+        };
+        let volumes = self.volumes();
+        for (k, (material, [all, above])) in self.found.materials.iter_mut().zip(&volumes).enumerate() {
+            placed(&mut material.von_mises);
+            let Some(yielding) = &mut material.yielding else { continue };
+            yielding.stress_ratio = material.von_mises.value / yielding.yield_stress;
+            yielding.first_place = yielding.first.map(|_| place(self.onset[k].element));
+            yielding.share = if *all > 0.0 { above / all } else { 0.0 };
+            if let Some(plastic) = &mut yielding.plastic {
+                placed(&mut plastic.equivalent_strain);
+                plastic.mean_equivalent_strain = self.flow.mean_equivalent_strain(k);
+            }
+        }
+        self.found.yielding = overall(&self.found.materials, &volumes);
+        for (k, body) in self.found.bodies.iter_mut().enumerate() {
+            placed(&mut body.strain);
+            body.permanent_strain = self.flow.permanent_strain(k, self.problem.materials());
+        }
+        self.found.bodies = self.bodies_of(mesh, number);
+        self.found
+    }
+
+    /// The volume of each material with a yield stress, and the part of it that yielded (m³).
+    fn volumes(&self) -> Vec<[f64; 2]> {
         let materials = self.problem.element_material();
         let mut volumes = vec![[0.0; 2]; self.found.materials.len()];
         for (element, yielded) in self.yielded.iter().enumerate() {
@@ -172,18 +111,14 @@ impl<'p> DeformationRecorder<'p> {
             let [all, above] = &mut volumes[usize::from(materials[element])];
             (*all, *above) = (*all + volume, if *yielded { *above + volume } else { *above });
         }
-        for (material, [all, above]) in self.found.materials.iter_mut().zip(volumes) {
-            material.von_mises.element = number(material.von_mises.element);
-            if let Some(plastic) = material.yielding.as_mut().and_then(|yielding| yielding.plastic.as_mut()) {
-                plastic.equivalent_strain.element = number(plastic.equivalent_strain.element);
-            }
-            if let Some(yielding) = material.yielding.as_mut().filter(|_| all > 0.0) {
-                yielding.share = above / all;
-            }
-        }
-        self.found.bodies.iter_mut().for_each(|body| body.strain.element = number(body.strain.element));
-        self.found.bodies = self.bodies_of(mesh, number);
-        self.found
+        volumes
+    }
+
+    /// Whether a material with a yield stress has not yielded: then each instant counts, for its margin and for the
+    /// instant at which it yields.
+    fn watches(&self) -> bool {
+        let waits = |material: &MaterialStress| material.yielding.as_ref().is_some_and(|found| found.first.is_none());
+        self.found.materials.iter().any(waits)
     }
 
     /// The bodies in the order of a mesh, with its names.
@@ -228,24 +163,29 @@ impl<'p> DeformationRecorder<'p> {
 
     fn elements(&mut self, &Step { displacement, internal, time, .. }: &Step<'_>) {
         let materials = self.problem.element_material();
+        self.flow.clear();
         for element in 0..self.body_of_element.len() {
-            let state = ElementState::new(self.problem, ElementId::new(element), displacement, internal);
-            let body = &mut self.found.bodies[self.body_of_element[element]];
-            body.strain.take(state.principal_strain(), element, time);
-            let material = &mut self.found.materials[usize::from(materials[element])];
-            let von_mises = state.von_mises();
-            material.von_mises.take(von_mises, element, time);
-            let Some(yielding) = &mut material.yielding else { continue };
-            let beyond = match &mut yielding.plastic {
+            let id = ElementId::new(element);
+            let state = ElementState::new(self.problem, id, displacement, internal);
+            let (body, material) = (self.body_of_element[element], usize::from(materials[element]));
+            self.found.bodies[body].strain.take(state.principal_strain(), element, time);
+            let (found, von_mises) = (&mut self.found.materials[material], state.von_mises());
+            found.von_mises.take(von_mises, element, time);
+            let Some(yielding) = &mut found.yielding else { continue };
+            let (beyond, amount) = match &mut yielding.plastic {
                 Some(plastic) => {
-                    plastic.equivalent_strain.take(state.equivalent_plastic_strain, element, time);
-                    state.equivalent_plastic_strain > 0.0
+                    let p = state.equivalent_plastic_strain;
+                    plastic.equivalent_strain.take(p, element, time);
+                    self.flow.add([body, material], self.problem.volume(id), &state);
+                    (p > 0.0, p)
                 }
-                None => von_mises > yielding.yield_stress,
+                None => (von_mises > yielding.yield_stress, von_mises),
             };
             if beyond {
-                yielding.first = yielding.first.or(Some(time));
                 self.yielded[element] = true;
+                if *yielding.first.get_or_insert(time) == time {
+                    self.onset[material].take(amount, element, time);
+                }
             }
         }
     }
@@ -254,13 +194,41 @@ impl<'p> DeformationRecorder<'p> {
 impl StateSink for DeformationRecorder<'_> {
     fn accept(&mut self, state: &State<'_>) -> Result<(), SinkError> {
         let step = state.step();
-        if step.index.is_multiple_of(EVERY) || step.index == self.last {
-            self.rotations(step.displacement, step.time);
+        let chosen = step.index.is_multiple_of(EVERY) || step.index == self.last;
+        if chosen || self.watches() {
             self.elements(step);
+        }
+        if chosen {
+            self.rotations(step.displacement, step.time);
             self.turning(state);
         }
         Ok(())
     }
+}
+
+/// A material that has not yielded; none without a yield stress.
+fn yielding(law: &Elastic) -> Option<Yielding> {
+    let yield_stress = law.yield_stress()?;
+    let plastic = law.hardening().map(|hardening| PlasticFlow {
+        tangent_ratio: hardening.tangent(law.young()) / law.young(),
+        equivalent_strain: Extreme::default(),
+        mean_equivalent_strain: 0.0,
+    });
+    Some(Yielding { yield_stress, stress_ratio: 0.0, share: 0.0, first: None, first_place: None, plastic })
+}
+
+/// What materials of these volumes, and of these parts that yielded (m³), did together.
+fn overall(materials: &[MaterialStress], volumes: &[[f64; 2]]) -> Option<OverallYielding> {
+    let all = || materials.iter().filter_map(|material| material.yielding.as_ref());
+    let stress_ratio = all().map(|yielding| yielding.stress_ratio).reduce(f64::max)?;
+    let stated = || materials.iter().zip(volumes).filter(|(material, _)| material.yielding.is_some());
+    let [volume, yielded] = [0, 1].map(|k| stated().map(|(_, volumes)| volumes[k]).sum::<f64>());
+    let flows = all().filter_map(|yielding| yielding.plastic.as_ref());
+    Some(OverallYielding {
+        share: if volume > 0.0 { yielded / volume } else { 0.0 },
+        stress_ratio,
+        equivalent_strain: flows.map(|flow| flow.equivalent_strain.value).reduce(f64::max),
+    })
 }
 
 /// The mean rotation of a plane body of finite kinematics, of Σ m (x − x̄)(X − X̄)ᵀ, from −π to π (rad); 0 of a bar.
