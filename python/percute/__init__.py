@@ -1,4 +1,4 @@
-"""Simulation of elastic impacts with an estimate of its error.
+"""Simulation of impacts of bodies that are elastic or yield, with an estimate of its error.
 
 State a `Problem` on a `Mesh`, `simulate` it, and `estimate` the error of the simulation::
 
@@ -22,7 +22,20 @@ from percute.balance import Balance
 from percute.bodies import Body, Interface
 from percute.contact import Contact
 from percute.contact_results import ContactStatus, Resultants
-from percute.deformation import BodyDeformation, ContactPeak, Deformation, Extreme, MaterialStress, Nearest, PlasticFlow, PoorElement, Yielding
+from percute.deformation import (
+    BodyDeformation,
+    ContactPeak,
+    Deformation,
+    ElasticMargin,
+    ElementPlace,
+    Extreme,
+    MaterialStress,
+    Nearest,
+    OverallYielding,
+    PlasticFlow,
+    PoorElement,
+    Yielding,
+)
 from percute.errors import (
     EstimateError,
     ExistingFileError,
@@ -68,7 +81,9 @@ __all__ = [
     "Deformation",
     "Effectivity",
     "Elastic",
+    "ElasticMargin",
     "ElementMap",
+    "ElementPlace",
     "Estimate",
     "EstimateError",
     "ExistingFileError",
@@ -88,6 +103,7 @@ __all__ = [
     "Nearest",
     "NextTouch",
     "OverTime",
+    "OverallYielding",
     "Parts",
     "PercuteError",
     "Plane",

@@ -4,7 +4,30 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["BodyDeformation", "ContactPeak", "Deformation", "Extreme", "MaterialStress", "Nearest", "PlasticFlow", "PoorElement", "Yielding"]
+__all__ = [
+    "BodyDeformation",
+    "ContactPeak",
+    "Deformation",
+    "ElasticMargin",
+    "ElementPlace",
+    "Extreme",
+    "MaterialStress",
+    "Nearest",
+    "OverallYielding",
+    "PlasticFlow",
+    "PoorElement",
+    "Yielding",
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElementPlace:
+    """An element with its place."""
+
+    element: int
+    """The element."""
+    centroid: tuple[float, ...]
+    """Its centroid (m)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,6 +40,8 @@ class Extreme:
     """The element."""
     time: float
     """The instant (s)."""
+    centroid: tuple[float, ...] = ()
+    """The centroid of the element (m); empty from a file of an earlier version."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +58,8 @@ class BodyDeformation:
     """The principal strain of an element, in the plane, that is largest without its sign."""
     angular_velocity: float = 0.0
     """Its angular velocity at the last instant, counterclockwise (rad/s); 0 of a bar."""
+    permanent_strain: tuple[float, ...] | None = None
+    """The mean strain (xx, yy, xy; of a bar xx) that it would keep at rest and free; None if it did not yield, has several materials or supports."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,6 +70,8 @@ class PlasticFlow:
     """The slope of the uniaxial curve beyond the yield stress over Young's modulus."""
     equivalent_strain: Extreme
     """The largest equivalent plastic strain p of an element."""
+    mean_equivalent_strain: float | None = None
+    """The mean of p over the volume of the material, at the last instant."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,6 +84,10 @@ class Yielding:
     """The part of the volume of the material that yielded, or in which the stress was above it at some instant."""
     first: float | None
     """The first of these instants (s)."""
+    stress_ratio: float | None = None
+    """The largest von Mises stress over the yield stress."""
+    first_place: ElementPlace | None = None
+    """The element that yielded first."""
     plastic: PlasticFlow | None = None
     """The plastic flow, of a law with plasticity."""
 
@@ -74,13 +107,50 @@ class MaterialStress:
 
 
 @dataclass(frozen=True, kw_only=True)
+class OverallYielding:
+    """What all materials with a yield stress did together."""
+
+    share: float
+    """The part of their volume that yielded, or in which the stress was above the yield stress at some instant."""
+    stress_ratio: float
+    """The largest von Mises stress over the yield stress."""
+    equivalent_strain: float | None
+    """The largest equivalent plastic strain; None without a law with plasticity."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElasticMargin:
+    """The material that is nearest to yielding among those with a yield stress that have not yielded."""
+
+    group: str | None
+    """Its group of elements; None if it is that of all."""
+    yield_stress: float
+    """Its yield stress (Pa)."""
+    von_mises: Extreme
+    """Its largest von Mises stress (Pa)."""
+    stress_ratio: float
+    """This stress over the yield stress."""
+    error: float
+    """The relative error expected of the stress: the largest of the run, or that of the element if it is larger."""
+    sharp_corner: bool
+    """Whether a sharp corner is at this element, or strikes first: the stress there grows with each refinement."""
+    is_shown: bool
+    """Whether the run shows that the material stays elastic: no sharp corner, and a stress below 1 − error of the yield stress."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Deformation:
-    """What the theory of small strains and the linear law suppose to be small, at each eighth instant and the last one."""
+    """What the theory of small strains and the linear law suppose to be small, at each eighth instant and the last one.
+
+    At each instant while a material with a yield stress has not yielded.
+    """
 
     bodies: tuple[BodyDeformation, ...]
     """The bodies, in the order of their first nodes."""
     materials: tuple[MaterialStress, ...]
     """The materials, in their order."""
+    yielding: OverallYielding | None = None
+    """Of all materials with a yield stress together; None without one."""
 
     @property
     def strain(self) -> Extreme:

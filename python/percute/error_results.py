@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from percute import _percute
 from percute.checks import whole
 from percute.contact import Contact
-from percute.deformation import ContactPeak, Deformation, Nearest, PoorElement
+from percute.deformation import ContactPeak, Deformation, ElasticMargin, Nearest, PoorElement
 from percute.documents import optional, records
 from percute.history import History
 from percute.immutable import Immutable
@@ -157,6 +157,11 @@ class ErrorResults(Immutable):
     def deformation(self) -> Deformation | None:
         """The largest strains, rotations and stresses; None if the estimate comes from a file of an earlier version."""
         return optional(Deformation, self._verdict.get("deformation"))
+
+    @cached_property
+    def elastic_margin(self) -> ElasticMargin | None:
+        """How near the body is to yielding; None without a yield stress, where all such materials yield, and from a file of an earlier version."""
+        return optional(ElasticMargin, (self._verdict.get("verdict") or {}).get("elastic_margin"))
 
     @cached_property
     def contact_peak(self) -> ContactPeak | None:

@@ -166,7 +166,7 @@ class History(Steps, Views):
             A point of the undeformed body (m), or the name of a group of edges or elements.
         quantity : str, default: "displacement"
             Of the nodes ``displacement``, ``velocity`` or ``acceleration``: linear in an element. Of the elements ``strain``,
-            ``stress``, ``von_mises`` or ``pressure``: constant in an element; on an edge between elements that of one of them.
+            ``stress``, ``von_mises``, ``pressure``, ``plastic_strain`` or ``equivalent_plastic_strain``: constant in an element; on an edge between elements that of one of them.
         each : bool, default: False
             For a group: whether each of its nodes (elements), in ascending order, has its own values. Otherwise the result is the
             mean over the length of the edges, or over the area of the elements.
@@ -199,7 +199,7 @@ class History(Steps, Views):
         ----------
         quantity : str, default: "displacement"
             Magnitude of ``displacement`` (m), ``velocity`` (m/s) or ``acceleration`` (m/s²); ``von_mises``, ``pressure``, ``stress_xx``,
-            ``stress_yy`` or ``stress_xy`` (Pa); ``strain_energy`` or ``kinetic_energy`` of the elements (J). Of a bar its displacement,
+            ``stress_yy`` or ``stress_xy`` (Pa); ``equivalent_plastic_strain``; ``strain_energy`` or ``kinetic_energy`` of the elements (J). Of a bar its displacement,
             velocity, acceleration, ``stress`` or energies along it.
         step : int, default: -1
             Which instant; negative ones count from the end.
@@ -286,9 +286,9 @@ class History(Steps, Views):
             Instead of ``steps``: the steps nearest to these times (s).
         fields : list of str, optional
             Of ``"displacement"`` (m, always written), ``"velocity"`` (m/s), ``"acceleration"`` (m/s²), ``"reaction"`` (N, at
-            all nodes), ``"stress"`` (Pa, 3 x 3), ``"von_mises"``, ``"pressure"`` (Pa), ``"error"`` (e_E of the whole run,
-            J^½, eq. [20]). By default displacement, velocity, reaction, stress and von Mises stress, and the error if
-            ``estimate`` is given.
+            all nodes), ``"stress"`` (Pa, 3 x 3), ``"von_mises"``, ``"pressure"`` (Pa), ``"equivalent_plastic_strain"``,
+            ``"error"`` (e_E of the whole run, J^½, eq. [20]). By default displacement, velocity, reaction, stress and von Mises
+            stress, the equivalent plastic strain where a material yields, and the error if ``estimate`` is given.
         estimate : Estimate, str or path, optional
             The estimate of this history, or its file.
         overwrite : bool, default: False
@@ -335,8 +335,8 @@ class History(Steps, Views):
         ----------
         fields : iterable of str, default: ("displacement", "reaction", "touching")
             Which fields, at all instants: ``displacement``, ``velocity``, ``acceleration``, ``reaction``, ``touching``, and of the
-            elements ``strain``, ``stress``, ``von_mises``, ``pressure``, ``strain_energy`` and ``kinetic_energy``. Those of the
-            default are views without a copy.
+            elements ``strain``, ``stress``, ``von_mises``, ``pressure``, ``plastic_strain``, ``equivalent_plastic_strain``,
+            ``strain_energy``, ``plastic_work`` and ``kinetic_energy``. Those of the default are views without a copy.
 
         Returns
         -------

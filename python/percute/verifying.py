@@ -201,8 +201,8 @@ def verify(
         Whether more than 1e10 elements times steps in all are allowed, which take minutes to hours.
     probe : str or sequence of str or tuple, optional
         Points of the undeformed body (m) with a field: ``"0.01,0.02:von_mises"``, or a list of such texts and of tuples
-        ``(0.01, 0.02, "von_mises")``. Fields are ``von_mises``, ``pressure``, ``displacement``, ``velocity``, of a plane body ``stress_xx``,
-        ``stress_yy``, ``stress_xy``, of a bar ``stress``. The value is the largest over all steps, without its sign; displacement and velocity
+        ``(0.01, 0.02, "von_mises")``. Fields are ``von_mises``, ``pressure``, ``equivalent_plastic_strain``, ``displacement``, ``velocity``, of a
+        plane body ``stress_xx``, ``stress_yy``, ``stress_xy``, of a bar ``stress``. The value is the largest over all steps, without its sign; displacement and velocity
         are magnitudes. On an edge or a node it is that of the mean of the elements around it, weighted by their angles there.
     progress : bool or callable, optional
         As for `simulate`.
