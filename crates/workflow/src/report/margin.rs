@@ -109,7 +109,9 @@ fn local_error(problem: &AnyProblem, estimate: &Estimate, largest: &Extreme) -> 
     let law = problem.material(element);
     let modulus = match law.hypothesis() {
         Hypothesis::Bar => 2.0 * law.young(),
-        Hypothesis::PlaneStress | Hypothesis::PlaneStrain | Hypothesis::Solid => 3.0 * law.young() / (1.0 + law.poisson()),
+        Hypothesis::PlaneStress | Hypothesis::PlaneStrain | Hypothesis::Solid => {
+            3.0 * law.young() / (1.0 + law.poisson())
+        }
     };
     let energy = problem.volume(element) * largest.value.powi(2) / modulus;
     let error = estimate.by_element.get(largest.element).copied().unwrap_or_default();
