@@ -36,12 +36,12 @@ impl BarStress {
         loading: &Loading<D, N, T>,
     ) -> Fluctuation<D, N, T> {
         let (g0, g1) = (loading.volume[0][0], loading.volume[1][0]);
-        let mut coordinates = Fluctuation::filled(g0.zero());
+        let mut fluctuation = Fluctuation::filled(g0.zero());
         // ½∫σ²/E of (L/2) s and of (L/4)(s²/2 − 1/6) on −1 < s < 1.
         let cubed = self.compliance * self.length * self.length * self.length;
-        coordinates.nodes[0][0] = (g0 + g1) * (0.5 * (cubed / 24.0).sqrt());
-        coordinates.nodes[1][0] = (g1 - g0) * (cubed / 1440.0).sqrt();
-        coordinates
+        fluctuation.coordinates[0][0][0] = (g0 + g1) * (0.5 * (cubed / 24.0).sqrt());
+        fluctuation.coordinates[1][0][0] = (g1 - g0) * (cubed / 1440.0).sqrt();
+        fluctuation
     }
 
     /// By Simpson's rule, exact for a quadratic.

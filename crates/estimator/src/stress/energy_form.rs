@@ -128,7 +128,7 @@ impl EnergyForm<'_> {
         fluctuation: &Fluctuation<D, N, T>,
     ) -> [[T; D]; N] {
         match self {
-            Self::Bar(_) => [[fluctuation.nodes[0][0].zero(); D]; N],
+            Self::Bar(_) => [[fluctuation.coordinates[0][0][0].zero(); D]; N],
             Self::Triangle(form) => form.difference_slope(fluctuation),
         }
     }
@@ -281,14 +281,14 @@ impl TriangleForm<'_> {
         fluctuation: &Fluctuation<D, N, T>,
     ) -> [[T; D]; N] {
         let [[xx, xy], [yx, yy]] = [0, 1].map(|c| [self.map.inverse[(0, c)], self.map.inverse[(1, c)]]);
-        let zero = fluctuation.nodes[0][0].zero();
+        let zero = fluctuation.coordinates[0][0][0].zero();
         let (mut slopes, lane) = ([[zero; D]; N], self.lane % LANES);
         for k in 0..N {
             let mut pair = [zero; 2];
             for c in 0..2 {
                 let row = &self.factors[2 * k + c];
                 for j in 0..COLUMNS {
-                    pair[c] += fluctuation.edges[j / 2][j % 2] * row[j].0[lane];
+                    pair[c] += fluctuation.coordinates[j / 2][0][j % 2] * row[j].0[lane];
                 }
                 // The energy is the sum of squares of the coordinates.
                 pair[c] = pair[c] + pair[c];
@@ -324,14 +324,14 @@ fn coordinates<T: Value, const D: usize, const N: usize>(
     edges: [T; COLUMNS],
     nodes: [T; COLUMNS],
 ) -> Fluctuation<D, N, T> {
-    let mut coordinates = Fluctuation::filled(edges[0].zero());
+    let mut fluctuation = Fluctuation::filled(edges[0].zero());
     for k in 0..N {
         for c in 0..D {
-            coordinates.edges[k][c] = edges[2 * k + c];
-            coordinates.nodes[k][c] = nodes[2 * k + c];
+            fluctuation.coordinates[k][0][c] = edges[2 * k + c];
+            fluctuation.coordinates[k][1][c] = nodes[2 * k + c];
         }
     }
-    coordinates
+    fluctuation
 }
 
 /// Makes the factors of these shapes; apart, so that the loops over elements stay small.

@@ -5,29 +5,31 @@ use super::reference::{ALL, FREE, LOADS};
 use percute_core::simd::lanes::Value;
 use std::sync::OnceLock;
 
-/// Coordinates of a fluctuation in which its energy (J per unit of section or thickness) is the sum of squares, two for
-/// each edge, which a bar has none of, and node.
+/// Coordinates of a fluctuation in which its energy (J per unit of section or thickness) is the sum of squares. There
+/// are as many as numbers that make up the fluctuation: the deviations of the tractions on each face from their mean
+/// there, D − 1 vectors, and the volume load at each node.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fluctuation<const D: usize, const N: usize, T = f64> {
-    pub(crate) edges: [[T; D]; N],
-    pub(crate) nodes: [[T; D]; N],
+    /// For each k, D − 1 vectors of face k, then that of node k.
+    pub(crate) coordinates: [[[T; D]; D]; N],
 }
 
 impl<const D: usize, const N: usize, T: Value> Fluctuation<D, N, T> {
     /// The same number in all coordinates.
     #[inline(always)]
     pub(crate) fn filled(number: T) -> Self {
-        Self { edges: [[number; D]; N], nodes: [[number; D]; N] }
+        Self { coordinates: [[[number; D]; D]; N] }
     }
 
     /// ½∫σ : K⁻¹ σ (J per unit of section or thickness).
     #[inline(always)]
     pub(crate) fn energy(&self) -> T {
-        let mut energy = self.nodes[0][0].zero();
+        let mut energy = self.coordinates[0][0][0].zero();
         for k in 0..N {
             for c in 0..D {
-                energy += self.edges[k][c] * self.edges[k][c];
-                energy += self.nodes[k][c] * self.nodes[k][c];
+                for r in 0..D {
+                    energy += self.coordinates[k][r][c] * self.coordinates[k][r][c];
+                }
             }
         }
         energy
@@ -40,11 +42,12 @@ impl<const D: usize, const N: usize, T: Value> Fluctuation<D, N, T> {
         b: &Fluctuation<D, N, B>,
         number: impl Fn(A, B) -> T,
     ) -> Self {
-        let mut both = Self::filled(number(a.nodes[0][0], b.nodes[0][0]));
+        let mut both = Self::filled(number(a.coordinates[0][0][0], b.coordinates[0][0][0]));
         for k in 0..N {
-            for c in 0..D {
-                both.edges[k][c] = number(a.edges[k][c], b.edges[k][c]);
-                both.nodes[k][c] = number(a.nodes[k][c], b.nodes[k][c]);
+            for r in 0..D {
+                for c in 0..D {
+                    both.coordinates[k][r][c] = number(a.coordinates[k][r][c], b.coordinates[k][r][c]);
+                }
             }
         }
         both
