@@ -8,13 +8,21 @@
 //! with means ε_e, ε_n weighted by area, within one material, is too soft by one factor for all waves, which the
 //! corrected mass makes up for ([`Coefficients::mass`]). On other meshes edges are less symmetric than nodes: both
 //! follow from the asymmetry Q of the pairs of triangles of a body.
+//!
+//! On a mesh of parallelepipeds cut in six tetrahedra, those at an inner edge and those around an inner node are
+//! point-symmetric in the same way:
+//!
+//! σ̄_E = C[(1 − β)/6 Σ_{e⊂E} ε_e + β/4 Σ_{n∈E} ε_n].
 
+mod mirrors;
+mod solid_patches;
 mod strains;
 
 use percute_core::cell::CellKind;
 use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::mesh::Mesh;
 use percute_core::problem::Problem;
+pub(crate) use solid_patches::SolidPatches;
 use std::ops::Range;
 pub(crate) use strains::{Smoothed, SmoothedStrains, StrainLevel};
 
@@ -44,6 +52,15 @@ impl Coefficients {
     /// does not grow, at the price of a larger estimate at that step. This changes errors of the order that is left
     /// anyway.
     const BAR: Self = Self { nodes: 0.0, mass: [0.5, -1.0 / 36.0, 0.0] };
+
+    /// Those of tetrahedra. Smoothed strains of an even mesh are too soft by q = ⅔ + 5β/6 times μ: c₁ = ½ + q makes up
+    /// for both; c₂ = ⅖ + q c₁ is that of axial pressure waves; c₃ keeps the shortest waves stable.
+    const fn of_tetrahedra() -> Self {
+        let nodes = 0.2;
+        let soft = 2.0 / 3.0 + 5.0 * nodes / 6.0;
+        let first = 0.5 + soft;
+        Self { nodes, mass: [first, 0.4 + soft * first, -3.5] }
+    }
 }
 
 /// The strains that are averaged.
@@ -59,6 +76,8 @@ pub(crate) struct Smoothing {
     materials: Vec<u16>,
     /// β/(3V) of each patch, V its volume (1/m³).
     weights: Vec<f64>,
+    /// Those of a solid, instead of the patches above.
+    solid: SolidPatches,
 }
 
 impl Smoothing {
@@ -68,11 +87,21 @@ impl Smoothing {
             1 => Vec::new(),
             _ => mesh.part_numbers().into_iter().map(|body| body as u32).collect(),
         };
-        let mut made =
-            Self { bodies: Vec::new(), body_of_node, starts: Vec::new(), materials: Vec::new(), weights: Vec::new() };
+        let mut made = Self {
+            bodies: Vec::new(),
+            body_of_node,
+            starts: Vec::new(),
+            materials: Vec::new(),
+            weights: Vec::new(),
+            solid: SolidPatches::default(),
+        };
         match mesh.kind() {
             CellKind::Bar => made.bodies = vec![Coefficients::BAR; mesh.parts()],
-            CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
+            CellKind::Tetrahedron => {
+                let coefficients = Coefficients::of_tetrahedra();
+                made.bodies = vec![coefficients; mesh.parts()];
+                made.solid = SolidPatches::new(problem, coefficients.nodes);
+            }
             CellKind::Triangle => {
                 let asymmetry = made.asymmetry(problem);
                 made.bodies = asymmetry.into_iter().map(Coefficients::of_triangles).collect();
@@ -119,7 +148,13 @@ impl Smoothing {
 
     /// Whether strains are averaged at all.
     pub(crate) fn smooths(&self) -> bool {
-        !self.starts.is_empty()
+        !self.starts.is_empty() || self.solid.count() > 0
+    }
+
+    /// The patches of a solid.
+    #[inline(always)]
+    pub(crate) fn solid(&self) -> &SolidPatches {
+        &self.solid
     }
 
     /// The coefficients of all bodies.
@@ -152,7 +187,10 @@ impl Smoothing {
     /// The patches of some nodes.
     #[inline(always)]
     pub(crate) fn patches(&self, nodes: &Range<usize>) -> Range<usize> {
-        if self.smooths() { self.starts[nodes.start] as usize..self.starts[nodes.end] as usize } else { 0..0 }
+        if self.starts.is_empty() {
+            return 0..0;
+        }
+        self.starts[nodes.start] as usize..self.starts[nodes.end] as usize
     }
 
     /// The patch of a node in a material.

@@ -4,6 +4,8 @@
 //! the mean strains of edges and nodes. F_E S̄_E is then the slope of an energy, that of the mean strains: the mean of
 //! the stresses of the elements would be no such slope, and give energy to rubber.
 
+mod solid;
+
 use super::Smoothing;
 use crate::blocks::{BLOCK, ElementBlocks};
 use crate::components::{COMPONENTS, components, tensor};
@@ -24,9 +26,10 @@ use rayon::prelude::*;
 /// The strains of which smoothed ones are made, of all elements at one level or some; Green strains of finite laws.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SmoothedStrains<S = Lanes> {
-    /// Of each element.
+    /// Of each element; of a solid |E|ε_E (m³), two records each.
     strains: Vec<[S; COMPONENTS]>,
-    /// β/(3V) Σ|E|ε_E of each patch; β/3 S of the mean strain of a finite law.
+    /// β/(3V) Σ|E|ε_E of each patch; β/3 S of the mean strain of a finite law. Of a solid those of edges, too, with
+    /// their weights, two records each.
     patches: Vec<[S; COMPONENTS]>,
     /// (1 − β)/3 S of the mean strain of each edge within a material of a finite law; empty with small strains.
     edges: Vec<[S; COMPONENTS]>,
@@ -61,6 +64,9 @@ impl SmoothedStrains {
         levels: &[StrainLevel<'_, D>],
     ) {
         self.share = Lanes::at_levels(|k| if levels.get(k).is_some_and(|level| level.smoothed) { 1.0 } else { 0.0 });
+        if D == 3 {
+            return self.fill_solid(of, blocks, levels);
+        }
         self.strains.resize(of.elements.len(), [Lanes::ZERO; COMPONENTS]);
         self.patches.resize(of.smoothing.patch_count(), [Lanes::ZERO; COMPONENTS]);
         let room = Pool::new();
@@ -87,6 +93,9 @@ impl SmoothedStrains<f64> {
         of: Smoothed<'_, D, N>,
         displacement: &[[f64; D]],
     ) {
+        if D == 3 {
+            return self.fill_one_solid(of, displacement);
+        }
         self.strains.resize(of.elements.len(), [0.0; COMPONENTS]);
         by_pieces((&mut self.strains[..], of.elements), &|first, (strains, elements)| {
             for (k, (strain, element)) in strains.iter_mut().zip(elements).enumerate() {
@@ -132,9 +141,13 @@ impl<S: Copy> SmoothedStrains<S> {
     pub(crate) fn of<T: Value<Stored = S>, const D: usize, const N: usize>(
         &self,
         like: T,
-        Smoothed { problem, smoothing, elements }: Smoothed<'_, D, N>,
+        of: Smoothed<'_, D, N>,
         element: ElementId,
     ) -> [[T; D]; D] {
+        if D == 3 {
+            return self.of_solid(like, of, element);
+        }
+        let Smoothed { problem, smoothing, elements } = of;
         let (mesh, volume) = (problem.mesh(), elements[element.index()].volume);
         let (law, first) = (problem.material(element), mesh.nodes_of::<N>()[element.index()][0]);
         let own = self.strains[element.index()].map(
