@@ -6,6 +6,7 @@ use percute_core::element_state::displacement_gradient;
 use percute_core::ids::ElementId;
 use percute_core::material::Law;
 use percute_core::problem::Problem;
+use std::array::from_fn;
 
 /// The acceleration o₂ = M⁻¹ Σ|E|(τ − τˢ)∇φ (m/s²) of the skew part of the stress τ = ρ/(D+2) Σ w_i ⊗ d_i that
 /// lumping the mass is for a motion w (m/s²), d_i from the centroid; 0 on prescribed components, whose supports carry
@@ -22,9 +23,12 @@ pub(super) fn skew_acceleration<const D: usize, const N: usize>(
         let (arms, gradients) = (arms(&mesh.corners::<D, N>(id)), mesh.geometry::<D, N>(id).gradients);
         let (law, volume) = (problem.material(id), problem.volume(id));
         let stress = lumping_stress(law.density(), &arms, &nodes.map(|node| w[node.index()]));
-        let none = [[0.0; D]; D];
-        let moved = if law.is_finite() { displacement_gradient(mesh, id, displacement) } else { none };
-        let symmetric = Deformation::new(&moved).symmetric_part(&stress, &moved);
+        let symmetric = if law.is_finite() {
+            let moved = displacement_gradient(mesh, id, displacement);
+            Deformation::new(&moved).symmetric_part(&stress, &moved)
+        } else {
+            from_fn(|a| from_fn(|b| 0.5 * (stress[a][b] + stress[b][a])))
+        };
         for (node, gradient) in nodes.iter().zip(gradients) {
             for a in 0..D {
                 let force: f64 = (0..D).map(|b| (stress[a][b] - symmetric[a][b]) * gradient[b]).sum();

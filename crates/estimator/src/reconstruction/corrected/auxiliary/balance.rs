@@ -112,6 +112,12 @@ pub(super) fn half_work<const D: usize>(
     0.5 * time * nodes.map(|(contact, force)| of(contact.node.index(), contact.obstacle, force)).sum::<f64>()
 }
 
+/// ½ v·M v of velocities (J).
+pub(super) fn kinetic_energy<const D: usize>(problem: &Problem<D>, velocity: &[[f64; D]]) -> f64 {
+    let moving = velocity.iter().zip(problem.mass());
+    moving.map(|(v, m)| 0.5 * m * v.iter().map(|v| v * v).sum::<f64>()).sum()
+}
+
 /// The directions in which no plane stops the bodies. A common velocity along them changes nothing in contact.
 #[derive(Debug)]
 struct FreeDirections<const D: usize>(Vec<[f64; D]>);

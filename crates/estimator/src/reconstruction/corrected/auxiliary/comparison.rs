@@ -188,14 +188,14 @@ fn minus<const D: usize>(a: &[Vec<[f64; D]>; 2], b: &[Vec<[f64; D]>; 2]) -> [Vec
 }
 
 /// Largest difference over the largest value of the second.
-fn miss<const D: usize>(a: &[[f64; D]], b: &[[f64; D]]) -> f64 {
+pub(super) fn miss<const D: usize>(a: &[[f64; D]], b: &[[f64; D]]) -> f64 {
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, x| m.max(x.abs()));
     let scale = largest(&mut b.iter().flatten().copied());
     let distance = largest(&mut a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| a - b));
     if scale == 0.0 { distance } else { distance / scale }
 }
 
-fn random_field<const D: usize>(count: usize, scale: f64, random: &mut Random) -> Vec<[f64; D]> {
+pub(super) fn random_field<const D: usize>(count: usize, scale: f64, random: &mut Random) -> Vec<[f64; D]> {
     (0..count).map(|_| std::array::from_fn(|_| random.between(-scale, scale))).collect()
 }
 
@@ -314,7 +314,7 @@ fn compare_energies<const D: usize, const N: usize>(
 }
 
 /// A rough body of two materials with an obstacle, a fixed and a driven support and loads.
-fn loaded<const D: usize, const N: usize>(
+pub(super) fn loaded<const D: usize, const N: usize>(
     mesh: &Mesh,
     laws: [Elastic; 2],
     [fixed, driven, loaded]: [&str; 3],
@@ -352,7 +352,7 @@ fn loaded<const D: usize, const N: usize>(
 }
 
 /// Steps that become longer, and shorter again, of at most the critical one.
-fn uneven<const D: usize>(problem: &Problem<D>, count: usize) -> TimeGrid {
+pub(super) fn uneven<const D: usize>(problem: &Problem<D>, count: usize) -> TimeGrid {
     let step = |n: usize| critical_time_step(problem) * (0.6 + 0.3 * (0.3 * n as f64).sin());
     TimeGrid::from_steps(&(0..count).map(step).collect::<Vec<_>>()).unwrap()
 }

@@ -1,30 +1,34 @@
-//! The auxiliary solution of a body, for either kinematics.
+//! The auxiliary solution of a body, for either kinematics and any kind of elements.
 
 use super::finite::FiniteAuxiliary;
+use super::solid::SolidAuxiliary;
 use super::{AuxiliaryLevel, AuxiliarySolutions, EnergyBalance, Foreseen, Shares, SimulatedLevel};
 use crate::difference::Difference;
 use crate::element::Element;
 use crate::plastic::EigenStrains;
 use crate::reconstruction::corrected::present_stars::PresentStars;
 use crate::smoothing::Smoothing;
+use percute_core::cell::CellKind;
 use percute_core::dynamics::Dynamics;
 use percute_core::problem::Problem;
 use percute_core::time::TimeGrid;
 use std::sync::Arc;
 
-/// That of small strains, with the motions beside it, or that of a body that turns.
+/// That of small strains, with the motions beside it, that of a body that turns, or that of a solid.
 #[derive(Debug)]
 pub(in crate::reconstruction::corrected) enum Auxiliary<'p, const D: usize, const N: usize> {
     Small(Box<AuxiliarySolutions<'p, D, N>>),
     Finite(Box<FiniteAuxiliary<'p, D, N>>),
+    Solid(Box<SolidAuxiliary<'p, D, N>>),
 }
 
-/// The same method of either.
+/// The same method of each.
 macro_rules! of_either {
     ($of:expr, $own:ident => $result:expr) => {
         match $of {
             Self::Small($own) => $result,
             Self::Finite($own) => $result,
+            Self::Solid($own) => $result,
         }
     };
 }
@@ -37,15 +41,21 @@ impl<'p, const D: usize, const N: usize> Auxiliary<'p, D, N> {
         smoothing: Arc<Smoothing>,
         shares: Shares,
     ) -> Self {
-        match problem.is_finite() {
-            true => Self::Finite(Box::new(FiniteAuxiliary::new(problem, times, smoothing, shares))),
-            false => Self::Small(Box::new(AuxiliarySolutions::new(problem, times, smoothing, shares))),
+        match problem.mesh().kind() {
+            _ if problem.is_finite() => Self::Finite(Box::new(FiniteAuxiliary::new(problem, times, smoothing, shares))),
+            CellKind::Tetrahedron => Self::Solid(Box::new(SolidAuxiliary::new(problem, times, smoothing, shares))),
+            CellKind::Bar | CellKind::Triangle => {
+                Self::Small(Box::new(AuxiliarySolutions::new(problem, times, smoothing, shares)))
+            }
         }
     }
 
     /// About how much memory it takes (bytes).
     pub(in crate::reconstruction::corrected) fn memory(nodes: usize, elements: usize) -> usize {
-        AuxiliarySolutions::<D, N>::memory(nodes, elements)
+        match D {
+            3 => SolidAuxiliary::<D, N>::memory(nodes, elements),
+            _ => AuxiliarySolutions::<D, N>::memory(nodes, elements),
+        }
     }
 
     /// Takes in the data of the elements.
@@ -55,7 +65,11 @@ impl<'p, const D: usize, const N: usize> Auxiliary<'p, D, N> {
 
     /// Takes in the loads and supports of a level. Levels come in order.
     pub(in crate::reconstruction::corrected) fn begin(&mut self, dynamics: &Dynamics<'_, D>, n: usize) {
-        of_either!(self, own => own.begin(dynamics, n));
+        match self {
+            Self::Small(own) => own.begin(dynamics, n),
+            Self::Finite(own) => own.begin(dynamics, n),
+            Self::Solid(own) => own.begin(n),
+        }
     }
 
     /// Foresees the motion at all contact nodes until t_{n+1}, after `begin`; of a body that turns from its stars at
@@ -68,6 +82,7 @@ impl<'p, const D: usize, const N: usize> Auxiliary<'p, D, N> {
         match self {
             Self::Small(own) => Some(own.foresee(n)),
             Self::Finite(own) => own.foresee(n, stars?),
+            Self::Solid(_) => None,
         }
     }
 
@@ -85,7 +100,7 @@ impl<'p, const D: usize, const N: usize> Auxiliary<'p, D, N> {
     }
 
     /// Measures the difference of the simulation and this solution at the last level taken in, once for a level; not of
-    /// a body that turns.
+    /// a body that turns, nor of a solid.
     pub(in crate::reconstruction::corrected) fn differ(&mut self, simulated: [&[[f64; D]]; 2], halvings: [f64; 2]) {
         if let Self::Small(own) = self {
             own.differ(simulated, halvings);
@@ -96,7 +111,7 @@ impl<'p, const D: usize, const N: usize> Auxiliary<'p, D, N> {
     pub(in crate::reconstruction::corrected) fn differences(&self) -> Option<&[Difference]> {
         match self {
             Self::Small(own) => own.differences(),
-            Self::Finite(_) => None,
+            Self::Finite(_) | Self::Solid(_) => None,
         }
     }
 
@@ -104,14 +119,14 @@ impl<'p, const D: usize, const N: usize> Auxiliary<'p, D, N> {
     pub(in crate::reconstruction::corrected) fn eigenstrains(&self) -> Option<&EigenStrains> {
         match self {
             Self::Small(own) => own.eigenstrains(),
-            Self::Finite(_) => None,
+            Self::Finite(_) | Self::Solid(_) => None,
         }
     }
 
     /// u at the level to come (m), of a body that turns.
     pub(in crate::reconstruction::corrected) fn displacement(&self) -> Option<&[[f64; D]]> {
         match self {
-            Self::Small(_) => None,
+            Self::Small(_) | Self::Solid(_) => None,
             Self::Finite(own) => Some(own.displacement()),
         }
     }

@@ -11,7 +11,7 @@
 //! and that of small strains where the body does not turn.
 
 use super::approach::{ContactElements, Foreseen, FreeFlight};
-use super::balance::{EnergyBalance, half_work};
+use super::balance::{EnergyBalance, half_work, kinetic_energy};
 use super::blocks::Blocks;
 use super::internal_forces::{add_internal_forces, corner};
 use super::pairs::Pairs;
@@ -221,10 +221,7 @@ impl<'p, const D: usize, const N: usize> FiniteAuxiliary<'p, D, N> {
             (0..plain.len()).map(|i| from_fn(|c| plain[i][c] + lumped[i][c] - time * bracket[i][c] * inverse_mass[i]));
         dynamics::advance(times, n, half_step, displacement, accelerations);
         let after = self.half_work(pull, around[1]);
-        let kinetic = |velocity: &[[f64; D]]| -> f64 {
-            let moving = velocity.iter().zip(problem.mass());
-            moving.map(|(v, m)| 0.5 * m * v.iter().map(|v| v * v).sum::<f64>()).sum()
-        };
+        let kinetic = |velocity: &[[f64; D]]| kinetic_energy(problem, velocity);
         let energies = [simulated.strain + kinetic(simulated.velocity), kinetic(&self.half_step)];
         self.energy_balance.add(problem, energies, simulated.velocity, before + after);
     }

@@ -29,6 +29,8 @@
 //!
 //! The four motions are lanes: they are gathered, multiplied and updated together, in one pass over the mesh for a
 //! step.
+//!
+//! Bodies that turn have a motion of their own in [`finite`], solids in [`solid`], each without those beside it.
 
 mod approach;
 mod balance;
@@ -46,6 +48,7 @@ mod pass;
 mod patch;
 mod plastic;
 mod response;
+mod solid;
 mod stability;
 mod surface;
 mod sweeps;

@@ -240,7 +240,7 @@ impl TrianglePair {
         let shared = match shape {
             CellKind::Bar => local(0),
             CellKind::Triangle => local(2),
-            CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
+            CellKind::Tetrahedron => unreachable!("solids have an auxiliary solution of their own"),
         };
         let other = second.and_then(|second| mesh.cell(second).iter().find(|node| !cell.contains(node)));
         let nodes = [local(0), local(1), shared, *other.unwrap_or(&local(0))];
@@ -256,7 +256,7 @@ impl TrianglePair {
         let as_triangle = match shape {
             CellKind::Bar => 0.75,
             CellKind::Triangle => 1.0,
-            CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
+            CellKind::Tetrahedron => unreachable!("solids have an auxiliary solution of their own"),
         };
         let share = |element: Option<ElementId>| {
             let mass = element.map_or(0.0, |e| problem.material(e).density() * problem.volume(e));
@@ -279,7 +279,7 @@ impl Moduli {
         let shear = match shape {
             CellKind::Bar => 0.0,
             CellKind::Triangle => shear,
-            CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
+            CellKind::Tetrahedron => unreachable!("solids have an auxiliary solution of their own"),
         };
         let by_place = |along: f64| {
             [0, 1].map(|column| {
