@@ -1,32 +1,22 @@
-//! Products of combinations of the stresses of the reference triangle.
+//! Products of combinations of the stresses of a reference element.
 
-use super::reference::{ALL, PAIRS, Reference};
 use percute_core::simd::lanes::Lanes;
 
-/// For each pair of components, ∫ of products of some combinations of the basis over the reference triangle, on and
-/// below the diagonal.
+/// For each pair of components of a stress, ∫ of products of some combinations of the basis over the reference element,
+/// on and below the diagonal.
 #[derive(Debug)]
-pub(super) struct CombinedGram(Vec<[f64; PAIRS.len()]>);
+pub(super) struct CombinedGram<const PAIRS: usize>(Vec<[f64; PAIRS]>);
 
-impl CombinedGram {
-    /// Of these combinations.
-    pub(super) fn new(columns: &[[f64; ALL]]) -> Self {
-        let gram = &Reference::get().gram;
-        let mut products = Vec::with_capacity(columns.len() * (columns.len() + 1) / 2);
-        for (i, x) in columns.iter().enumerate() {
-            for y in &columns[..=i] {
-                products.push(gram.each_ref().map(|gram| {
-                    let row = |(x, row): (&f64, &[f64; ALL])| x * row.iter().zip(y).map(|(g, y)| g * y).sum::<f64>();
-                    x.iter().zip(gram).map(row).sum()
-                }));
-            }
-        }
-        Self(products)
+impl<const PAIRS: usize> CombinedGram<PAIRS> {
+    /// Of these combinations, by the product of two.
+    pub(super) fn new<C>(combinations: &[C], product: impl Fn(&C, &C) -> [f64; PAIRS]) -> Self {
+        let rows = combinations.iter().enumerate();
+        Self(rows.flat_map(|(i, x)| combinations[..=i].iter().map(|y| product(x, y)).collect::<Vec<_>>()).collect())
     }
 
     /// The product of two of them, i ≥ j, with a weight of each pair of components.
     #[inline(always)]
-    pub(super) fn entry(&self, i: usize, j: usize, weights: &[Lanes; PAIRS.len()]) -> Lanes {
+    pub(super) fn entry(&self, i: usize, j: usize, weights: &[Lanes; PAIRS]) -> Lanes {
         let mut sum = Lanes::ZERO;
         for (weight, product) in weights.iter().zip(&self.0[i * (i + 1) / 2 + j]) {
             sum += *weight * *product;
@@ -36,6 +26,6 @@ impl CombinedGram {
 }
 
 /// A single stress of the basis.
-pub(super) fn unit(at: usize) -> [f64; ALL] {
+pub(super) fn unit<const ALL: usize>(at: usize) -> [f64; ALL] {
     std::array::from_fn(|i| f64::from(u8::from(i == at)))
 }

@@ -1,7 +1,7 @@
 //! The stress of an element without its mean.
 
 use super::combined_gram::{CombinedGram, unit};
-use super::reference::{ALL, FREE, LOADS};
+use super::reference::{ALL, FREE, LOADS, PAIRS, Reference};
 use percute_core::simd::lanes::Value;
 use std::sync::OnceLock;
 
@@ -54,17 +54,20 @@ impl<const D: usize, const N: usize, T: Value> Fluctuation<D, N, T> {
     }
 }
 
+/// Numbers that make up a fluctuation of a triangle: two for each edge, then two for each node.
+pub(super) const FLUCTUATION_LOADS: usize = 12;
 /// Free stresses of the reference triangle, and stresses of a unit of each load of a fluctuation.
-pub(super) const MODES: usize = FREE + 12;
+pub(super) const MODES: usize = FREE + FLUCTUATION_LOADS;
 /// The first that belongs to a load: differences of tractions on the edges, then volume loads at the nodes.
 pub(super) const START: usize = FREE;
 
 /// The products of these stresses, made at first use.
-pub(super) fn gram() -> &'static CombinedGram {
-    static GRAM: OnceLock<CombinedGram> = OnceLock::new();
+pub(super) fn gram() -> &'static CombinedGram<{ PAIRS.len() }> {
+    static GRAM: OnceLock<CombinedGram<{ PAIRS.len() }>> = OnceLock::new();
     GRAM.get_or_init(|| {
         let column = |i: usize| if i < START { unit(LOADS + i) } else { loads(i - START) };
-        CombinedGram::new(&std::array::from_fn::<_, MODES, _>(column))
+        let reference = Reference::get();
+        CombinedGram::new(&std::array::from_fn::<_, MODES, _>(column), |x, y| reference.product(x, y))
     })
 }
 

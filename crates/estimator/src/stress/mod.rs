@@ -3,10 +3,13 @@
 
 mod bar;
 mod combined_gram;
+mod conditions;
+mod elimination;
 mod energy_form;
 mod fluctuation;
 mod piecewise;
 mod reference;
+mod shapes;
 mod traction_forms;
 mod triangle;
 

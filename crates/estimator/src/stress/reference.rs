@@ -4,7 +4,8 @@
 //! An affine map carries them to any triangle by σ = B σ̂ Bᵀ / J, which keeps symmetry and turns
 //! tractions and divergence by the same B: everything but the energy is solved here, once.
 
-use nalgebra::{DMatrix, DVector, SVD};
+use super::conditions::solutions;
+use nalgebra::DMatrix;
 use std::sync::OnceLock;
 
 /// Values of a loading: |e|F̂ on 3 edges × 2 nodes, Γ_DA − f_d at 3 nodes, two components each.
@@ -105,29 +106,17 @@ impl Reference {
         REFERENCE.get_or_init(Self::solve)
     }
 
+    /// For each pair of components, ∫ of products of two combinations of the basis.
+    pub(super) fn product(&self, x: &[f64; ALL], y: &[f64; ALL]) -> [f64; PAIRS.len()] {
+        self.gram.each_ref().map(|gram| {
+            let row = |(x, row): (&f64, &[f64; ALL])| x * row.iter().zip(y).map(|(g, y)| g * y).sum::<f64>();
+            x.iter().zip(gram).map(row).sum()
+        })
+    }
+
     fn solve() -> Self {
         let (conditions, right) = equations();
-        let svd = SVD::new(conditions.clone(), true, true);
-        let mut order: Vec<usize> = (0..COEFFICIENTS).collect();
-        order.sort_by(|&i, &j| svd.singular_values[j].total_cmp(&svd.singular_values[i]));
-        let (left, modes) = (svd.u.unwrap_or_default(), svd.v_t.unwrap_or_default());
-        let (kept, free) = order.split_at(COEFFICIENTS - FREE);
-        // The decomposition is good to some 1e-13; corrections by what is left of the equations
-        // make the stresses exact to rounding.
-        let refined = |mut stress: DVector<f64>, right: &DVector<f64>| {
-            for _ in 0..4 {
-                let left_over = right - &conditions * &stress;
-                for &mode in kept {
-                    let weight = left.column(mode).dot(&left_over) / svd.singular_values[mode];
-                    stress += modes.row(mode).transpose() * weight;
-                }
-            }
-            std::array::from_fn(|i| stress[i])
-        };
-        let zero = DVector::zeros(COEFFICIENTS);
-        let loads = (0..LOADS).map(|load| refined(zero.clone(), &right.column(load).into_owned()));
-        let frees = free.iter().map(|&mode| refined(modes.row(mode).transpose(), &zero));
-        let basis: Vec<_> = loads.chain(frees).collect();
+        let basis = solutions::<COEFFICIENTS, FREE>(&conditions, &right);
         let gram = gram(&basis);
         Self { basis, gram }
     }
@@ -223,12 +212,11 @@ fn gram(basis: &[[f64; COEFFICIENTS]]) -> [[[f64; ALL]; ALL]; 6] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stress::conditions::tests::free_solutions;
 
     #[test]
     fn three_stresses_are_free() {
-        let svd = SVD::new(equations().0, false, false);
-        let zero = svd.singular_values.iter().filter(|s| **s < 1e-12 * svd.singular_values.max()).count();
-        assert_eq!(zero, FREE);
+        assert_eq!(free_solutions(equations().0), FREE);
     }
 
     #[test]

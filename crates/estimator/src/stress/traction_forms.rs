@@ -7,7 +7,7 @@
 
 use super::LOADS;
 use super::combined_gram::{CombinedGram, unit};
-use super::reference::{ALL, FREE, PAIRS};
+use super::reference::{ALL, FREE, PAIRS, Reference};
 use super::triangle::reference_compliance;
 use nalgebra::Matrix2;
 use percute_core::material::LinearLaw;
@@ -28,7 +28,7 @@ pub(crate) type BasisForm = [[Lanes; BASIS]; BASIS];
 
 /// The products of the stresses of the basis and of the free stresses.
 #[derive(Debug)]
-pub(crate) struct TractionForms(CombinedGram);
+pub(crate) struct TractionForms(CombinedGram<{ PAIRS.len() }>);
 
 impl TractionForms {
     /// Those of the reference triangle, made at first use.
@@ -36,7 +36,8 @@ impl TractionForms {
         static FORMS: OnceLock<TractionForms> = OnceLock::new();
         FORMS.get_or_init(|| {
             let column = |i: usize| if i < BASIS { loads(i) } else { unit(LOADS + i - BASIS) };
-            Self(CombinedGram::new(&std::array::from_fn::<_, COMBINED, _>(column)))
+            let reference = Reference::get();
+            Self(CombinedGram::new(&std::array::from_fn::<_, COMBINED, _>(column), |x, y| reference.product(x, y)))
         })
     }
 

@@ -1,7 +1,9 @@
 //! The form of a single element.
 
-use super::{COLUMNS, EnergyForm, EnergyForms, FluctuationForm, LOADS, ReferenceMap, coordinates};
+use super::triangle_forms::{COLUMNS, ReferenceMap, coordinates};
+use super::{EnergyForm, EnergyForms, FluctuationForm};
 use crate::stress::bar::BarStress;
+use crate::stress::fluctuation::FLUCTUATION_LOADS;
 use crate::stress::{Fluctuation, Loading};
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
@@ -19,7 +21,7 @@ pub(crate) enum ElementForm {
 pub(crate) struct StoredTriangleForm {
     map: ReferenceMap,
     /// L; above the diagonal, 0.
-    factor: [[f64; LOADS]; LOADS],
+    factor: [[f64; FLUCTUATION_LOADS]; FLUCTUATION_LOADS],
 }
 
 impl ElementForm {
@@ -30,10 +32,9 @@ impl ElementForm {
         let [lane, ..] = forms.prepare(problem, std::iter::once((id, points)));
         match forms.of(problem, id, &points, lane) {
             EnergyForm::Bar(map) => Self::Bar(map),
-            EnergyForm::Triangle(form) => Self::Triangle(Box::new(StoredTriangleForm {
-                map: form.map,
-                factor: form.factors.each_ref().map(|row| row.each_ref().map(|entry| entry.0[lane])),
-            })),
+            EnergyForm::Triangle(form) => {
+                Self::Triangle(Box::new(StoredTriangleForm { map: form.map, factor: form.factor() }))
+            }
         }
     }
 
@@ -62,9 +63,9 @@ impl FluctuationForm for ElementForm {
 impl StoredTriangleForm {
     /// The products of some columns of L with loads, as those of a form in a lane.
     #[inline(always)]
-    fn columns<const FIRST: usize, T: Value>(&self, loads: &[T; LOADS]) -> [T; COLUMNS] {
+    fn columns<const FIRST: usize, T: Value>(&self, loads: &[T; FLUCTUATION_LOADS]) -> [T; COLUMNS] {
         let mut sums = [loads[0].zero(); COLUMNS];
-        for i in FIRST..LOADS {
+        for i in FIRST..FLUCTUATION_LOADS {
             for j in 0..COLUMNS {
                 sums[j] += loads[i] * self.factor[i][FIRST + j];
             }

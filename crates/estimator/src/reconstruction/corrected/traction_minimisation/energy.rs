@@ -21,16 +21,14 @@ pub(super) fn moment_slope<T: Value, const D: usize, const N: usize>(
             difference[a][b] -= stress[a][b];
         }
     }
-    // A moment is a force on its node: it changes the mean stress by the product with the arm of the node. The traction
-    // at the second node of an edge less that at the first is D(D+1) times the difference of the moments.
-    let (strain, slopes) = (measure.strain(&difference), form.difference_slope(&admissible.fluctuation));
+    // A moment is a force on its node: it changes the mean stress by the product with the arm of the node.
+    let (strain, slopes) = (measure.strain(&difference), form.fluctuation_slope(&admissible.fluctuation));
     let mut moments = [difference[0][0]; MOMENTS];
     for (k, slope) in slopes.iter().enumerate() {
         for c in 0..D {
-            let turning = slope[c] * (D * (D + 1)) as f64;
             for p in 0..D {
                 let arm = &measure.arms()[face_node::<N>(k, p)];
-                let mut sum = if p == 0 { -turning } else { turning };
+                let mut sum = slope[p][c];
                 for b in 0..D {
                     sum += strain[c][b] * arm[b];
                 }

@@ -56,15 +56,16 @@ fn forms_are_those_of_the_stress() {
             let (found, expected) = (coordinates.energy(), stress.energy(&loading));
             assert!((found - expected).abs() < 1e-12 * expected, "{found} for {expected}");
             // A quadratic form: central differences are its slopes.
-            let slopes = form.difference_slope(&coordinates);
-            for (k, c) in (0..3).flat_map(|k| [(k, 0), (k, 1)]) {
+            let slopes = form.fluctuation_slope(&coordinates);
+            for (k, p, c) in (0..12).map(|i| (i / 4, i / 2 % 2, i % 2)) {
                 let energy = |step: f64| {
                     let mut other = loading;
-                    other.traction[k][1][c] += step;
+                    // Tractions of moments b are 2(3b_p − Σb).
+                    (0..2).for_each(|q| other.traction[k][q][c] += step * if p == q { 4.0 } else { -2.0 });
                     form.fluctuation(&other).energy()
                 };
-                let expected = 0.5 * (energy(1.0) - energy(-1.0));
-                assert!((slopes[k][c] - expected).abs() < 1e-11 * found.max(1.0), "{} {expected}", slopes[k][c]);
+                let (slope, expected) = (slopes[k][p][c], 0.5 * (energy(1.0) - energy(-1.0)));
+                assert!((slope - expected).abs() < 1e-11 * found.max(1.0), "{slope} {expected}");
             }
         }
     }
@@ -105,14 +106,14 @@ fn lanes_are_apart() {
     let form = forms.of(0, &points);
     let all = loading(|| Lanes::at_levels(|_| random.between(-1.0, 1.0)));
     let fluctuation = form.fluctuation(&all);
-    let (energy, slope) = (fluctuation.energy(), form.difference_slope(&fluctuation));
+    let (energy, slope) = (fluctuation.energy(), form.fluctuation_slope(&fluctuation));
     for lane in 0..LANES {
         let of = |vector: &[Lanes; 2]| vector.map(|v| v.0[lane]);
         let alone = Loading { traction: all.traction.map(|t| t.map(|v| of(&v))), volume: all.volume.map(|v| of(&v)) };
         let fluctuation = form.fluctuation(&alone);
         assert_eq!(energy.0[lane], fluctuation.energy());
-        let expected = form.difference_slope(&fluctuation);
-        for (a, b) in slope.iter().zip(&expected) {
+        let expected = form.fluctuation_slope(&fluctuation);
+        for (a, b) in slope.as_flattened().iter().zip(expected.as_flattened()) {
             assert_eq!(of(a), *b);
         }
     }
