@@ -32,7 +32,7 @@ pub(super) fn memory<const D: usize, const N: usize>(problem: &Problem<D>, sampl
     let (all, most) = (samples.saturating_mul(elements).saturating_mul(interval), backlog::most_bytes(nodes));
     // The memory of a group has room for more; what is in the file is read into another.
     let groups = (2 + usize::from(all > most)) * elements.min(BLOCK * GROUP) * LANES * interval;
-    elements * (size_of::<NearElement<D, N>>() + ElementForm::memory())
+    elements * (size_of::<NearElement<D, N>>() + ElementForm::memory::<D>())
         + all.min(most)
         + groups
         + ContactMotions::memory(problem, span(spacing))

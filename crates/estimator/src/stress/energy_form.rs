@@ -2,8 +2,8 @@
 //!
 //! The law is constant in an element, so the mean of a stress and what is left of it have separate energies. The mean
 //! follows from the forces on the nodes. The rest, the *fluctuation*, follows from the differences of the tractions at
-//! the nodes of each face and from Γ_DA − f_d: with these given, the tractions that put no force on any node are unique.
-//! The tractions of a constant stress add nothing to the fluctuation.
+//! the nodes of each face and from Γ_DA − f_d: with these given, the tractions that put no force on any node are
+//! unique. The tractions of a constant stress add nothing to the fluctuation.
 //!
 //! The form of the fluctuation follows from the shape and the law. It is written LLᵀ, so that Lᵀ gives coordinates in
 //! which the energy is the sum of squares. Coordinates are linear in the loads: half way between two instants they are
@@ -15,6 +15,7 @@ mod element_form;
 mod triangle_forms;
 
 use super::bar::BarStress;
+use super::tetrahedron::{TetrahedronForm, TetrahedronForms};
 use super::{Fluctuation, Loading};
 pub(crate) use element_form::ElementForm;
 use percute_core::cell::{CellKind, cell};
@@ -28,6 +29,7 @@ use triangle_forms::{TriangleForm, TriangleForms};
 pub(crate) enum EnergyForms {
     Bars,
     Triangles(TriangleForms),
+    Tetrahedra(TetrahedronForms),
 }
 
 /// The form of one element.
@@ -35,6 +37,7 @@ pub(crate) enum EnergyForms {
 pub(crate) enum EnergyForm<'a> {
     Bar(BarStress),
     Triangle(TriangleForm<'a>),
+    Tetrahedron(&'a TetrahedronForm),
 }
 
 impl EnergyForms {
@@ -43,7 +46,7 @@ impl EnergyForms {
         match shape {
             CellKind::Bar => Self::Bars,
             CellKind::Triangle => Self::Triangles(TriangleForms::new()),
-            CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
+            CellKind::Tetrahedron => Self::Tetrahedra(TetrahedronForms::new()),
         }
     }
 
@@ -58,6 +61,9 @@ impl EnergyForms {
         match self {
             Self::Bars => [0; LANES],
             Self::Triangles(forms) => {
+                forms.prepare(elements.map(|(id, points)| (corners(&points), problem.material(id))))
+            }
+            Self::Tetrahedra(forms) => {
                 forms.prepare(elements.map(|(id, points)| (corners(&points), problem.material(id))))
             }
         }
@@ -75,6 +81,7 @@ impl EnergyForms {
         match self {
             Self::Bars => EnergyForm::Bar(BarStress::new(cell::<D, N>().signed_volume(points), problem.material(id))),
             Self::Triangles(forms) => EnergyForm::Triangle(forms.of(lane, &corners(points))),
+            Self::Tetrahedra(forms) => EnergyForm::Tetrahedron(forms.of(lane)),
         }
     }
 }
@@ -95,13 +102,14 @@ impl FluctuationForm for EnergyForm<'_> {
         match self {
             Self::Bar(map) => map.fluctuation(loading),
             Self::Triangle(form) => form.fluctuation(loading),
+            Self::Tetrahedron(form) => form.fluctuation(loading),
         }
     }
 }
 
 impl EnergyForm<'_> {
-    /// The slope of the energy (J per unit of section or thickness) of a fluctuation in the outward moments on the nodes
-    /// of each face, per unit of section or thickness; in 1D, where a face is a point, zero.
+    /// The slope (m) of the energy of a fluctuation (J) in the outward moments (N) at the nodes of each face; in 1D, where
+    /// a face is a point, zero.
     #[inline(always)]
     pub(crate) fn fluctuation_slope<T: Value, const D: usize, const N: usize>(
         &self,
@@ -110,6 +118,7 @@ impl EnergyForm<'_> {
         match self {
             Self::Bar(_) => [[[fluctuation.coordinates[0][0][0].zero(); D]; D]; N],
             Self::Triangle(form) => form.fluctuation_slope(fluctuation),
+            Self::Tetrahedron(form) => form.fluctuation_slope(fluctuation),
         }
     }
 }

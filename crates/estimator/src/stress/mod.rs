@@ -10,6 +10,7 @@ mod fluctuation;
 mod piecewise;
 mod reference;
 mod shapes;
+mod tetrahedron;
 mod traction_forms;
 mod triangle;
 
@@ -20,6 +21,9 @@ use percute_core::cell::{Cell, CellKind};
 use percute_core::material::LinearLaw;
 pub(crate) use piecewise::MONOMIALS;
 pub(crate) use reference::LOADS;
+use tetrahedron::TetrahedronStress;
+#[allow(unused_imports, reason = "tractions of solids are not minimised yet")]
+pub(crate) use tetrahedron::{MomentForm, MomentForms};
 pub(crate) use traction_forms::{BasisForm, EDGES, TractionForms};
 pub(crate) use triangle::TriangleStress;
 
@@ -52,6 +56,7 @@ pub(crate) struct StressResiduals {
 pub(crate) enum StressMap {
     Bar(BarStress),
     Triangle(Box<TriangleStress>),
+    Tetrahedron(Box<TetrahedronStress>),
 }
 
 impl StressMap {
@@ -62,10 +67,13 @@ impl StressMap {
     ) -> Self {
         match kind.kind() {
             CellKind::Bar => Self::Bar(BarStress::new(kind.signed_volume(points), law)),
-            CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
             CellKind::Triangle => {
                 let corners = std::array::from_fn(|i| [points[i][0], points[i][1]]);
                 Self::Triangle(Box::new(TriangleStress::new(&corners, law)))
+            }
+            CellKind::Tetrahedron => {
+                let corners = std::array::from_fn(|i| [points[i][0], points[i][1], points[i][2]]);
+                Self::Tetrahedron(Box::new(TetrahedronStress::new(&corners, law)))
             }
         }
     }
@@ -75,6 +83,7 @@ impl StressMap {
         match self {
             Self::Bar(map) => [[map.mean(loading); D]; D],
             Self::Triangle(map) => tensor(&map.mean(loading)),
+            Self::Tetrahedron(map) => tensor(&map.mean(loading)),
         }
     }
 
@@ -88,11 +97,13 @@ impl StressMap {
         match self {
             Self::Bar(map) => map.residuals(loading, floor),
             Self::Triangle(map) => map.residuals(loading, floor),
+            Self::Tetrahedron(map) => map.residuals(loading, floor),
         }
     }
 }
 
-/// A plane stress of which 11, 22 and 12 are given.
-pub(crate) fn tensor<const D: usize>([xx, yy, xy]: &[f64; 3]) -> [[f64; D]; D] {
-    std::array::from_fn(|a| std::array::from_fn(|b| [[*xx, *xy], [*xy, *yy]][a][b]))
+/// A stress of which 11, 22 and 12 are given in a plane, 11, 22, 33, 23, 13 and 12 in space.
+pub(crate) fn tensor<const D: usize, const COMPONENTS: usize>(components: &[f64; COMPONENTS]) -> [[f64; D]; D] {
+    let at = |a: usize, b: usize| if a == b { a } else { COMPONENTS - a - b };
+    std::array::from_fn(|a| std::array::from_fn(|b| components[at(a, b)]))
 }

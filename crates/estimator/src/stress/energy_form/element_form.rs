@@ -4,6 +4,7 @@ use super::triangle_forms::{COLUMNS, ReferenceMap, coordinates};
 use super::{EnergyForm, EnergyForms, FluctuationForm};
 use crate::stress::bar::BarStress;
 use crate::stress::fluctuation::FLUCTUATION_LOADS;
+use crate::stress::tetrahedron::TetrahedronForm;
 use crate::stress::{Fluctuation, Loading};
 use percute_core::ids::ElementId;
 use percute_core::problem::Problem;
@@ -14,6 +15,7 @@ use percute_core::simd::lanes::Value;
 pub(crate) enum ElementForm {
     Bar(BarStress),
     Triangle(Box<StoredTriangleForm>),
+    Tetrahedron(Box<TetrahedronForm>),
 }
 
 /// The form of one triangle.
@@ -35,12 +37,13 @@ impl ElementForm {
             EnergyForm::Triangle(form) => {
                 Self::Triangle(Box::new(StoredTriangleForm { map: form.map, factor: form.factor() }))
             }
+            EnergyForm::Tetrahedron(form) => Self::Tetrahedron(Box::new(form.clone())),
         }
     }
 
-    /// Memory of one (bytes).
-    pub(crate) const fn memory() -> usize {
-        size_of::<StoredTriangleForm>()
+    /// Memory of one in this dimension (bytes), at most.
+    pub(crate) const fn memory<const D: usize>() -> usize {
+        if D == 3 { size_of::<TetrahedronForm>() } else { size_of::<StoredTriangleForm>() }
     }
 }
 
@@ -56,6 +59,7 @@ impl FluctuationForm for ElementForm {
                 let loads = form.map.pull_back(loading);
                 coordinates(form.columns::<0, T>(&loads), form.columns::<COLUMNS, T>(&loads))
             }
+            Self::Tetrahedron(form) => form.fluctuation(loading),
         }
     }
 }
@@ -78,6 +82,7 @@ impl StoredTriangleForm {
 mod tests {
     use super::*;
     use percute_core::material::Elastic;
+    use percute_core::mesh::Mesh;
     use percute_testkit::{Random, random_rectangle};
 
     /// The form that is kept gives the bits of the form that is made anew, among others.
@@ -100,5 +105,28 @@ mod tests {
             assert!(made.energy() > 0.0);
             assert_eq!(made.coordinates, kept.coordinates, "{id:?}");
         }
+    }
+
+    /// The same for tetrahedra, with the memory that is reckoned with.
+    #[test]
+    fn a_tetrahedron_keeps_its_form() {
+        let law = Elastic::solid(70e9, 0.3, 2700.0).unwrap();
+        let problem =
+            Problem::<3>::builder(Mesh::cuboid([1.0, 0.7, 0.4], [1; 3]).unwrap()).material(law).build().unwrap();
+        let (mut random, mut forms) = (Random::new(3), EnergyForms::new(problem.mesh().kind()));
+        for id in (0..problem.mesh().element_count()).map(ElementId::new) {
+            let points = problem.mesh().corners::<3, 4>(id);
+            let [lane, ..] = forms.prepare(&problem, std::iter::once((id, points)));
+            let mut vector = || [(); 3].map(|()| random.between(-1.0, 1.0));
+            let loading =
+                Loading { traction: [(); 4].map(|()| [(); 3].map(|()| vector())), volume: [(); 4].map(|()| vector()) };
+            let made = forms.of(&problem, id, &points, lane).fluctuation(&loading);
+            let kept = ElementForm::new::<3, 4>(&problem, id).fluctuation(&loading);
+            assert!(made.energy() > 0.0);
+            assert_eq!(made.coordinates, kept.coordinates, "{id:?}");
+        }
+        assert!(
+            ElementForm::memory::<3>() > 8 * 36 * 37 / 2 && ElementForm::memory::<3>() > ElementForm::memory::<2>()
+        );
     }
 }
