@@ -91,6 +91,14 @@ impl Coulomb {
     pub fn misfit(self, normal: f64, tangential: f64, sliding: f64) -> f64 {
         self.limit(normal) * sliding.abs() + sliding * tangential
     }
+
+    /// The same of vectors (N, m/s), of which the parts along the obstacle count.
+    #[inline]
+    #[must_use]
+    pub fn misfit_along<const D: usize>(self, frame: &Frame<D>, force: &[f64; D], velocity: &[f64; D]) -> f64 {
+        let ((normal, tangential), (_, sliding)) = (frame.split(force), frame.split(velocity));
+        self.limit(normal) * dot(&sliding, &sliding).sqrt() + dot(&sliding, &tangential)
+    }
 }
 
 /// Energy (J) that friction dissipates under a force (N) over a path (m), −F_t·Δu.

@@ -73,18 +73,24 @@ impl Mesh {
         feet.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((*point, f64::INFINITY))
     }
 
-    /// The angle of a triangle at one of its nodes (rad); 0 for other elements.
+    /// The angle of a triangle (rad) or the solid angle of a tetrahedron (sr) at one of its nodes; 0 for a bar.
     #[must_use]
     pub fn angle(&self, element: ElementId, node: NodeId) -> f64 {
-        let Some(k) = self.local_node(element, node).filter(|_| self.kind == CellKind::Triangle) else { return 0.0 };
-        cell::<2, 3>().angle_around(&self.corners(element), &[k])
+        let Some(k) = self.local_node(element, node) else { return 0.0 };
+        match self.kind {
+            CellKind::Bar => 0.0,
+            CellKind::Triangle => cell::<2, 3>().angle_around(&self.corners(element), &[k]),
+            CellKind::Tetrahedron => cell::<3, 4>().angle_around(&self.corners(element), &[k]),
+        }
     }
 
-    /// The angle inside the body between the two edges of its outline at a node (rad); none at a node inside the body.
+    /// The angle inside a plane body between the two edges of its outline at a node (rad); none at a node inside the
+    /// body and of a solid.
     #[must_use]
     pub fn angle_of_outline(&self, node: NodeId) -> Option<f64> {
         let star = self.stars().star(node);
-        (!star.is_closed()).then(|| star.elements.iter().map(|&element| self.angle(element, node)).sum())
+        (!star.is_closed() && self.kind != CellKind::Tetrahedron)
+            .then(|| star.elements.iter().map(|&element| self.angle(element, node)).sum())
     }
 
     /// The nodes of the outline of a plane body with an angle inside the body above this (rad).

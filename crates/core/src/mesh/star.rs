@@ -10,20 +10,22 @@ use crate::ids::{ElementId, FaceId, NodeId};
 /// A star of k elements is a chain: face, element, face, …, element, face, in counterclockwise order (in 1D from
 /// left to right). An interior node of a 2D mesh has a closed chain whose first and last face are the same; in 1D,
 /// where an element has a single face at a node, the outer ends of the chain are `None`. In 3D no order goes around a
-/// node: a star has its elements, ascending, and no links.
+/// node: a star has its elements and, as links, the faces at the node, both ascending.
 #[derive(Clone, Debug, Default)]
 pub struct Stars {
     offsets: Vec<u32>,
     elements: Vec<ElementId>,
     links: Vec<Option<FaceId>>,
+    /// Where the links of each star begin; empty where they follow from the elements of a chain.
+    link_offsets: Vec<u32>,
 }
 
 /// The star of one node.
 #[derive(Clone, Copy, Debug)]
 pub struct Star<'a> {
-    /// Elements in the order of the chain.
+    /// Elements in the order of the chain; ascending in 3D.
     pub elements: &'a [ElementId],
-    /// Face before, between and after them: one more than elements. None in 3D.
+    /// Face before, between and after them: one more than elements. In 3D all faces at the node, ascending.
     pub links: &'a [Option<FaceId>],
 }
 
@@ -33,6 +35,12 @@ impl Star<'_> {
     pub fn is_closed(&self) -> bool {
         matches!(self.links, [Some(first), .., Some(last)] if first == last)
     }
+
+    /// The place of a face among the links of a star without order.
+    #[must_use]
+    pub fn place_of(&self, face: FaceId) -> usize {
+        self.links.partition_point(|link| *link < Some(face))
+    }
 }
 
 impl Stars {
@@ -40,10 +48,9 @@ impl Stars {
     #[inline]
     #[must_use]
     pub fn star(&self, node: NodeId) -> Star<'_> {
-        let links = self.link_range(node);
         let i = node.index();
-        let elements = &self.elements[links.start - i..links.end - i - 1];
-        Star { elements, links: if self.links.is_empty() { &[] } else { &self.links[links] } }
+        let elements = &self.elements[self.offsets[i] as usize..self.offsets[i + 1] as usize];
+        Star { elements, links: &self.links[self.link_range(node)] }
     }
 
     /// Where the links of a star lie among those of all stars.
@@ -51,8 +58,11 @@ impl Stars {
     #[must_use]
     pub fn link_range(&self, node: NodeId) -> std::ops::Range<usize> {
         let i = node.index();
-        // Each earlier star holds one link more than elements.
-        self.offsets[i] as usize + i..self.offsets[i + 1] as usize + i + 1
+        match self.link_offsets.get(i..i + 2) {
+            Some(range) => range[0] as usize..range[1] as usize,
+            // Each earlier star holds one link more than elements.
+            None => self.offsets[i] as usize + i..self.offsets[i + 1] as usize + i + 1,
+        }
     }
 
     /// Number of links in all stars.
@@ -68,16 +78,23 @@ impl Stars {
             offsets: Vec::with_capacity(self.offsets.len()),
             elements: Vec::with_capacity(self.elements.len()),
             links: Vec::with_capacity(self.links.len()),
+            link_offsets: Vec::with_capacity(self.link_offsets.len()),
         };
         stars.offsets.push(0);
+        let has_order = self.link_offsets.is_empty();
+        stars.link_offsets.extend((!has_order).then_some(0));
         let element = |e: &ElementId| ElementId::new(element[e.index()] as usize);
         let face = |f: &Option<FaceId>| f.map(|f| FaceId::new(face[f.index()] as usize));
         for &node in nodes {
             let star = self.star(node);
             let (at, count) = (stars.elements.len(), star.elements.len());
             stars.elements.extend(star.elements.iter().map(element));
-            if star.links.is_empty() {
+            if !has_order {
+                let links = stars.links.len();
+                stars.links.extend(star.links.iter().map(face));
+                stars.links[links..].sort_unstable();
                 stars.elements[at..].sort_unstable();
+                stars.link_offsets.push(stars.links.len() as u32);
                 stars.offsets.push(stars.elements.len() as u32);
                 continue;
             }
@@ -113,6 +130,7 @@ impl Stars {
             offsets: Vec::with_capacity(node_count + 1),
             elements: Vec::with_capacity(N * cells.len()),
             links: Vec::with_capacity(N * cells.len() + node_count),
+            link_offsets: Vec::new(),
         };
         stars.offsets.push(0);
         let sides = |element: ElementId, node: NodeId| {
@@ -155,26 +173,30 @@ impl Stars {
         faces: &Faces,
         cell_faces: &[[FaceId; N]],
     ) -> Result<Self, MeshError> {
-        let mut reached: Vec<ElementId> = Vec::new();
+        let (mut reached, mut links, mut link_offsets): (Vec<ElementId>, Vec<Option<FaceId>>, _) =
+            (Vec::new(), Vec::with_capacity(3 * faces.len()), vec![0]);
         for (node, range) in starts.windows(2).enumerate().take(starts.len() - 2) {
             let around = &incident[range[0] as usize..range[1] as usize];
             reached.clear();
             reached.push(around[0]);
-            let mut at = 0;
+            let (mut at, first) = (0, links.len());
             while let Some(&element) = reached.get(at) {
                 at += 1;
                 let own = cells[element.index()].iter().zip(&cell_faces[element.index()]);
                 // A face is at all nodes but that opposite to it.
                 for (_, face) in own.filter(|(opposite, _)| opposite.index() != node) {
-                    let across = faces.get(face.index()).across(element);
-                    reached.extend(across.filter(|other| !reached.contains(other)));
+                    let known = faces.get(face.index());
+                    links.extend((known.owner == element).then_some(Some(*face)));
+                    reached.extend(known.across(element).filter(|other| !reached.contains(other)));
                 }
             }
             if reached.len() != around.len() {
                 return Err(MeshError::NonManifoldSolid { node, elements: around.len(), reached: reached.len() });
             }
+            links[first..].sort_unstable();
+            link_offsets.push(links.len() as u32);
         }
-        Ok(Self { offsets: starts[..starts.len() - 1].to_vec(), elements: incident, links: Vec::new() })
+        Ok(Self { offsets: starts[..starts.len() - 1].to_vec(), elements: incident, links, link_offsets })
     }
 }
 

@@ -79,9 +79,16 @@ impl<const D: usize> Problem<D> {
     /// surface, and an edge that stands across.
     #[must_use]
     pub fn on_lines_of_symmetry(&self) -> Vec<bool> {
+        self.mirrors_at_contact().into_iter().map(|across| across.contains(&true)).collect()
+    }
+
+    /// The directions across which each node of the contact surface is on a line or plane of symmetry that stands
+    /// across the surface.
+    #[must_use]
+    pub fn mirrors_at_contact(&self) -> Vec<[bool; D]> {
         let mirrors = mirrors(&self.mesh, &self.supported);
-        let is_on_line = |contact: &ContactNode| contact.guided && mirrors[contact.node.index()].contains(&true);
-        self.surface.nodes().iter().map(is_on_line).collect()
+        let of = |contact: &ContactNode| if contact.guided { mirrors[contact.node.index()] } else { [false; D] };
+        self.surface.nodes().iter().map(of).collect()
     }
 
     /// The lines of symmetry on which each node is.
