@@ -2,6 +2,7 @@
 
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::material::Law;
+use percute_core::mesh::{Mesh, Star};
 use percute_core::problem::Problem;
 use percute_core::simd::lanes::Value;
 
@@ -15,24 +16,58 @@ pub(crate) struct Element<const D: usize, const N: usize> {
     pub(crate) volume: f64,
     /// Lumped mass at each node, ρV/(D+1) (kg).
     pub(crate) nodal_mass: f64,
-    /// For each node, where the face by which its star enters this element lies among the
-    /// links of all stars; the face by which it leaves comes next.
-    pub(crate) links: [u32; N],
+    /// For each node, the links of its star on the faces of this element, by the place of the node in the face.
+    pub(crate) links: [[Link; D]; N],
+}
+
+/// A face of an element in the star of one of its nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Link(u32);
+
+impl Link {
+    /// From its place among the links of all stars, and whether moments on it enter the element: those of a chain by
+    /// the face before it, those of a solid from the owner of the face.
+    pub(crate) fn new(place: usize, enters: bool) -> Self {
+        Self(2 * place as u32 + u32::from(enters))
+    }
+
+    /// Its place among the links of all stars.
+    #[inline(always)]
+    pub(crate) fn place(self) -> usize {
+        (self.0 >> 1) as usize
+    }
+
+    /// Whether moments on it enter the element at the p-th node of its face k. In the plane all elements are alike.
+    #[inline(always)]
+    pub(crate) fn enters<const D: usize>(self, k: usize, p: usize) -> bool {
+        match D {
+            1 => k == 1,
+            2 => p == 0,
+            _ => self.0 & 1 == 1,
+        }
+    }
+}
+
+/// The face of which local node `i` is the p-th node: face k lies opposite to node k.
+#[inline(always)]
+pub(crate) const fn face_at<const N: usize>(i: usize, p: usize) -> usize {
+    (i + N - 1 - p) % N
 }
 
 /// The elements of a problem.
 pub(crate) fn elements<const D: usize, const N: usize>(problem: &Problem<D>) -> Vec<Element<D, N>> {
     let mesh = problem.mesh();
-    let mut links = vec![[0; N]; mesh.element_count()];
+    let mut links = vec![[[Link(0); D]; N]; mesh.element_count()];
     for node in (0..mesh.node_count()).map(NodeId::new) {
-        let first = mesh.stars().link_range(node).start;
-        for (m, &element) in mesh.stars().star(node).elements.iter().enumerate() {
-            if let Some(i) = mesh.local_node(element, node) {
-                links[element.index()][i] = (first + m) as u32;
+        let (first, star) = (mesh.stars().link_range(node).start, mesh.stars().star(node));
+        for (m, &element) in star.elements.iter().enumerate() {
+            let Some(i) = mesh.local_node(element, node) else { continue };
+            for p in 0..D {
+                links[element.index()][i][p] = link::<D, N>(mesh, star, first, (element, m, i), p);
             }
         }
     }
-    let element = |(e, links): (usize, [u32; N])| {
+    let element = |(e, links): (usize, [[Link; D]; N])| {
         let id = ElementId::new(e);
         let geometry = mesh.geometry::<D, N>(id);
         let volume = problem.volume(id);
@@ -45,6 +80,25 @@ pub(crate) fn elements<const D: usize, const N: usize>(problem: &Problem<D>) -> 
         }
     };
     links.into_iter().enumerate().map(element).collect()
+}
+
+/// The link of the m-th element of a star, whose local node `i` is the node of the star, on the face of which this is
+/// the p-th node; `first` is the place of the first link of the star.
+fn link<const D: usize, const N: usize>(
+    mesh: &Mesh,
+    star: Star<'_>,
+    first: usize,
+    (element, m, i): (ElementId, usize, usize),
+    p: usize,
+) -> Link {
+    let k = face_at::<N>(i, p);
+    let enters = Link(0).enters::<D>(k, p);
+    if D < 3 {
+        // The face by which the star enters the element, or the next one.
+        return Link::new(first + m + usize::from(!enters), enters);
+    }
+    let face = mesh.faces_of::<N>()[element.index()][k];
+    Link::new(first + star.place_of(face), mesh.face(face).owner != element)
 }
 
 impl<const D: usize, const N: usize> Element<D, N> {

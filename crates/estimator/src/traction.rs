@@ -9,7 +9,9 @@
 mod equilibrated;
 mod mass_term;
 mod solve;
-mod star_solver;
+mod star_chain;
+mod star_graph;
+mod star_terms;
 
 use crate::blocks::{ElementBlocks, MeshPart, StarBlocks, parts};
 use crate::contact_density::Densities;
@@ -28,7 +30,8 @@ use percute_core::problem::Problem;
 use percute_core::simd::lanes::Value;
 pub(crate) use solve::BalancedStrains;
 use solve::StarFields;
-use star_solver::{Compatibility, Ends};
+use star_chain::Ends;
+use star_terms::Compatibility;
 
 /// Work on the elements of a part of the mesh, of which the tractions are final.
 pub(crate) type Then<'t, const D: usize> = &'t mut dyn FnMut(&EquilibratedLevels<D>, &MeshPart);

@@ -1,6 +1,7 @@
 //! The dynamically admissible fields of an element.
 
-use crate::stress::{Loading, face_node};
+use crate::element::{Link, face_at};
+use crate::stress::Loading;
 use percute_core::simd::lanes::Value;
 
 /// The fields of an element that tractions and Γ_DA are made of.
@@ -76,28 +77,25 @@ impl<const D: usize, const N: usize, T: Value> Balanced<D, N, T> {
     }
 }
 
-/// Outward moments of each face at its nodes, from those by which the star of each node enters and leaves the element:
-/// entering moments have the other sign.
+/// Outward moments of each face of an element at its nodes, from those on the links of each node: those that enter have
+/// the other sign.
 #[inline(always)]
 pub(crate) fn outward<T: Value, const D: usize, const N: usize>(
-    around: impl Fn(usize) -> [[T; D]; 2],
+    links: &[[Link; D]; N],
+    around: impl Fn(usize) -> [[T; D]; D],
 ) -> [[[T; D]; D]; N] {
-    let [entry, _] = around(0);
-    let mut moments = [[entry; D]; N];
-    for k in 0..N {
+    let mut moments = [around(0); N];
+    for i in 0..N {
+        let own = around(i);
         for p in 0..D {
-            let [entry, exit] = around(face_node::<N>(k, p));
+            let k = face_at::<N>(i, p);
+            let enters = links[i][p].enters::<D>(k, p);
             for c in 0..D {
-                moments[k][p][c] = if enters::<D>(k, p) { -entry[c] } else { exit[c] };
+                moments[k][p][c] = if enters { -own[p][c] } else { own[p][c] };
             }
         }
     }
     moments
-}
-
-/// Whether the star of the p-th node of face k enters the element by it.
-const fn enters<const D: usize>(k: usize, p: usize) -> bool {
-    if D == 1 { k == 1 } else { p == 0 }
 }
 
 #[cfg(test)]
@@ -109,8 +107,8 @@ mod tests {
         for (i, faces) in kind.faces_around().iter().enumerate() {
             for (exit, face) in faces.iter().enumerate() {
                 let Some(k) = *face else { continue };
-                let p = (0..D).find(|&p| face_node::<N>(k, p) == i).unwrap();
-                assert_eq!(enters::<D>(k, p), exit == 0, "node {i}, face {k}");
+                let p = (0..D).find(|&p| face_at::<N>(i, p) == k).unwrap();
+                assert_eq!(Link::new(7, exit == 0).enters::<D>(k, p), exit == 0, "node {i}, face {k}");
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The fields of the nodes of a block of elements, at some levels side by side.
 
 use super::balanced::{NodalBalance, outward};
-use crate::element::Element;
+use crate::element::{Element, Link};
 use crate::field_lanes::gather;
 use crate::traction::EquilibratedLevels;
 use percute_core::ids::ElementId;
@@ -26,9 +26,8 @@ pub(crate) struct BalanceNode<const D: usize> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BalanceFields<const D: usize> {
     nodes: Vec<BalanceNode<D>>,
-    /// The moments by which the stars of the nodes of some elements enter and leave them (N): those of a node follow
-    /// each other.
-    moments: Vec<[[Lanes; D]; 2]>,
+    /// The moments on the links of the nodes of some elements (N): those of a node follow each other.
+    moments: Vec<[[Lanes; D]; D]>,
     split: bool,
     /// Whether the body may turn.
     turning: bool,
@@ -126,11 +125,12 @@ impl<const D: usize> BalanceFields<D> {
         levels: &EquilibratedLevels<D>,
     ) {
         let moments = levels.moments();
-        self.moments.resize(N * elements.len(), [[Lanes::ZERO; D]; 2]);
+        self.moments.resize(N * elements.len(), [[Lanes::ZERO; D]; D]);
         for (own, element) in self.moments.chunks_exact_mut(N).zip(elements) {
             for i in 0..N {
-                let pair = &moments[element.links[i] as usize..][..2];
-                own[i] = [pair[0], pair[1]];
+                for p in 0..D {
+                    own[i][p] = moments[element.links[i][p].place()];
+                }
             }
         }
     }
@@ -142,7 +142,7 @@ impl<const D: usize> BalanceFields<D> {
         like: T,
         k: usize,
         levels: &EquilibratedLevels<D>,
-        id: ElementId,
+        (id, links): (ElementId, &[[Link; D]; N]),
         nodes: &[&BalanceNode<D>; N],
     ) -> NodalBalance<D, N, T> {
         let own = &self.moments[N * k..][..N];
@@ -153,8 +153,9 @@ impl<const D: usize> BalanceFields<D> {
         }
         NodalBalance {
             moments: outward(
+                links,
                 #[inline(always)]
-                |i| [load(like, &own[i][0]), load(like, &own[i][1])],
+                |i| on_links(like, &own[i]),
             ),
             acceleration,
             skew: self.split.then_some(skew),
@@ -187,6 +188,16 @@ impl<const D: usize> BalanceNode<D> {
         }
         displacements
     }
+}
+
+/// Moments on the links of a node, in the form of a number.
+#[inline(always)]
+fn on_links<T: Value<Stored = Lanes>, const D: usize>(like: T, stored: &[[Lanes; D]; D]) -> [[T; D]; D] {
+    let mut moments = [[like; D]; D];
+    for p in 0..D {
+        moments[p] = load(like, &stored[p]);
+    }
+    moments
 }
 
 /// The records at these places.

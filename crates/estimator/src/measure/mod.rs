@@ -122,7 +122,7 @@ impl<'a, const D: usize, const N: usize> ElementMeasure<'a, D, N> {
         let forces = level.forces();
         let around = |i: usize| equilibration.moments_around(level, self.element, i, contact[i], side);
         NodalBalance {
-            moments: outward(around),
+            moments: outward(&self.element.links, around),
             acceleration: self.acceleration(level, contact, side),
             skew: forces.level.skew().map(|field| self.element.gather(field)),
             body_force: forces.level.body_force.get(self.id.index()).copied().unwrap_or([0.0; D]),

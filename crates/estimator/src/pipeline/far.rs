@@ -230,9 +230,10 @@ impl<'a, 's, 'p, const D: usize, const N: usize> FarLevels<'a, 's, 'p, D, N> {
                 if !is_near[e] {
                     let (k, id, nodes) = (e - range.start, ElementId::new(e), nodes_of(e));
                     let form = forms.of(problem, id, &BalanceNode::points(&nodes), lane);
-                    let of = (problem, &equilibration.elements[e], id);
+                    let (element, levels) = (&equilibration.elements[e], self.levels.levels);
+                    let of = (problem, element, id);
                     let measure = ElementMeasure::of_nodes(of, self.shared.choice, &nodes);
-                    let balance = fields.balance.nodal_balance(like, e - start, self.levels.levels, id, &nodes);
+                    let balance = fields.balance.nodal_balance(like, e - start, levels, (id, &element.links), &nodes);
                     let element = FarElement { all: self, measure, form, id, local: &block.local[k] };
                     element.sample(like, fields, &balance, &mut courses[k], &mut found);
                 }

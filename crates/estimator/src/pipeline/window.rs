@@ -120,7 +120,7 @@ impl<'p, const D: usize, const N: usize> LevelWindow<'p, D, N> {
         near.all.iter().for_each(|n| is_near[n.element.index()] = true);
         let equilibration = Equilibration::new(problem);
         let links = near.all.iter().flat_map(|n| equilibration.elements[n.element.index()].links);
-        let near_links: BTreeSet<u32> = links.flat_map(|link| [link, link + 1]).collect();
+        let near_links: BTreeSet<u32> = links.flatten().map(|link| link.place() as u32).collect();
         Self {
             problem,
             times,

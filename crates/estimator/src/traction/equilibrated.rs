@@ -92,8 +92,7 @@ impl<const D: usize> EquilibratedLevels<D> {
         &self.moments
     }
 
-    /// For tests that spoil them.
-    #[cfg(test)]
+    /// The same, for changes that balance. No instant of these levels may be a jump.
     pub(crate) fn all_moments_mut(&mut self) -> &mut [[Lanes; D]] {
         &mut self.moments
     }

@@ -1,6 +1,8 @@
 //! The star problems of some levels side by side, block by block.
 
-use super::star_solver::{Compatibility, StarSolver};
+use super::star_chain::ChainStar;
+use super::star_graph::{GraphRoom, GraphStar};
+use super::star_terms::{Compatibility, StarTerms};
 use super::{EXPLAINED, EquilibratedLevel, EquilibratedLevels, Equilibration, MassTerm};
 use crate::blocks::{BLOCK, MeshPart, StarBlock};
 use crate::components::{subtract, tensor};
@@ -14,6 +16,7 @@ use crate::smoothing::{Smoothed, SmoothedStrains, Smoothing, StrainLevel};
 use crate::time_level::{ForcesKnown, Side, TimeLevel};
 use percute_core::ids::{ElementId, FaceId, NodeId};
 use percute_core::material::{Law, PointLaw, first_stress};
+use percute_core::mesh::Star;
 use percute_core::simd::Wide;
 use percute_core::simd::lanes::{Lanes, Value, load};
 use percute_core::simd::{Registers, Task, run_task};
@@ -31,6 +34,8 @@ pub(super) struct StarFields<const D: usize> {
     stress: Vec<[[Lanes; D]; D]>,
     /// f_d (N/m³), empty if there is none.
     body_force: Vec<[Lanes; D]>,
+    /// For the stars of solids.
+    room: GraphRoom<[Lanes; D], D>,
 }
 
 /// The strains of which the stress of some levels is made.
@@ -178,38 +183,25 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
     ) -> f64 {
         let (centres, place) = (self.star_blocks.centres(block), self.star_blocks.block(block));
         let split = fields.gather(like, self, (forces, strains), &place);
+        let StarFields { acceleration, skew, stress, body_force, room, .. } = fields;
         let floor = like.load(force_scale) * 1e-12;
         let mut worst: f64 = 0.0;
         for node in centres.map(NodeId::new) {
             let star = self.problem.mesh().stars().star(node);
             let (own, others) = std::mem::take(&mut moments).split_at_mut(star.links.len());
             moments = others;
-            let acceleration = fields.acceleration.values();
+            let acceleration = acceleration.values();
             let local = self.star_blocks.around(node);
             let mass_term = if split {
-                let skew = fields.skew.values();
+                let skew = skew.values();
                 MassTerm::Split { acceleration, skew, nodes: place.local }
             } else {
                 let own = self.position(star.elements[0], node);
                 MassTerm::Lumped(load(like, &acceleration[place.local[local[0] as usize][own] as usize]))
             };
-            let ends = self.ends(
-                like,
-                &star,
-                #[inline(always)]
-                |face| load(like, &self.known_moments(forces, face, node)),
-            );
-            let solver = StarSolver {
-                all: self,
-                node,
-                elements: star.elements,
-                local,
-                stress: &fields.stress,
-                body_force: &fields.body_force,
-                mass_term,
-                ends: &ends,
-            };
-            let found = solver.solve(own);
+            let terms =
+                StarTerms { all: self, node, elements: star.elements, local, stress, body_force, mass_term, like };
+            let found = self.solve_star(terms, star, own, forces, room);
             let scale = found.scale.max(floor);
             let relative = found.miss / scale.max(like.fill(f64::MIN_POSITIVE));
             let largest = relative.store().0[..forces.len()].iter().copied().fold(0.0, worse);
@@ -224,6 +216,30 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
             }
         }
         worst
+    }
+
+    /// Solves one star for the moments on its links.
+    #[inline(always)]
+    fn solve_star<R: Registers>(
+        &self,
+        terms: StarTerms<'_, '_, D, N, Wide<R>>,
+        star: Star<'_>,
+        moments: &mut [[Lanes; D]],
+        forces: &[ForcesKnown<D>],
+        room: &mut GraphRoom<[Lanes; D], D>,
+    ) -> Compatibility<Wide<R>> {
+        let (like, node) = (terms.like, terms.node);
+        if D == 3 {
+            let known = |face| load(like, &self.known_moments(forces, face, node));
+            return GraphStar { terms, links: star.links }.solve(moments, known, room);
+        }
+        let ends = self.ends(
+            like,
+            &star,
+            #[inline(always)]
+            |face| load(like, &self.known_moments(forces, face, node)),
+        );
+        ChainStar { terms, ends: &ends }.solve(moments)
     }
 
     /// The known moments on a face at a node, at each level.
@@ -254,8 +270,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
             let body = &forces.level.body_force;
             let body_force: Vec<_> = star.elements.iter().filter_map(|e| body.get(e.index()).copied()).collect();
             let local: Vec<u32> = (0..star.elements.len() as u32).collect();
-            let ends = self.ends(0.0, &star, |face| self.known_moment(&forces.level, &before.density, face, node));
-            let solver = StarSolver {
+            let terms = StarTerms {
                 all: self,
                 node,
                 elements: star.elements,
@@ -263,9 +278,16 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
                 stress: &stress,
                 body_force: &body_force,
                 mass_term: MassTerm::Lumped(before.acceleration[at]),
-                ends: &ends,
+                like: 0.0,
             };
-            worst = worse(worst, self.star_residual(solver.solve(links), forces, force_scale, node));
+            let known = |face| self.known_moment(&forces.level, &before.density, face, node);
+            let found = if D == 3 {
+                GraphStar { terms, links: star.links }.solve(links, known, &mut GraphRoom::default())
+            } else {
+                let ends = self.ends(0.0, &star, known);
+                ChainStar { terms, ends: &ends }.solve(links)
+            };
+            worst = worse(worst, self.star_residual(found, forces, force_scale, node));
         }
         Some((moments, worst))
     }
@@ -280,7 +302,7 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         self.problem.material(element).respond(&gradient, &mut []).0
     }
 
-    /// The moments by which the star of local node `i` enters and leaves an element.
+    /// The moments on the links of local node `i` of an element.
     #[inline]
     pub(crate) fn moments_around(
         &self,
@@ -289,16 +311,14 @@ impl<const D: usize, const N: usize> Equilibration<'_, D, N> {
         i: usize,
         contact: Option<usize>,
         side: Side,
-    ) -> [[f64; D]; 2] {
-        let link = data.links[i] as usize;
-        match (contact, side, level.moments_before) {
+    ) -> [[f64; D]; D] {
+        data.links[i].map(|link| match (contact, side, level.moments_before) {
             (Some(at), Side::Before, Some(moments)) => {
                 let first = self.problem.mesh().stars().link_range(data.nodes[i]).start;
-                let link = self.contact_links[at] + link - first;
-                [moments[link], moments[link + 1]]
+                moments[self.contact_links[at] + link.place() - first]
             }
-            _ => [level.moment(link), level.moment(link + 1)],
-        }
+            _ => level.moment(link.place()),
+        })
     }
 }
 

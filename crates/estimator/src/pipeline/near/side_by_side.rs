@@ -160,10 +160,14 @@ fn nodal_balance<R: Registers, const D: usize, const N: usize>(
     }
     NodalBalance {
         moments: outward(
+            &element.links,
             #[inline(always)]
             |i| {
-                let link = element.links[i] as usize;
-                [load(like, &moments[link]), load(like, &moments[link + 1])]
+                let mut own = [[like; D]; D];
+                for p in 0..D {
+                    own[p] = load(like, &moments[element.links[i][p].place()]);
+                }
+                own
             },
         ),
         acceleration,

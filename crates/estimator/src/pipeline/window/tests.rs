@@ -116,7 +116,7 @@ fn wrong_moments_show_in_the_resultants() {
         let mut run = run(&problem, &times);
         let mut levels = run.solve();
         let (level, elements) = run.places();
-        let link = run.window.equilibration.elements[elements[k]].links[2] as usize;
+        let link = run.window.equilibration.elements[elements[k]].links[2][0].place();
         let moments = &mut levels[level / LANES].all_moments_mut()[link];
         moments.iter_mut().for_each(|b| b.0[level % LANES] *= 1.01);
         let found = run.residuals(levels);
