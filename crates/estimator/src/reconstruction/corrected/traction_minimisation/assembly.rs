@@ -148,7 +148,7 @@ impl<const D: usize, const N: usize> Unknown<'_, D, N> {
             return;
         }
         // The star enters by the edge to the next node and leaves by that to the one after it.
-        let enter = sectors.start + self.elements[e].links[i] as usize - mesh.stars().link_range(node).start;
+        let enter = sectors.start + self.elements[e].links[i][0].place() - mesh.stars().link_range(node).start;
         let leave = if enter + 1 < sectors.end { enter + 1 } else { sectors.start };
         for (at, k, other) in [(enter, (i + 2) % 3, (i + 1) % 3), (leave, (i + 1) % 3, (i + 2) % 3)] {
             to.sectors[at].spoke = 2 * number[k] as u32 + u32::from(cell[other] < node);

@@ -5,15 +5,15 @@ use crate::measure::{ElementMeasure, NodalBalance};
 use crate::stress::{EnergyForm, LOADS, face_node};
 use percute_core::simd::lanes::Value;
 
-/// The slope of the elastic energy of σ_DA − σ in the moments on the element's edges, edge by edge and node by node, σ
-/// the stress of the displacement that is equilibrated.
+/// The slope of the elastic energy of σ_DA − σ in the moments on the faces of an element, face by face and node by
+/// node, σ the stress of the displacement that is equilibrated.
 #[inline(always)]
-pub(super) fn moment_slope<T: Value, const D: usize, const N: usize>(
+pub(super) fn moment_slopes<T: Value, const D: usize, const N: usize>(
     measure: &ElementMeasure<'_, D, N>,
     form: &EnergyForm<'_>,
     fields: &NodalBalance<D, N, T>,
     stress: &[[T; D]; D],
-) -> [T; MOMENTS] {
+) -> [[[T; D]; D]; N] {
     let admissible = measure.stress(form, &measure.balanced(fields));
     let mut difference = admissible.mean;
     for a in 0..D {
@@ -22,17 +22,34 @@ pub(super) fn moment_slope<T: Value, const D: usize, const N: usize>(
         }
     }
     // A moment is a force on its node: it changes the mean stress by the product with the arm of the node.
-    let (strain, slopes) = (measure.strain(&difference), form.fluctuation_slope(&admissible.fluctuation));
-    let mut moments = [difference[0][0]; MOMENTS];
-    for (k, slope) in slopes.iter().enumerate() {
+    let (strain, mut slopes) = (measure.strain(&difference), form.fluctuation_slope(&admissible.fluctuation));
+    for k in 0..N {
         for c in 0..D {
             for p in 0..D {
                 let arm = &measure.arms()[face_node::<N>(k, p)];
-                let mut sum = slope[p][c];
                 for b in 0..D {
-                    sum += strain[c][b] * arm[b];
+                    slopes[k][p][c] += strain[c][b] * arm[b];
                 }
-                moments[4 * k + 2 * p + c] = sum;
+            }
+        }
+    }
+    slopes
+}
+
+/// The same of a triangle, one after the other.
+#[inline(always)]
+pub(super) fn moment_slope<T: Value, const D: usize, const N: usize>(
+    measure: &ElementMeasure<'_, D, N>,
+    form: &EnergyForm<'_>,
+    fields: &NodalBalance<D, N, T>,
+    stress: &[[T; D]; D],
+) -> [T; MOMENTS] {
+    let slopes = moment_slopes(measure, form, fields, stress);
+    let mut moments = [slopes[0][0][0]; MOMENTS];
+    for k in 0..N {
+        for p in 0..D {
+            for c in 0..D {
+                moments[4 * k + 2 * p + c] = slopes[k][p][c];
             }
         }
     }

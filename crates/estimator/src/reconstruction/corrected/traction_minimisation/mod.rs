@@ -15,6 +15,7 @@ mod mode_forms;
 mod modes;
 mod operator;
 mod present;
+mod solid;
 mod spectrum;
 mod wavefront;
 
@@ -43,6 +44,7 @@ use percute_core::simd::lanes::{LANES, Lanes, Value};
 use percute_core::simd::{Registers, Task, run_task};
 use present::PresentPlaces;
 use rayon::prelude::*;
+pub(in crate::reconstruction) use solid::SolidMinimisation;
 use std::ops::Range;
 use wavefront::{Wavefront, Work};
 
@@ -88,9 +90,8 @@ impl TractionMinimisation {
         elements: &[Element<D, N>],
     ) -> Option<Self> {
         match problem.mesh().kind() {
-            CellKind::Bar => return None,
+            CellKind::Bar | CellKind::Tetrahedron => return None,
             CellKind::Triangle => {}
-            CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
         }
         let numbers = Numbers::new(problem.mesh());
         let operator = assembly::assemble(problem, elements, &numbers);
@@ -113,7 +114,8 @@ impl TractionMinimisation {
     /// About how much memory it takes (bytes).
     pub(in crate::reconstruction) fn memory(shape: CellKind, elements: usize) -> usize {
         match shape {
-            CellKind::Bar | CellKind::Tetrahedron => 0,
+            CellKind::Bar => 0,
+            CellKind::Tetrahedron => SolidMinimisation::memory(elements),
             // Slopes and change are three coefficients each, a half of them of nodes; there is room for another half
             // twice.
             CellKind::Triangle => {
@@ -318,7 +320,7 @@ impl<const D: usize, const N: usize> Slopes<'_, D, N> {
                 let (id, nodes, element) = (ElementId::new(e), nodes_of(e), &equilibration.elements[e]);
                 let form = forms.of(problem, id, &BalanceNode::points(&nodes), lane);
                 let measure = ElementMeasure::of_nodes((problem, element, id), self.choice, &nodes);
-                let balance = fields.nodal_balance(like, e - start, levels, id, &nodes);
+                let balance = fields.nodal_balance(like, e - start, levels, (id, &element.links), &nodes);
                 let mut gradient = element.gradient(&BalanceNode::displacements(like, &nodes));
                 take_off(eigen.as_ref(), &mut gradient, e);
                 let [stress, _] = measure.stress_and_strain(&gradient);

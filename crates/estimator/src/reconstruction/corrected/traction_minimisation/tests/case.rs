@@ -97,8 +97,8 @@ impl Case {
         let crossing = cell::<2, 3>().faces_around();
         let mut moments = [Lanes::ZERO; MOMENTS];
         for i in 0..3 {
-            let at = self.elements[e].links[i] as usize;
-            for (face, (link, sign)) in crossing[i].into_iter().zip([(at, -1.0), (at + 1, 1.0)]) {
+            let [enter, exit] = self.elements[e].links[i].map(|link| link.place());
+            for (face, (link, sign)) in crossing[i].into_iter().zip([(enter, -1.0), (exit, 1.0)]) {
                 let k = face.unwrap();
                 // Node i is node (i − k − 1) mod 3 of face k.
                 let first = 4 * k + 2 * ((i + 2 - k) % 3);
