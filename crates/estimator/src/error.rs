@@ -37,12 +37,9 @@ pub enum EstimateError {
          acceleration \"split\" or \"weak\" alone: give these, or leave both out"
     )]
     Finite,
-    /// A body of tetrahedra.
-    #[error(
-        "the error of solids is not estimated yet, only that of bars and plane bodies; simulate it without an estimate \
-         (`percute simulate`, `Problem.simulate`)"
-    )]
-    Solid,
+    /// A body of tetrahedra, with a reconstruction that has none.
+    #[error("the error of solids is estimated by reconstruction = \"corrected\" alone: give it, or leave the key out")]
+    SolidReconstruction,
     /// No threads to work with.
     #[error("the threads of the estimate could not be started: {cause}")]
     Threads { cause: String },

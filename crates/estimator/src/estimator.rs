@@ -1,4 +1,4 @@
-//! The estimate of bars and plane bodies, compiled with this crate.
+//! The estimate of bars, plane bodies and solids, compiled with this crate.
 
 use crate::error::{EstimateError, RunError};
 use crate::estimate::Estimate;
@@ -81,8 +81,7 @@ pub fn memory<'p>(problem: impl Into<ProblemRef<'p>>, times: &TimeGrid, options:
         match problem {
             ProblemRef::D1(bar) => pipeline::memory::<1, 2>(bar, times, options),
             ProblemRef::D2(plane) => pipeline::memory::<2, 3>(plane, times, options),
-            // An estimate is refused.
-            ProblemRef::D3(_) => 0,
+            ProblemRef::D3(solid) => pipeline::memory::<3, 4>(solid, times, options),
         }
     }
     of(problem.into(), times, options)

@@ -12,6 +12,7 @@ mod finite;
 mod graded;
 mod properties;
 mod sliding_blocks;
+mod solids;
 mod table1;
 mod two_blocks;
 mod vibration;

@@ -44,7 +44,8 @@ pub(crate) fn face_power<const D: usize, const M: usize>(
 
 /// Power of ∫[b(−w, F) + w·F] on a face: μF_n‖w_t‖ + w_t·F_t (W). The normal part vanishes where F is zero
 /// unless both nodes stay on the plane; elsewhere [`NormalMisfit`](super::NormalMisfit) measures it. In 2D both factors
-/// are linear along the edge.
+/// are linear along the edge. In 3D ‖w_t‖ is not: the mean is that of points with positive weights, at none of which
+/// the power is negative.
 fn misfit_power<const D: usize>(
     problem: &Problem<D>,
     face: &ContactFace<D>,
@@ -59,6 +60,13 @@ fn misfit_power<const D: usize>(
     }
     let obstacle = &problem.obstacles()[face.obstacle];
     let (law, frame) = (obstacle.law(), obstacle.flat_frame());
+    if D == 3 {
+        let at = |weights: &[f64; D], values: &[[f64; D]; D]| -> [f64; D] {
+            std::array::from_fn(|c| (0..D).map(|k| weights[k] * values[k][c]).sum())
+        };
+        let power = |weights: &[f64; D]| law.misfit_along(&frame, &at(weights, density), &at(weights, velocity));
+        return face.area * face_mean(&[0.0; D], power);
+    }
     let tangent = tangent(&frame);
     let (normal, tangential) = (density.map(|f| frame.split(&f).0), density.map(|f| along(&f, &tangent)));
     let sliding = velocity.map(|v| along(&v, &tangent));

@@ -29,6 +29,7 @@ use crate::sampling::Sampling;
 use crate::scratch_file::ScratchFile;
 use maps::Maps;
 use near_elements::may_need_a_file;
+use percute_core::cell::CellKind;
 use percute_core::history::{SinkError, State, StateSink};
 use percute_core::observer::StopFlag;
 use percute_core::problem::{Problem, ProblemRef};
@@ -66,7 +67,7 @@ pub(crate) fn begin<'p>(
     Ok(match problem {
         ProblemRef::D1(bar) => Box::new(Pipeline::<1, 2>::new(bar, times, options)?),
         ProblemRef::D2(plane) => Box::new(Pipeline::<2, 3>::new(plane, times, options)?),
-        ProblemRef::D3(_) => return Err(EstimateError::Solid),
+        ProblemRef::D3(solid) => Box::new(Pipeline::<3, 4>::new(solid, times, options)?),
     })
 }
 
@@ -97,6 +98,9 @@ impl<'p, const D: usize, const N: usize> Pipeline<'p, D, N> {
             return Err(EstimateError::TooManyThreads { threads });
         }
         options.acceleration(D).check(options.reconstruction)?;
+        if problem.mesh().kind() == CellKind::Tetrahedron && options.reconstruction != Reconstruction::Corrected {
+            return Err(EstimateError::SolidReconstruction);
+        }
         if problem.is_finite() && !options.balances_turning(D) {
             return Err(EstimateError::Finite);
         }

@@ -108,8 +108,8 @@ impl FluctuationForm for EnergyForm<'_> {
 }
 
 impl EnergyForm<'_> {
-    /// The slope (m) of the energy of a fluctuation (J) in the outward moments (N) at the nodes of each face; in 1D, where
-    /// a face is a point, zero.
+    /// The slope (m) of the energy of a fluctuation (J) in the outward moments (N) at the nodes of each face; in 1D,
+    /// where a face is a point, zero.
     #[inline(always)]
     pub(crate) fn fluctuation_slope<T: Value, const D: usize, const N: usize>(
         &self,

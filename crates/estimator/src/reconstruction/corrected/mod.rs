@@ -44,7 +44,7 @@ use present_stars::PresentStars;
 use split::skew_acceleration;
 use std::borrow::Cow;
 use std::sync::Arc;
-use traction_minimisation::TractionMinimisation;
+use traction_minimisation::{SolidMinimisation, TractionMinimisation};
 
 /// The strain of a star from which on its node has no contact of its own: at a corner of rubber with 25 %, such
 /// contacts gave a seventh of the energy.
@@ -71,6 +71,7 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
     splits: bool,
     minimises: bool,
     minimisation: Option<TractionMinimisation>,
+    solid_minimisation: Option<SolidMinimisation>,
     /// Weight of the work of normal forces off contact.
     normal_work: f64,
 }
@@ -78,9 +79,8 @@ pub(super) struct Corrected<'p, const D: usize, const N: usize> {
 /// Whether tractions of nodes are concentrated.
 fn concentrates<const D: usize>(problem: &Problem<D>, options: &Options) -> bool {
     let possible = match problem.mesh().kind() {
-        CellKind::Bar => false,
+        CellKind::Bar | CellKind::Tetrahedron => false,
         CellKind::Triangle => true,
-        CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
     };
     possible && options.ablation != Ablation::Concentration
 }
@@ -107,6 +107,7 @@ impl<'p, const D: usize, const N: usize> Corrected<'p, D, N> {
             splits: options.acceleration(D) == Acceleration::Split,
             minimises: keeps(Ablation::LeastEnergy),
             minimisation: None,
+            solid_minimisation: None,
             normal_work: match options.ablation {
                 Ablation::NormalWork => 0.0,
                 Ablation::DoubledWork => 2.0,
@@ -310,6 +311,8 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
         }
         if self.minimises {
             self.minimisation = TractionMinimisation::new(self.problem, elements);
+            let is_solid = self.problem.mesh().kind() == CellKind::Tetrahedron;
+            self.solid_minimisation = is_solid.then(|| SolidMinimisation::new(self.problem));
         }
     }
 
@@ -447,10 +450,13 @@ impl<const D: usize, const N: usize> ReconstructionMethod<D, N> for Corrected<'_
                 equilibration.fill_strains(&self.smoothing, &forces, strains);
             }
             let strains = smoothed.then_some((&*strains, &*self.smoothing));
+            let of = (self.problem, equilibration, choice);
+            if let Some(minimisation) = &self.solid_minimisation {
+                return minimisation.equilibrate(of, (forces, strains), levels, then);
+            }
             let Some(minimisation) = &self.minimisation else {
                 return equilibration.solve(forces, levels, strains, then);
             };
-            let of = (self.problem, equilibration, choice);
             minimisation.equilibrate(of, (forces, strains), levels, self.concentration.as_ref(), then)
         })
     }

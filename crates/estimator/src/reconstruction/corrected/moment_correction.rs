@@ -11,11 +11,14 @@
 //! On a line of symmetry, which supports hold along the plane, the half of a shape function has its centroid beside the
 //! node. In the whole body no moment is missing, and the line takes that of its half: nothing is corrected.
 
+mod solid;
+
 use crate::direction::{along, tangent};
 use percute_core::cell::CellKind;
 use percute_core::contact::Coulomb;
 use percute_core::ids::NodeId;
 use percute_core::problem::Problem;
+use solid::SolidGroup;
 
 /// Such a part of a force is nothing: its place within an edge is known to 1e-16 only, which counts squared.
 const NOTHING: f64 = 1e-24;
@@ -46,14 +49,16 @@ pub(super) struct CorrectedNode {
 #[derive(Clone, Debug)]
 pub(super) struct MomentCorrection<const D: usize> {
     groups: Vec<Group<D>>,
+    /// Those of solids, whose planes have two directions.
+    solids: Vec<SolidGroup<D>>,
 }
 
 impl<const D: usize> MomentCorrection<D> {
     pub(super) fn new(problem: &Problem<D>) -> Self {
         match problem.mesh().kind() {
-            CellKind::Bar => return Self { groups: Vec::new() },
+            CellKind::Bar => return Self { groups: Vec::new(), solids: Vec::new() },
             CellKind::Triangle => {}
-            CellKind::Tetrahedron => unreachable!("estimates of solids are refused"),
+            CellKind::Tetrahedron => return Self { groups: Vec::new(), solids: solid::groups(problem) },
         }
         let (part, surface) = (problem.mesh().part_of_nodes(), problem.surface());
         let centroids = centroids(problem);
@@ -81,7 +86,7 @@ impl<const D: usize> MomentCorrection<D> {
         }
         let on_line = problem.on_lines_of_symmetry();
         let is_free = |group: &Group<D>| group.nodes.iter().all(|node| !on_line[node.at]);
-        Self { groups: groups.into_iter().map(|(_, group)| group).filter(is_free).collect() }
+        Self { groups: groups.into_iter().map(|(_, group)| group).filter(is_free).collect(), solids: Vec::new() }
     }
 
     /// Forces of the same resultants as these reactions, which are in the cone, and in it as well; their densities have
@@ -94,6 +99,7 @@ impl<const D: usize> MomentCorrection<D> {
         centroid: &dyn Fn(usize) -> Option<[f64; D]>,
     ) {
         self.groups.iter().for_each(|group| group.apply(reaction, displacement, centroid));
+        self.solids.iter().for_each(|group| group.apply(reaction));
     }
 }
 

@@ -100,7 +100,7 @@ fn fields_are_those_of_the_formulas() {
     let mut plain = DenseMotion {
         problem: &problem,
         matrices: DenseSolid::new(&problem, &[(0, 0.0), (2, 0.7)]),
-        damping: DAMPING * critical_time_step(&problem),
+        damping: DAMPING * element_time_step(&problem),
         displacement: dense(problem.initial_displacement()),
         half_step: dense(problem.initial_velocity()),
     };

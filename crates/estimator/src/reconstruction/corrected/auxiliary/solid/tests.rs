@@ -7,6 +7,7 @@ use super::*;
 use crate::element::elements;
 use crate::smoothing::{Smoothed, SmoothedStrains};
 use nalgebra::DMatrix;
+use percute_core::dynamics::critical_time_step;
 use percute_core::ids::{ElementId, NodeId};
 use percute_core::load::Support;
 use percute_core::material::Elastic;
