@@ -41,9 +41,13 @@ def test_the_case_of_the_page_runs(tmp_path: Path) -> None:
     problem = pc.Problem(pc.Mesh.ball(0.01, rings=8), material=ALUMINIUM, obstacles=[plane], initial_velocity=(1, 0, -5))
     same = pc.simulate(problem, steps=np.diff(history.time))
     assert np.array_equal(history.displacement, same.displacement)
-    # An estimate is refused before the run.
+    # A curve has no concentrated tractions: the number is not to be trusted, and the verdict says so.
+    told, _ = percute("run", "ball.toml", "--quiet", "--force", folder=tmp_path)
+    assert "trust low" in told and "A curve touches" in told
+    # Other reconstructions are refused before the run.
+    (tmp_path / "ball.toml").write_text(case + '\n[estimate]\nreconstruction = "consistent"\n')
     _, told = percute("run", "ball.toml", "--quiet", "--force", folder=tmp_path, code=2)
-    assert "simulate it without an estimate" in told
+    assert 'the error of solids is estimated by reconstruction = "corrected" alone' in told
 
 
 @pytest.mark.parametrize(
@@ -181,8 +185,11 @@ def test_files_have_the_same_bits(tmp_path: Path) -> None:
     assert np.allclose(stretches.prod(axis=1) - 1, np.trace(strain, axis1=1, axis2=2), rtol=0, atol=3 * np.abs(strain).max() ** 2 + 1e-12)
     assert {"x", "y", "z"} <= set(history.to_xarray().coords["component"].values.tolist())
     assert "displacement_z" in history.to_pandas("nodes").columns
-    with pytest.raises(pc.PercuteError, match="error of solids is not estimated"):
-        pc.estimate(stored)
+    estimate, again = pc.estimate(history), pc.estimate(stored)
+    assert estimate.error.sup == again.error.sup > 0 and np.array_equal(estimate.by_element, again.by_element)
+    assert estimate.verdict.touches == "face" and estimate.verdict.trust == "limited"
+    with pytest.raises(pc.PercuteError, match='error of solids is estimated by reconstruction = "corrected" alone'):
+        pc.estimate(stored, reconstruction="consistent")
 
 
 def test_pictures_show_the_surface(tmp_path: Path) -> None:

@@ -129,7 +129,7 @@ fn estimate(py: Python<'_>, error: &RunError) -> PyErr {
             | EstimateError::TooManyThreads { .. }
             | EstimateError::Acceleration(_)
             | EstimateError::Finite
-            | EstimateError::Solid
+            | EstimateError::SolidReconstruction
             | EstimateError::Request(_),
         ) => input(py, error),
         RunError::Estimate(EstimateError::Scratch(_)) => {

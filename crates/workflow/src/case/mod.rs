@@ -74,7 +74,7 @@ use percute_core::memory::can_be_had;
 use percute_core::mesh::Mesh;
 use percute_core::problem::{AnyProblem, Place, RefusedStart, cause_of_refused_start};
 use percute_core::time::TimeGrid;
-use percute_estimator::{EstimateError, Options};
+use percute_estimator::{EstimateError, Options, Reconstruction};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::de::DeTable;
@@ -276,9 +276,9 @@ impl Case {
     /// # Errors
     /// The place in the file.
     pub fn check_run(&self, estimated: bool, long: Long) -> Result<(), CaseError> {
-        if estimated && self.problem.dimension() == 3 {
-            let place = Place { table: "mesh", index: None, key: "" };
-            self.error_at(place, EstimateError::Solid.to_string()).map_or(Ok(()), Err)?;
+        if estimated && self.problem.dimension() == 3 && self.options.reconstruction != Reconstruction::Corrected {
+            let place = Place { table: "estimate", index: None, key: "reconstruction" };
+            self.error_at(place, EstimateError::SolidReconstruction.to_string()).map_or(Ok(()), Err)?;
         }
         if estimated && self.problem.is_finite() && !self.options.balances_turning(self.problem.dimension()) {
             let place = Place { table: "estimate", index: None, key: "reconstruction" };

@@ -15,11 +15,16 @@ const EQUAL: f64 = 1e-9;
 /// An edge that ends at a larger angle inside the body (rad) has an inclined side beside it, or a side that goes
 /// straight on: the stress is singular there. The evidence has angles of 90° and of 117° and more.
 const OBTUSE: f64 = 100.0 * PI / 180.0;
+/// A node of a solid with less than this part of the half of all directions is a corner. A ball of four elements across
+/// has 0.9, an edge of a box 0.5.
+const SHARP: f64 = 0.75;
 
 /// How the body touches first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Touches {
+    /// With faces of a solid that are parallel to the plane.
+    Face,
     /// Along an edge of the outline that is parallel to the plane. A bar touches so.
     Edge,
     /// Along such an edge, at an end of which the outline turns by less than 80°: beside an inclined side, or within a
@@ -106,6 +111,9 @@ impl<'a> Surface<'a> {
             return (Touches::Edge, start.to_vec());
         }
         let zone = self.flat_zone(start);
+        if self.problem.dimension() == 3 {
+            return (self.of_solid(&zone, start), Vec::new());
+        }
         if !self.is_along(&zone, start) {
             let turns = match self.striking(start) {
                 Some((at, _)) => self.turn(at) > CORNER,
@@ -125,6 +133,23 @@ impl<'a> Surface<'a> {
             () => Touches::Edge,
         };
         (touches, ends)
+    }
+
+    /// How the nodes of a solid touch that are first, with the zone around them that is parallel to the plane.
+    fn of_solid(&self, zone: &[bool], start: &[usize]) -> Touches {
+        let solid_angle = |at: usize| -> f64 {
+            let node = self.node(at);
+            self.elements(at).iter().map(|&element| self.problem.mesh().angle(element, node)).sum()
+        };
+        let mirrored = |at: usize| if self.on_line[at] { 2.0 } else { 1.0 };
+        match () {
+            () if self.problem.contact_faces().iter().any(|face| face.nodes.iter().all(|&at| zone[at])) => {
+                Touches::Face
+            }
+            () if start.iter().any(|&at| zone[at]) => Touches::Edge,
+            () if start.iter().any(|&at| mirrored(at) * solid_angle(at) < SHARP * 2.0 * PI) => Touches::Corner,
+            () => Touches::Curve,
+        }
     }
 
     /// Whether contact begins along an edge of this zone: of a non-matching interface, along edges of both.

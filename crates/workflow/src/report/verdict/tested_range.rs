@@ -44,6 +44,9 @@ const STATED: f64 = 1e-6;
 /// The properties of a run that no case of the evidence has.
 pub(super) fn outside(facts: &Facts) -> Vec<String> {
     let mut outside = Vec::new();
+    if facts.is_solid() {
+        outside.push("solids, of which the evidence has few".to_string());
+    }
     if let Some(ratio) = facts.speed_ratio {
         if ratio > SPEEDS[1] || (ratio > 0.0 && ratio < SPEEDS[0]) {
             outside.push(format!("an impact velocity of {} of the wave speed", short(ratio, 2)));

@@ -119,6 +119,7 @@ fn repair(poor: &[PoorElement]) -> Option<String> {
 
 fn situation(facts: &Facts, rule: &Rule, outside_tested_range: &[String]) -> String {
     let touches = match facts.contact.touches {
+        Touches::Face => "A flat side touches",
         Touches::Edge if facts.dimension == 1 => "An end of the bar touches",
         Touches::Edge => "An edge touches",
         Touches::End if facts.slides => "A part of an edge touches",
