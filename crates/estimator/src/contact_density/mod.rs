@@ -193,10 +193,16 @@ pub(crate) fn nodal_forces<const D: usize>(problem: &Problem<D>, densities: &Den
 }
 
 /// The forces that move the nodes of the contact surface under a density (N): [`nodal_forces`] without the tangential
-/// part at guided nodes, whose tangential motion is prescribed.
+/// part at guided nodes, whose tangential motion is prescribed; in a solid without the prescribed components, as such a
+/// node may be free along the other direction of its plane.
 pub(crate) fn driving_forces<const D: usize>(problem: &Problem<D>, densities: &Densities<D>) -> Vec<[f64; D]> {
     let mut forces = nodal_forces(problem, densities);
     for (contact, force) in problem.surface().nodes().iter().zip(&mut forces).filter(|(contact, _)| contact.guided) {
+        if D == 3 {
+            let held = problem.prescribed().iter().filter(|held| held.node == contact.node);
+            held.for_each(|held| force[held.component] = 0.0);
+            continue;
+        }
         let frame = problem.obstacles()[contact.obstacle].flat_frame();
         *force = frame.normal().map(|n| n * frame.split(force).0);
     }

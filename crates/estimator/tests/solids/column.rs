@@ -1,6 +1,7 @@
 //! A column without lateral contraction that drops on a plane, against the exact bar.
 
 use super::{Run, random_box};
+use crate::properties::estimating::assert_admissible;
 use percute_core::contact::Obstacle;
 use percute_core::dynamics::critical_time_step;
 use percute_core::material::Elastic;
@@ -9,6 +10,7 @@ use percute_core::problem::{Initial, Problem};
 const SIZE: [f64; 3] = [0.01, 0.01, 0.05];
 const SPEED: f64 = 20.0;
 
+/// The prototypes of the method have 0.90 to 1.03 on such meshes; fronts are steep.
 #[test]
 fn column() {
     for cells in [2, 3] {
@@ -35,7 +37,8 @@ fn column() {
             (tensor, [0.0, 0.0, if pressed { 0.0 } else { speed }])
         };
         let run = Run::new(&problem, (end, 0.9), 40, &exact);
-        println!("{cells}: {:?} {:?}", run.effectivity(), run.estimate.parts);
-        println!("{:?}", run.estimate.residuals);
+        assert_admissible("column", &run.estimate);
+        let index = run.effectivity();
+        assert!(index.iter().all(|index| (0.9..1.15).contains(index)), "{cells}: {index:?}");
     }
 }

@@ -2,6 +2,7 @@
 //! in Elastic Solids, §5.1.
 
 use super::{Run, random_box};
+use crate::properties::estimating::assert_admissible;
 use percute_core::material::{Elastic, LinearLaw};
 use percute_core::mesh::Mesh;
 use percute_core::problem::{Initial, Problem};
@@ -37,11 +38,13 @@ fn run(mesh: Mesh, periods: f64, samples: usize) -> Run {
     Run::new(&problem(mesh), (periods * 2.0 * PI / frequency, 0.9), samples, &exact)
 }
 
+/// The prototypes of the method have 0.92 to 1.15 on such meshes. Two cells across resolve half a wave with three nodes.
 #[test]
 fn lame_mode() {
-    for cells in [2, 4, 6] {
+    for (cells, most) in [(2, 1.3), (4, 1.15), (6, 1.15)] {
         let run = run(random_box([SIDE; 3], [cells; 3], 0.15, 1), 0.5, 12);
-        println!("{cells}: {:?} {:?}", run.effectivity(), run.estimate.parts);
-        println!("{:?}", run.estimate.residuals);
+        assert_admissible("cube", &run.estimate);
+        let index = run.effectivity();
+        assert!(index.iter().all(|index| (0.9..most).contains(index)), "{cells}: {index:?}");
     }
 }
