@@ -85,7 +85,7 @@ def main() -> None:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 ratios, errors = stresses(impact, passages)
-            told = ", ".join(f"{ratio:.3g}" for ratio in ratios), ", ".join(f"{100 * error:.0f} %" for error in errors)
+            told = ", ".join(f"{ratio:.4g}" for ratio in ratios), ", ".join(f"{100 * error:.0f} %" for error in errors)
             print(f"| {impact.name} | {impact.speed:g} m/s | {passages:g} | {told[0]} | {told[1]} |", flush=True)
 
 

@@ -21,9 +21,8 @@ use percute_core::cell::{Cell, CellKind};
 use percute_core::material::LinearLaw;
 pub(crate) use piecewise::MONOMIALS;
 pub(crate) use reference::LOADS;
+pub(crate) use tetrahedron::MomentForms;
 use tetrahedron::TetrahedronStress;
-#[allow(unused_imports, reason = "tractions of solids are not minimised yet")]
-pub(crate) use tetrahedron::{MomentForm, MomentForms};
 pub(crate) use traction_forms::{BasisForm, EDGES, TractionForms};
 pub(crate) use triangle::TriangleStress;
 

@@ -2,7 +2,6 @@
 
 mod forms;
 mod modes;
-#[allow(dead_code, reason = "tractions of solids are not minimised yet")]
 mod moment_forms;
 mod quadratic;
 mod reference;
@@ -10,8 +9,7 @@ mod residuals;
 
 use super::{Loading, StressResiduals};
 pub(crate) use forms::{TetrahedronForm, TetrahedronForms};
-#[allow(unused_imports, reason = "tractions of solids are not minimised yet")]
-pub(crate) use moment_forms::{MomentForm, MomentForms};
+pub(crate) use moment_forms::MomentForms;
 use nalgebra::{DMatrix, Matrix3};
 use percute_core::material::LinearLaw;
 use quadratic::NODES;
