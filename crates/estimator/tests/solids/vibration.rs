@@ -38,7 +38,7 @@ fn run(mesh: Mesh, periods: f64, samples: usize) -> Run {
     Run::new(&problem(mesh), (periods * 2.0 * PI / frequency, 0.9), samples, &exact)
 }
 
-/// The prototypes of the method have 0.92 to 1.15 on such meshes. Two cells across resolve half a wave with three nodes.
+/// The prototypes of the method have 0.92 to 1.15 on such meshes. Two cells across resolve half a wave with 3 nodes.
 #[test]
 fn lame_mode() {
     for (cells, most) in [(2, 1.3), (4, 1.15), (6, 1.15)] {
