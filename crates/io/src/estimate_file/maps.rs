@@ -123,8 +123,9 @@ fn found<'f>(part: &Part<'f>, name: &'static str, shape: [usize; 3]) -> Result<S
 /// Dimension, and numbers of nodes and elements.
 pub(super) fn size(vtk: &Part<'_>, ours: &Part<'_>) -> Result<Size, FileCause> {
     let dimension = ours.integer_attribute("dimension")?;
-    if !(1..=2).contains(&dimension) {
-        let detail = format!("{dimension} is not a known dimension; it must be 1 (bars) or 2 (triangles)");
+    if !(1..=3).contains(&dimension) {
+        let known = "1 (bars), 2 (triangles) or 3 (tetrahedra)";
+        let detail = format!("{dimension} is not a known dimension; it must be {known}");
         return Err(FileCause::Value { name: "percute.dimension".to_string(), detail });
     }
     let points = vtk.data("Points")?;

@@ -24,7 +24,7 @@ pub struct EstimateFile {
     pub case: Option<Case>,
     /// The document that `--json` printed.
     pub report: String,
-    /// 1 (bars) or 2 (triangles).
+    /// 1 (bars), 2 (triangles) or 3 (tetrahedra).
     pub dimension: usize,
     /// Number of nodes.
     pub nodes: usize,
